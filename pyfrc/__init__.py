@@ -1,0 +1,6 @@
+"""The documented import names of pyfrc; everything is the same object as in `pyfrc_core`.
+
+PYTEST_DONT_REWRITE
+"""
+
+from ._version import __version__ as __version__

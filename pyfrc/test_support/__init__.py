@@ -1,0 +1,1 @@
+"""Custom test support: `controller`, `fake_time`, `pytest_plugin`."""

@@ -1,0 +1,65 @@
+"""The command line: one group, whose commands are imported only when they are called for."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import sys
+from typing import Any
+
+import click
+
+from pyfrc._version import __version__
+
+#: Each command, its module, and its line in the help: known here so that the help needs to import none of them.
+COMMANDS = {
+    "init": ("pyfrc_cli.init", "Make a new robot project from a template."),
+    "test": ("pyfrc_cli.test", "Run the robot project's tests."),
+}
+
+
+class Commands(click.Group):
+    """The suite's commands, each loaded when it is used."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        if name not in COMMANDS:
+            return None
+        command: click.Command = importlib.import_module(COMMANDS[name][0]).command
+        return command
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        if args and args[0] not in COMMANDS and not args[0].startswith("-"):
+            close = difflib.get_close_matches(args[0], COMMANDS, n=1)
+            hint = f" Did you mean {close[0]!r}?" if close else ""
+            raise click.UsageError(f"There is no command {args[0]!r}.{hint}", ctx)
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
+
+
+@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="pyfrc")
+@click.option("-v", "--verbose", is_flag=True, help="Show the traceback of errors.")
+@click.pass_context
+def cli(ctx: click.Context, verbose: bool) -> None:
+    """Write, test and run FIRST Robotics Competition robot code in Python."""
+    ctx.obj = verbose
+
+
+def run() -> None:
+    """Run the command line; errors that pyfrc knows are told in a sentence, with exit code 1 or 2."""
+    verbose = "-v" in sys.argv[1:2] or "--verbose" in sys.argv[1:2]
+    from pyfrc_core.errors import PyfrcError
+
+    try:
+        cli.main(prog_name="pyfrc")
+    except PyfrcError as error:
+        if verbose:
+            raise
+        click.secho(f"error: {error}", fg="red", err=True)
+        sys.exit(error.exit_code)

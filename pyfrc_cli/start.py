@@ -1,0 +1,33 @@
+"""Where the `pyfrc` command begins: fixes what must be fixed before Python starts, then runs the command line.
+
+Python orders sets of strings by a number it draws at each start. A robot that goes through such a set does the same
+in every run only when that number is fixed; so commands that run robots start Python again with it fixed. This is done
+before anything is imported, so that it costs hundredths of a second.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+_RUN_ROBOTS = {"test"}
+
+
+def main() -> None:
+    """The entry point."""
+    if "PYTHONHASHSEED" not in os.environ and _RUN_ROBOTS.intersection(sys.argv[1:]):
+        _start_again()
+    from .main import run
+
+    run()
+
+
+def _start_again() -> None:
+    os.environ["PYTHONHASHSEED"] = "0"
+    command = [sys.executable, *sys.orig_argv[1:]]
+    if sys.platform == "win32":
+        # Windows' exec would give the terminal back to the shell while the tests run.
+        import subprocess
+
+        sys.exit(subprocess.call(command))
+    os.execv(sys.executable, command)

@@ -1,0 +1,124 @@
+"""`pyfrc test`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .project_options import chosen_project, project_options
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+
+class Jobs(click.ParamType):
+    """A number of processes, or ``auto``."""
+
+    name = "jobs"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> int | Literal["auto"]:
+        if value == "auto":
+            return "auto"
+        try:
+            jobs = int(value)
+        except ValueError:
+            jobs = 0
+        if jobs < 1:
+            self.fail(f"{value!r} is neither a number of processes, 1 or more, nor 'auto'.", param, ctx)
+        return jobs
+
+
+@click.command("test", context_settings={"help_option_names": ["-h", "--help"]})
+@project_options
+@click.option("--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own.")
+@click.option(
+    "-j", "--jobs", type=Jobs(), metavar="N", help="How many tests run at a time. Default: auto, one a core."
+)
+@click.option("--seed", type=click.IntRange(min=0), help="What the random generators start from. Default: 0.")
+@click.option(
+    "--isolation",
+    type=click.Choice(["auto", "fork", "spawn", "none"]),
+    help="What each test that uses the robot runs in: a fork of this process, a new one, or this one.",
+)
+@click.option("--no-isolation", is_flag=True, help="Run all tests in one process: --isolation none.")
+@click.option(
+    "--coverage", is_flag=True, help="Measure which lines of the project the tests run, and report them."
+)
+@click.option(
+    "--coverage-html",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Write the report as web pages, too.",
+)
+@click.option(
+    "--coverage-xml",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Write the report as Cobertura XML, too.",
+)
+@click.option(
+    "--fail-under",
+    metavar="PERCENT",
+    type=click.FloatRange(0, 100),
+    help="Fail when less of the project is covered.",
+)
+@click.option(
+    "--trace",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Write what the robot did in each test, as JSON lines with a hash at the end.",
+)
+@click.argument("pytest_args", nargs=-1, type=click.UNPROCESSED)
+def command(
+    directory: Path | None,
+    main: Path | None,
+    robot_class: str | None,
+    builtin: bool,
+    jobs: int | Literal["auto"] | None,
+    seed: int | None,
+    isolation: Literal["auto", "fork", "spawn", "none"] | None,
+    no_isolation: bool,
+    coverage: bool,
+    coverage_html: Path | None,
+    coverage_xml: Path | None,
+    fail_under: float | None,
+    trace: Path | None,
+    pytest_args: tuple[str, ...],
+) -> None:
+    """Run the robot project's tests, found in its directory tests/ or in ../tests.
+
+    What stands behind -- is passed on to pytest, as in: pyfrc test -- -x -k drive
+
+    \b
+    Exit codes: 0 all passed, 1 a test failed or the robot's code did,
+    2 wrong usage, 5 no test was selected.
+    """
+    project = chosen_project(directory, main, robot_class)
+    from pyfrc_core.measure.coverage import CoverageOptions, measuring
+
+    wanted = CoverageOptions(
+        # Asking for a report of it asks for coverage.
+        enabled=coverage or bool(coverage_html or coverage_xml) or fail_under is not None,
+        html=coverage_html,
+        xml=coverage_xml,
+        fail_under=fail_under,
+    )
+    with measuring(project, wanted) as measured:
+        # Imported within, for the robot's modules to be imported while their lines are counted.
+        from pyfrc_core.test_support.options import TestOptions
+        from pyfrc_core.test_support.run_tests import run_tests
+
+        options = TestOptions.combined(
+            project.settings.test,
+            seed=seed,
+            jobs=jobs,
+            isolation="none" if no_isolation else isolation,
+            trace_directory=trace,
+        )
+        status = run_tests(project, options, builtin=builtin, pytest_args=pytest_args)
+    sys.exit(status or measured.status)

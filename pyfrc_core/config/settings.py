@@ -1,0 +1,95 @@
+"""``[tool.pyfrc]`` in a robot project's pyproject.toml: what it may hold, and the defaults."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from ..errors import SettingsError
+from .validation import STRICT, validated
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+class _Positive:
+    """The constraint "greater than 0", told to pydantic only when it is there to be told."""
+
+    @staticmethod
+    def __get_pydantic_core_schema__(source: Any, handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        def check(value: Any) -> Any:
+            if value <= 0:
+                raise ValueError("must be greater than 0")
+            return value
+
+        return core_schema.no_info_after_validator_function(check, handler(source))
+
+
+Seconds = Annotated[float, _Positive]
+
+
+@dataclass(frozen=True)
+class MatchSettings:
+    """``[tool.pyfrc.match]``: how long the practice match's periods are, in seconds."""
+
+    __pydantic_config__ = STRICT
+
+    #: Disabled on the field, before the match starts.
+    before: Seconds = 1.0
+    autonomous: Seconds = 15.0
+    #: Disabled, between autonomous and teleoperated.
+    pause: Seconds = 3.0
+    teleop: Seconds = 135.0
+
+
+@dataclass(frozen=True)
+class TestSettings:
+    """``[tool.pyfrc.test]``: how tests are run."""
+
+    __pydantic_config__ = STRICT
+
+    #: How many tests run at the same time.
+    jobs: Annotated[int, _Positive] | Literal["auto"] = "auto"
+    #: What each test that uses the robot runs in: a forked process, a new one, or this one.
+    isolation: Literal["auto", "fork", "spawn", "none"] = "auto"
+    #: Processor seconds without progress in robot time, after which robot code counts as hanging.
+    hang_seconds: Seconds = 10.0
+
+    __test__ = False  # pytest: not a test class, for all its name
+
+
+@dataclass(frozen=True)
+class Settings:
+    """``[tool.pyfrc]``."""
+
+    __pydantic_config__ = STRICT
+
+    #: The file with the robot class, relative to pyproject.toml, when it is not robot.py.
+    main: str | None = None
+    #: The robot class's name, when the file has several.
+    robot_class: str | None = None
+    match: MatchSettings = field(default_factory=MatchSettings)
+    test: TestSettings = field(default_factory=TestSettings)
+
+
+def load_settings(pyproject: Path) -> Settings:
+    """What ``[tool.pyfrc]`` in this file says, or the defaults where there is no such file or table.
+
+    :raises SettingsError: with the file, the line and the key
+    """
+    if not pyproject.is_file():
+        return Settings()
+    try:
+        document = tomllib.loads(pyproject.read_text("utf-8-sig"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as malformed:
+        raise SettingsError(f"not valid TOML: {malformed}", where=pyproject.name) from None
+    table = document.get("tool", {}).get("pyfrc")
+    if not table:
+        return Settings()
+    return validated(Settings, table, pyproject, "tool.pyfrc")

@@ -1,0 +1,16 @@
+"""`hal_data`: the robot's inputs and outputs as one tree, live over WPILib's simulated HAL.
+
+The only room that names simulated devices. Importing it changes nothing in the HAL.
+"""
+
+from .containers import LiveDict, LiveList
+from .data import HalData
+from .kinds import Choice
+from .paths import format_path, parse_path
+
+__all__ = ["Choice", "HalData", "LiveDict", "LiveList", "devices_exist", "format_path", "parse_path"]
+
+
+def devices_exist() -> bool:
+    """Whether this process has made any device in the HAL that still exists."""
+    return HalData().anything_made()

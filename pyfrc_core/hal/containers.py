@@ -1,0 +1,309 @@
+"""The dicts and lists that `hal_data` is made of: they hold ways to read and write, never the values.
+
+`MutableMapping` and `Sequence` of the standard library give the behaviour; what is added is speed (a read is
+one dict look-up and one bound method of WPILib), errors that name the place, and listeners.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
+from functools import partial
+from numbers import Integral, Real
+from typing import Any, NamedTuple, overload
+
+from pyfrc_core.errors import nearest
+
+from .kinds import ANY, Kind, UnknownKey, WrongIndex, WrongType, WrongValue
+from .paths import join
+
+Callback = Callable[[Any, Any], object]
+
+
+class Slot(NamedTuple):
+    """How one value is reached.
+
+    :param watch: asks the HAL to call a function on each change, and returns what keeps that going while it
+        is kept
+    :param canonical: the key whose listeners also hear of this one; differs from the key for another name of
+        a value
+    :param recorded: whether the value tells something that no other field tells
+    """
+
+    get: Callable[[], Any]
+    set: Callable[[Any], object] | None
+    kind: Kind = ANY
+    watch: Callable[[Callable[[], None]], object] | None = None
+    canonical: str = ""
+    recorded: bool = True
+    remedy: str | None = None
+
+
+def kept(default: Any = None) -> Slot:
+    """A value that the HAL of today does not have: it is kept as written, so that older tests still work."""
+    cell = [default]
+    return Slot(partial(cell.__getitem__, 0), partial(cell.__setitem__, 0), recorded=False)
+
+
+class _Watch:
+    """The listeners of one value, and the HAL's notification they hang on."""
+
+    def __init__(self, owner: LiveDict, slot: Slot) -> None:
+        self.owner = owner
+        self.listeners: list[tuple[Any, Callback]] = []
+        self.heard = False
+        self.store = slot.watch(self.fire) if slot.watch else None
+
+    def fire(self) -> None:
+        self.heard = True
+        for key, callback in list(self.listeners):
+            callback(key, self.owner[key])
+
+
+class LiveDict(MutableMapping[Any, Any]):
+    """A dict whose values live in the simulated HAL.
+
+    Reading asks WPILib, writing tells it. A wrong key raises a `KeyError` that lists the keys; a value that
+    cannot be there raises a `TypeError` or `ValueError` that names the place. Keys cannot be added or
+    removed.
+    """
+
+    def __init__(self, path: str, build: Callable[[], Mapping[str, Slot]]) -> None:
+        self._path = path
+        self._build = build
+        self._built: Mapping[str, Slot] | None = None
+        self._getters: dict[Any, Callable[[], Any]] = {}
+        self._watches: dict[str, _Watch] = {}
+
+    # Built on first use: the tree has some two thousand values and a test looks at ten.
+    @property
+    def _slots(self) -> Mapping[str, Slot]:
+        if self._built is None:
+            self._built = self._build()
+        return self._built
+
+    def _slot(self, key: Any) -> Slot:
+        try:
+            return self._slots[key]
+        except (KeyError, TypeError):
+            raise self._unknown(key) from None
+
+    def _unknown(self, key: Any, remedy: str | None = None) -> UnknownKey:
+        where = self._path or "hal_data"
+        keys = [str(k) for k in self]
+        hint = nearest(str(key), keys)
+        if hint.startswith("did you mean"):
+            hint += " There is: " + ", ".join(sorted(keys))
+        return UnknownKey(
+            f"there is no key {key!r} in {where}", where=join(self._path, key), remedy=remedy or hint
+        )
+
+    def __getitem__(self, key: Any) -> Any:
+        try:
+            get = self._getters[key]
+        except (KeyError, TypeError):
+            get = self._getters[key] = self._slot(key).get
+        return get()
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        slot = self._slot(key)
+        if slot.set is None:
+            current = slot.get()
+            if isinstance(current, (LiveDict, LiveList)):
+                current.assign(value)
+                return
+            raise WrongValue("cannot be written", where=join(self._path, key), remedy=slot.remedy)
+        checked = value if slot.kind is ANY else slot.kind.check(value, join(self._path, key))
+        watch = self._watches.get(slot.canonical or key) if self._watches else None
+        if watch is None:
+            slot.set(checked)
+            return
+        # The HAL tells of changes only, and for some values of nothing: what it did not tell is told here.
+        watch.heard = False
+        slot.set(checked)
+        if not watch.heard:
+            watch.fire()
+
+    def __delitem__(self, key: Any) -> None:
+        raise UnknownKey("a key of hal_data cannot be removed", where=join(self._path, key))
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self._slots)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._slots
+
+    def get(self, key: Any, default: Any = None) -> Any:
+        """The value at `key`, or `default` where there is no such key."""
+        if key in self:
+            return self[key]
+        return default
+
+    def setdefault(self, key: Any, default: Any = None) -> Any:
+        """The value at `key`; a missing key is written first, which most dicts here refuse."""
+        if key not in self:
+            self[key] = default
+        return self[key]
+
+    def assign(self, values: Mapping[Any, Any]) -> None:
+        """Write every key that `values` has."""
+        if not isinstance(values, Mapping):
+            raise WrongType(f"expected a dict, not a {type(values).__name__}", where=self._path)
+        for key, value in values.items():
+            self[key] = value
+
+    def register(self, key: Any, callback: Callback, notify: bool = False) -> None:
+        """Call ``callback(key, value)`` each time `key` is set, by the robot or through `hal_data`.
+
+        The HAL reports the robot's writes only when they change the value; values that only `hal_data` knows
+        are reported when written through it. With `notify` the callback is called at once as well. What the
+        callback raises reaches whoever set the value. Raises `KeyError` for a key that is not there.
+        """
+        slot = self._slot(key)
+        name = slot.canonical or key
+        watch = self._watches.get(name)
+        if watch is None:
+            watch = self._watches[name] = _Watch(self, slot)
+        watch.listeners.append((key, callback))
+        if notify:
+            callback(key, self[key])
+
+    def _changed(self, key: str) -> None:
+        """An entry of the list at `key` was written."""
+        if key in self._watches:
+            self._watches[key].fire()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (isinstance(other, Mapping) and dict(self.items()) == dict(other.items()))
+
+    def __repr__(self) -> str:
+        return f"<{self._path or 'hal_data'}: {plain(self)!r}>"
+
+
+class LiveList(Sequence[Any]):
+    """A list of fixed length: of devices, or of values that live in the HAL (`ValueList`)."""
+
+    def __init__(self, path: str, items: Sequence[Any]) -> None:
+        self._path = path
+        self._items = items
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    @overload
+    def __getitem__(self, index: int) -> Any: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Any]: ...
+    def __getitem__(self, index: int | slice) -> Any:
+        try:
+            return self._items[index]
+        except (IndexError, TypeError):
+            raise self._wrong(index) from None
+
+    def __setitem__(self, index: int, value: Any) -> None:
+        self[index].assign(value)
+
+    def _wrong(self, index: Any) -> WrongIndex | WrongType:
+        if not isinstance(index, int):
+            kind = type(index).__name__
+            return WrongType(f"expected a list index, not {index!r} ({kind})", where=self._path)
+        length = len(self)
+        return WrongIndex(
+            f"there is no entry {index}, the list has {length}",
+            where=join(self._path, index),
+            remedy=f"use 0 to {length - 1}" if length else None,
+        )
+
+    def assign(self, values: Sequence[Any]) -> None:
+        """Write the first entries. Raises TypeError for what is no list, ValueError for one too long."""
+        if isinstance(values, str) or not isinstance(values, Sequence):
+            raise WrongType(f"expected a list, not a {type(values).__name__}", where=self._path)
+        if len(values) > len(self):
+            raise WrongValue(f"{len(values)} values are too many for {len(self)} entries", where=self._path)
+        for index, value in enumerate(values):
+            self[index] = value
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, (LiveList, list, tuple)):
+            return list(self) == list(other)
+        return NotImplemented
+
+    def __repr__(self) -> str:
+        return f"<{self._path}: {plain(self)!r}>"
+
+
+class ValueList(LiveList):
+    """A list of values of one kind.
+
+    :param length:  how many entries there are now
+    :param get:     reads one entry
+    :param put:     writes one entry
+    :param load:    reads all entries at once
+    :param changed: called after a write
+    """
+
+    def __init__(
+        self,
+        path: str,
+        kind: Kind,
+        length: Callable[[], int],
+        get: Callable[[int], Any],
+        put: Callable[[int, Any], object],
+        load: Callable[[], list[Any]] | None = None,
+        changed: Callable[[], object] | None = None,
+    ) -> None:
+        super().__init__(path, ())
+        self._kind, self._length, self._get, self._put = kind, length, get, put
+        self._load = load or (lambda: [get(i) for i in range(length())])
+        self._changed = changed
+
+    def __len__(self) -> int:
+        return self._length()
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self._load())
+
+    def _position(self, index: Any) -> int:
+        length = self._length()
+        if not isinstance(index, int) or not -length <= index < length:
+            raise self._wrong(index)
+        return index + length if index < 0 else index
+
+    @overload
+    def __getitem__(self, index: int) -> Any: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Any]: ...
+    def __getitem__(self, index: int | slice) -> Any:
+        if isinstance(index, slice):
+            return self._load()[index]
+        return self._get(self._position(index))
+
+    def __setitem__(self, index: int, value: Any) -> None:
+        position = self._position(index)
+        self._put(position, self._kind.check(value, join(self._path, position)))
+        if self._changed is not None:
+            self._changed()
+
+
+def plain(value: Any) -> Any:
+    """A copy made of dicts, lists, numbers, strings, bools and None only, as ``json.dumps`` takes it."""
+    if value is None or type(value) in (bool, int, float, str):
+        return value
+    if isinstance(value, Mapping):
+        return {k if isinstance(k, (str, int)) else str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
+        return [plain(v) for v in value]
+    if isinstance(value, (set, frozenset)):
+        return sorted((plain(v) for v in value), key=repr)
+    if isinstance(value, str):
+        return str(value)
+    if isinstance(value, Real):
+        return int(value) if isinstance(value, Integral) else float(value)
+    # The text of any other object may hold its address, which differs from run to run.
+    return f"<{type(value).__name__}>"

@@ -1,0 +1,281 @@
+"""The devices of the roboRIO: a table of which field is which value of WPILib's simulation (see `fields`)."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+import hal
+import wpilib
+from wpilib import simulation as sim
+
+from .fields import HAS_SOURCE, INITIALIZED, DeviceKind, Field
+from .kinds import BOOL, FLOAT, INT32, INT64, Kind, choice, number, text, whole
+
+RANGE = choice({"2G": 0, "4G": 1, "8G": 2}, hal.AccelerometerRange)
+LED_STATE = choice({"off": 0, "green": 1, "red": 2, "orange": 3}, wpilib.RadioLEDState)
+
+_LSB = 1220703e-9  # volts per count of the 12-bit converter, as the HAL has it
+
+
+def _relay_initialized(relay: sim.RelaySim) -> bool:
+    return relay.getInitializedForward() or relay.getInitializedReverse()
+
+
+def _initialize_relay(relay: sim.RelaySim, value: bool) -> None:
+    relay.setInitializedForward(value)
+    relay.setInitializedReverse(value)
+
+
+def encoder_channels(index: int) -> dict[str, int | None]:
+    """The digital channels of an encoder: None where the HAL cannot tell."""
+    # WPILib's C interface tells them, its Python interface does not. The library is loaded already.
+    try:
+        native = import_module("native.wpihal._init_robotpy_native_wpihal")
+        library = vars(native)["__lib"]
+        a, b = library.HALSIM_GetEncoderDigitalChannelA, library.HALSIM_GetEncoderDigitalChannelB
+    except (ImportError, KeyError, AttributeError):
+        return {"ASource_Channel": None, "BSource_Channel": None}
+    if not sim.EncoderSim.createForIndex(index).getInitialized():
+        return {"ASource_Channel": None, "BSource_Channel": None}
+    return {"ASource_Channel": int(a(index)), "BSource_Channel": int(b(index))}
+
+
+def led_data(strip: sim.AddressableLEDSim) -> list[list[int]]:
+    """The colours as ``[red, green, blue]``, 0 to 255."""
+    return [[led.r, led.g, led.b] for led in strip.getData()]
+
+
+def _colours(value: Any) -> list[list[int]]:
+    colours = [[whole(0, 255).convert(part) for part in colour] for colour in value]
+    if any(len(colour) != 3 for colour in colours):
+        raise ValueError
+    return colours
+
+
+def _set_led_data(strip: sim.AddressableLEDSim, colours: list[list[int]]) -> None:
+    strip.setData([wpilib.AddressableLED.LEDData(*colour) for colour in colours])
+
+
+F = Field  # the table below is read in columns
+KINDS = (
+    DeviceKind(
+        "pwm",
+        20,
+        sim.PWMSim,
+        (
+            INITIALIZED,
+            F("type"),
+            F("raw_value", "PulseMicrosecond", INT32),
+            F("value", "Speed", number(-1, 1)),
+            F("position", "Position", number(0, 1), recorded=False),
+            F("period_scale", "PeriodScale", INT32),
+            F("zero_latch", "ZeroLatch", BOOL),
+            F("elim_deadband", default=False),
+        ),
+    ),
+    DeviceKind(
+        "dio",
+        26,
+        sim.DIOSim,
+        (
+            INITIALIZED,
+            HAS_SOURCE,
+            F("value", "Value", BOOL),
+            F("is_input", "IsInput", BOOL),
+            F("pulse_length", "PulseLength", FLOAT),
+            F("filter_idx", "FilterIndex", INT32),
+        ),
+    ),
+    DeviceKind(
+        "encoder",
+        8,
+        sim.EncoderSim.createForIndex,
+        (
+            INITIALIZED,
+            HAS_SOURCE,
+            F("count", "Count", INT32),
+            F("value", "Count", INT32, same_as="count", recorded=False),
+            F("period", "Period", FLOAT),
+            F("direction", "Direction", BOOL),
+            F("max_period", "MaxPeriod", FLOAT),
+            F("reverse_direction", "ReverseDirection", BOOL),
+            F("samples_to_average", "SamplesToAverage", INT32),
+            F("distance_per_pulse", "DistancePerPulse", FLOAT),
+            # WPILib derives both from period, count and distance per pulse, and the other way round.
+            F("rate", "Rate", FLOAT, recorded=False),
+            F("distance", "Distance", FLOAT, recorded=False),
+            F("min_rate", default=0.0),
+        ),
+        config=encoder_channels,
+    ),
+    DeviceKind(
+        "analog_in",
+        8,
+        sim.AnalogInputSim,
+        (
+            INITIALIZED,
+            HAS_SOURCE,
+            F("voltage", "Voltage", FLOAT),
+            F("avg_voltage", "Voltage", FLOAT, same_as="voltage", recorded=False),
+            # The HAL computes both counts from the voltage; the margin makes its truncation give back what
+            # was set.
+            *(
+                F(
+                    name,
+                    "Voltage",
+                    whole(0, 4095),
+                    same_as="voltage",
+                    recorded=False,
+                    get=lambda device: int(device.getVoltage() / _LSB),
+                    put=lambda device, value: device.setVoltage((value + 1e-6) * _LSB),
+                )
+                for name in ("value", "avg_value")
+            ),
+            F("avg_bits", "AverageBits", INT32),
+            F("oversample_bits", "OversampleBits", INT32),
+            F("accumulator_initialized", "AccumulatorInitialized", BOOL),
+            F("accumulator_value", "AccumulatorValue", INT64),
+            F("accumulator_count", "AccumulatorCount", INT64),
+            F("accumulator_center", "AccumulatorCenter", INT32),
+            F("accumulator_deadband", "AccumulatorDeadband", INT32),
+            F("lsb_weight", default=1),
+            F("offset", default=65535),
+        ),
+    ),
+    DeviceKind(
+        "analog_out",
+        8,
+        sim.AnalogOutputSim,
+        (INITIALIZED, F("voltage", "Voltage", FLOAT)),
+        real=2,
+    ),
+    DeviceKind(
+        "analog_gyro",
+        2,
+        sim.AnalogGyroSim,
+        (
+            INITIALIZED,
+            F("angle", "Angle", FLOAT),
+            F("rate", "Rate", FLOAT),
+            F("deadband", default=0.0),
+            F("volts_per_degree", default=0.0),
+            F("offset", default=0.0),
+            F("center", default=0),
+        ),
+    ),
+    DeviceKind(
+        "analog_trigger",
+        8,
+        sim.AnalogTriggerSim.createForIndex,
+        (
+            INITIALIZED,
+            F("trig_lower", "TriggerLowerBound", FLOAT),
+            F("trig_upper", "TriggerUpperBound", FLOAT),
+            F("port", default=0),
+            F("trig_type"),
+            F("trig_state", default=False),
+        ),
+    ),
+    DeviceKind(
+        "relay",
+        4,
+        sim.RelaySim,
+        (
+            F(
+                "initialized",
+                "InitializedForward",
+                BOOL,
+                recorded=False,
+                get=_relay_initialized,
+                put=_initialize_relay,
+            ),
+            F("fwd", "Forward", BOOL),
+            F("rev", "Reverse", BOOL),
+        ),
+    ),
+    DeviceKind(
+        "d0_pwm",
+        26,
+        sim.DigitalPWMSim.createForIndex,
+        (INITIALIZED, F("duty_cycle", "DutyCycle", FLOAT), F("pin", "Pin", INT32)),
+        real=6,
+    ),
+    DeviceKind(
+        "duty_cycle",
+        8,
+        sim.DutyCycleSim.createForIndex,
+        (INITIALIZED, F("frequency", "Frequency", INT32), F("output", "Output", FLOAT)),
+    ),
+    DeviceKind(
+        "addressable_led",
+        1,
+        sim.AddressableLEDSim.createForIndex,
+        (
+            INITIALIZED,
+            F("output_port", "OutputPort", INT32),
+            F("length", "Length", whole(0, 5460)),
+            F("running", "Running", BOOL, get=lambda strip: bool(strip.getRunning())),
+            F(
+                "data",
+                "Data",
+                Kind("a list of [red, green, blue], each 0 to 255", _colours, []),
+                get=led_data,
+                put=_set_led_data,
+            ),
+        ),
+    ),
+    DeviceKind("mxp", 16, None, (F("initialized", default=False),)),
+    DeviceKind("filter", 3, None, (F("enabled", default=False), F("period", default=0))),
+    DeviceKind(
+        "counter",
+        8,
+        None,
+        (
+            *(F(name, default=False) for name in ("initialized", "has_source", "direction")),
+            F("count", default=0),
+            F("period", default=0.0),
+            F("max_period", default=0.0),
+            F("mode", default=0),
+            F("reverse_direction", default=False),
+            F("samples_to_average", default=0),
+            F("update_when_empty", default=False),
+            F("average_size", default=0),
+            F("pulse_length_threshold", default=0.0),
+            *(F(f"{way}_source_{part}") for way in ("up", "down") for part in ("channel", "trigger")),
+            *(
+                F(f"{way}_{edge}_edge", default=False)
+                for way in ("up", "down")
+                for edge in ("rising", "falling")
+            ),
+        ),
+    ),
+)
+
+ACCELEROMETER = (
+    F("active", "Active", BOOL),
+    F("range", "Range", RANGE),
+    F("x", "X", FLOAT),
+    F("y", "Y", FLOAT),
+    F("z", "Z", FLOAT),
+    HAS_SOURCE,
+)
+POWER = (
+    F("vin_voltage", "VInVoltage", FLOAT),
+    F("vin_current", "VInCurrent", FLOAT),
+    F("brownout_voltage", "BrownoutVoltage", FLOAT),
+    *(
+        F(f"user_{what.lower()}_{rail.lower()}", f"User{what}{rail}", kind)
+        for rail in ("6V", "5V", "3V3")
+        for what, kind in (("Voltage", FLOAT), ("Current", FLOAT), ("Active", BOOL), ("Faults", INT32))
+    ),
+    HAS_SOURCE,
+)
+FPGA_BUTTON = F("fpga_button", "FPGAButton", BOOL)
+ROBORIO = (
+    F("team_number", "TeamNumber", INT32),
+    F("serial_number", "SerialNumber", text(8)),
+    F("comments", "Comments", text(64)),
+    F("cpu_temp", "CPUTemp", FLOAT),
+    F("radio_led_state", "RadioLEDState", LED_STATE),
+)

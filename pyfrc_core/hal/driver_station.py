@@ -1,0 +1,241 @@
+"""What the driver station sends: mode, alliance, match, joysticks; and the rumble that comes back.
+
+A write is shown here at once. The robot sees it with the next driver-station packet, as with a real one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import hal
+from hal import simulation as hs
+from wpilib import DriverStation
+from wpilib.simulation import DriverStationSim
+
+from .containers import LiveDict, LiveList, Slot, ValueList, kept
+from .fields import HAS_SOURCE, Field
+from .kinds import BOOL, FLOAT, INT32, Kind, choice, number, text, whole
+from .paths import join
+
+JOYSTICKS = 6
+AXES = POVS = 12  # as many as the HAL has room for
+BUTTONS = 12  # in the list without more ado; a joystick with more shows them all
+MAX_BUTTONS = 32
+
+STATION = choice(
+    {"unknown": 0, "red1": 1, "red2": 2, "red3": 3, "blue1": 4, "blue2": 5, "blue3": 6}, hal.AllianceStationID
+)
+MATCH_TYPE = choice({"none": 0, "practice": 1, "qualification": 2, "elimination": 3}, DriverStation.MatchType)
+
+CONTROL = (
+    Field("enabled", "Enabled", BOOL),
+    Field("autonomous", "Autonomous", BOOL),
+    Field("test", "Test", BOOL),
+    Field("eStop", "EStop", BOOL),
+    Field("dsAttached", "DsAttached", BOOL),
+    Field("fmsAttached", "FmsAttached", BOOL),
+    HAS_SOURCE,
+)
+ALLIANCE_STATION = Field("alliance_station", "AllianceStationId", STATION)
+TIME = (
+    Field("remaining", "MatchTime", FLOAT),
+    Field("program_start", default=0.0),
+    HAS_SOURCE,
+)
+
+
+def program_state() -> str | None:
+    """What the robot program says it is doing; None until it has started.
+
+    The HAL is told that but does not tell it on, so this says what the program goes by: the last packet it has read.
+    """
+    if not hs.getProgramStarted():
+        return None
+    if DriverStation.isDisabled():
+        return "disabled"
+    if DriverStation.isAutonomous():
+        return "autonomous"
+    return "test" if DriverStation.isTest() else "teleop"
+
+
+def event() -> LiveDict:
+    """The match as the field tells it."""
+    info = hal.MatchInfo()
+
+    def get(read: Callable[[], Any]) -> Callable[[], Any]:
+        def current() -> Any:
+            hs.getMatchInfo(info)
+            return read()
+
+        return current
+
+    def message() -> str:
+        return info.gameSpecificMessage.tobytes()[: info.gameSpecificMessageSize].decode(errors="replace")
+
+    station, named = DriverStationSim, MATCH_TYPE.load or int
+    return LiveDict(
+        "event",
+        lambda: {
+            "name": Slot(get(lambda: _c_text(info.eventName)), station.setEventName, text(63)),
+            "match_type": Slot(get(lambda: named(info.matchType)), station.setMatchType, MATCH_TYPE),
+            "match_number": Slot(get(lambda: info.matchNumber), station.setMatchNumber, whole(0, 65535)),
+            "replay_number": Slot(get(lambda: info.replayNumber), station.setReplayNumber, whole(0, 255)),
+            "game_specific_message": Slot(get(message), station.setGameSpecificMessage, text(64)),
+            "has_source": kept(False),
+        },
+    )
+
+
+def _c_text(characters: memoryview) -> str:
+    return characters.tobytes().partition(b"\0")[0].decode(errors="replace")
+
+
+def joysticks() -> LiveList:
+    """The joysticks, by port."""
+    return LiveList("joysticks", [Joystick(port) for port in range(JOYSTICKS)])
+
+
+class Joystick(LiveDict):
+    """One joystick: its axes, buttons and POVs as sent to the robot, and what the robot sends back.
+
+    The robot sees as many axes, buttons and POVs as `axis_count`, `button_count` and `pov_count` say; writing
+    one beyond raises its count. Values are read from WPILib's buffer, so an axis has the precision of a C
+    float.
+    """
+
+    def __init__(self, port: int) -> None:
+        super().__init__(join("joysticks", port), self._all)
+        self._port = port
+        self._axes, self._buttons, self._povs = hal.JoystickAxes(), hal.JoystickButtons(), hal.JoystickPOVs()
+        # Both are views of the buffers above, which each read fills anew.
+        self._axis_values, self._pov_values = self._axes.axes, self._povs.povs
+        path = self._path
+        self.axes = ValueList(
+            join(path, "axes"),
+            number(-1, 1),
+            lambda: AXES,
+            self._axis,
+            self._set_axis,
+            self._load_axes,
+            partial(self._changed, "axes"),
+        )
+        self.buttons = ValueList(
+            join(path, "buttons"),
+            BOOL,
+            self._buttons_shown,
+            self._button,
+            self._set_button,
+            self._load_buttons,
+            partial(self._changed, "buttons"),
+        )
+        angle = Kind("-1 or an angle from 0 to 360", whole(-1, 360).convert, -1)
+        self.povs = ValueList(
+            join(path, "povs"),
+            angle,
+            lambda: POVS,
+            self._pov,
+            self._set_pov,
+            self._load_povs,
+            partial(self._changed, "povs"),
+        )
+
+    def counts(self) -> tuple[int, int, int]:
+        """How many axes, buttons and POVs the robot sees."""
+        return hs.getJoystickCounts(self._port)
+
+    def _all(self) -> dict[str, Slot]:
+        port = self._port
+
+        def count(index: int, put: Callable[[int, int], object], most: int) -> Slot:
+            return Slot(lambda: self.counts()[index], partial(put, port), whole(0, most), recorded=False)
+
+        def descriptor(field: str) -> Callable[[], Any]:
+            info = hal.JoystickDescriptor()
+
+            def get() -> Any:
+                hs.getJoystickDescriptor(port, info)
+                return getattr(info, field)
+
+            return get
+
+        name, xbox = descriptor("name"), descriptor("isXbox")
+        outputs = hs.getJoystickOutputs
+
+        def rumble(index: int) -> Slot:
+            def put(value: int) -> None:
+                now = list(outputs(port))
+                now[index] = value
+                hs.setJoystickOutputs(port, *now)
+
+            return Slot(lambda: outputs(port)[index], put, INT32 if index == 0 else whole(0, 65535))
+
+        return {
+            "axes": Slot(lambda: self.axes, None),
+            "buttons": Slot(lambda: self.buttons, None),
+            "povs": Slot(lambda: self.povs, None),
+            "name": Slot(lambda: _c_text(name()), partial(hs.setJoystickName, port), text(255)),
+            "is_xbox": Slot(lambda: bool(xbox()), partial(hs.setJoystickIsXbox, port), BOOL),
+            "type": Slot(descriptor("type"), partial(hs.setJoystickType, port), whole(0, 255)),
+            "axis_count": count(0, hs.setJoystickAxisCount, AXES),
+            "button_count": count(1, hs.setJoystickButtonCount, MAX_BUTTONS),
+            "pov_count": count(2, hs.setJoystickPOVCount, POVS),
+            "outputs": rumble(0),
+            "left_rumble": rumble(1),
+            "right_rumble": rumble(2),
+            "has_source": kept(False),
+        }
+
+    def _axis(self, index: int) -> float:
+        hs.getJoystickAxes(self._port, self._axes)
+        return float(self._axis_values[index])
+
+    def _load_axes(self) -> list[float]:
+        hs.getJoystickAxes(self._port, self._axes)
+        return self._axis_values.tolist()  # type: ignore[return-value]
+
+    def _set_axis(self, index: int, value: float) -> None:
+        hs.setJoystickAxis(self._port, index, value)
+        if self.counts()[0] <= index:
+            hs.setJoystickAxisCount(self._port, index + 1)
+
+    def _bits(self) -> int:
+        hs.getJoystickButtons(self._port, self._buttons)
+        return self._buttons.buttons
+
+    def _buttons_shown(self) -> int:
+        return 1 + max(BUTTONS, self.counts()[1])
+
+    def _button(self, index: int) -> bool:
+        return index > 0 and bool(self._bits() >> (index - 1) & 1)
+
+    def _load_buttons(self) -> list[bool]:
+        # Position 0 is unused: the bits move up by one.
+        bits = self._bits() << 1
+        return [bool(bits >> i & 1) for i in range(self._buttons_shown())]
+
+    def _set_button(self, index: int, value: bool) -> None:
+        if index == 0:
+            return
+        hs.setJoystickButton(self._port, index, value)
+        if self.counts()[1] < index:
+            hs.setJoystickButtonCount(self._port, index)
+
+    def _pov(self, index: int) -> int:
+        return self._load_povs()[index]
+
+    def _load_povs(self) -> list[int]:
+        # What the HAL holds beyond the count is 0, which would say "up": the robot sees "not pressed".
+        hs.getJoystickPOVs(self._port, self._povs)
+        values: list[int] = self._pov_values.tolist()
+        count = self._povs.count
+        return values[:count] + [-1] * (POVS - count)
+
+    def _set_pov(self, index: int, value: int) -> None:
+        count = self.counts()[2]
+        if count <= index:
+            for skipped in range(count, index):
+                hs.setJoystickPOV(self._port, skipped, -1)
+            hs.setJoystickPOVCount(self._port, index + 1)
+        hs.setJoystickPOV(self._port, index, value)

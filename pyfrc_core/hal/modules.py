@@ -1,0 +1,178 @@
+"""Modules on the CAN bus, by their number: pneumatics (CTRE's and REV's) and power distribution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import lru_cache, partial
+from typing import Any
+
+from wpilib import simulation as sim
+
+from .containers import LiveDict, LiveList, Slot, ValueList
+from .fields import HAS_SOURCE, INITIALIZED, Field, group
+from .kinds import BOOL, FLOAT, choice
+from .paths import join
+
+HUB_COMPRESSOR = choice({"disabled": 0, "digital": 1, "analog": 2, "hybrid": 3})
+
+MODULES = 63  # CAN device numbers 0 to 62; the HAL does not check beyond
+CHANNELS = 24  # of a power distribution module
+
+COMPRESSOR = (
+    INITIALIZED,
+    Field("on", "CompressorOn", BOOL),
+    Field("pressure_switch", "PressureSwitch", BOOL),
+    Field("current", "CompressorCurrent", FLOAT),
+    HAS_SOURCE,
+)
+PCM_COMPRESSOR = (*COMPRESSOR, Field("closed_loop_enabled", "ClosedLoopEnabled", BOOL))
+HUB_COMPRESSOR_FIELDS = (
+    *COMPRESSOR,
+    Field("config_type", "CompressorConfigType", HUB_COMPRESSOR),
+    Field(
+        "closed_loop_enabled",
+        "CompressorConfigType",
+        BOOL,
+        same_as="config_type",
+        recorded=False,
+        get=lambda hub: hub.getCompressorConfigType() != 0,
+        put=lambda hub, on: hub.setCompressorConfigType(int(on)),
+    ),
+)
+DISTRIBUTION = (
+    INITIALIZED,
+    Field("voltage", "Voltage", FLOAT),
+    Field("temperature", "Temperature", FLOAT),
+    Field("total_power", default=0.0),
+    Field("total_energy", default=0.0),
+)
+
+
+def solenoid(module: Any, path: str, channel: int) -> LiveDict:
+    """A solenoid of a pneumatics module; it is initialized as its module is."""
+
+    def build() -> dict[str, Slot]:
+        def watch(fire: Callable[[], None]) -> object:
+            return module.registerSolenoidOutputCallback(channel, lambda *_: fire(), False)
+
+        get, put = partial(module.getSolenoidOutput, channel), partial(module.setSolenoidOutput, channel)
+        return {"initialized": INITIALIZED.slot(module), "value": Slot(get, put, BOOL, watch)}
+
+    return LiveDict(path, build)
+
+
+def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
+    """A power distribution module. Both kinds show the 24 channels that the HAL keeps for each."""
+
+    def build() -> dict[str, Slot]:
+        slots = {field.name: field.slot(module) for field in DISTRIBUTION}
+        currents = ValueList(
+            join(path, "current"), FLOAT, lambda: CHANNELS, module.getCurrent, module.setCurrent
+        )
+        slots["current"] = Slot(lambda: currents, None, watch=watch)
+        # As the HAL computes it when the robot asks.
+        slots["total_current"] = Slot(
+            lambda: float(sum(currents)),
+            None,
+            FLOAT,
+            watch,
+            recorded=False,
+            remedy="it is the sum of current: write that",
+        )
+        return slots
+
+    def watch(fire: Callable[[], None]) -> object:
+        return [module.registerCurrentCallback(i, lambda *_: fire(), False) for i in range(CHANNELS)]
+
+    return LiveDict(path, build)
+
+
+class ModuleDict(LiveDict):
+    """Modules by their CAN number, each there once the robot has made it."""
+
+    def __init__(self, path: str, initialized: Callable[[int], bool], make: Callable[[int], Any]) -> None:
+        super().__init__(path, dict)
+        self._initialized, self._make = initialized, make
+
+    def __contains__(self, key: object) -> bool:
+        return isinstance(key, int) and 0 <= key < MODULES and self._initialized(key)
+
+    def __iter__(self) -> Iterator[int]:
+        return (number for number in range(MODULES) if self._initialized(number))
+
+    def __getitem__(self, key: Any) -> Any:
+        if key not in self:
+            there = ", ".join(map(str, self)) or "none"
+            raise self._unknown(key, f"a module appears when the robot makes it; there is now: {there}")
+        return self._make(key)
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        self[key].assign(value)
+
+
+class Modules:
+    """All CAN modules. Each dict is made once and is the same object wherever the tree shows it."""
+
+    def __init__(self) -> None:
+        self._pcm_sim = lru_cache(None)(sim.CTREPCMSim)
+        self._hub_sim = lru_cache(None)(sim.REVPHSim)
+        self._power_sim = lru_cache(None)(sim.PowerDistributionSim)
+        self._hub_solenoids = lru_cache(None)(lambda n: self._solenoids("ph", self._hub_sim(n), n, 16))
+        self._pcm_solenoids = lru_cache(None)(lambda n: self._solenoids("pcm", self._pcm_sim(n), n, 8))
+        self._hub_compressor = lru_cache(None)(
+            lambda n: group(join("ph_compressor", n), self._hub_sim(n), HUB_COMPRESSOR_FIELDS)
+        )
+        self._pcm_compressor = lru_cache(None)(
+            lambda n: group(join("pcm_compressor", n), self._pcm_sim(n), PCM_COMPRESSOR)
+        )
+        distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), self._power_sim(n)))
+        self.ph = ModuleDict("ph", self._has_hub, self._hub_solenoids)
+        self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either)
+        self.ph_compressor = ModuleDict("ph_compressor", self._has_hub, self._hub_compressor)
+        self.pcm_compressor = ModuleDict("pcm_compressor", self._has_pcm, self._pcm_compressor)
+        self.pdp = ModuleDict("pdp", lambda n: self._power_sim(n).getInitialized(), distributions)
+
+    def _has_pcm(self, module: int) -> bool:
+        return self._pcm_sim(module).getInitialized()
+
+    def _has_hub(self, module: int) -> bool:
+        return self._hub_sim(module).getInitialized()
+
+    def _either(self, module: int) -> LiveList:
+        # A PCM and a hub may share a number: the PCM has the older right to the key.
+        return self._hub_solenoids(module) if not self._has_pcm(module) else self._pcm_solenoids(module)
+
+    @staticmethod
+    def _solenoids(key: str, module: Any, number: int, count: int) -> LiveList:
+        path = join(key, number)
+        return LiveList(path, [solenoid(module, join(path, channel), channel) for channel in range(count)])
+
+    @property
+    def solenoid(self) -> LiveList:
+        """The solenoids of the CTRE module 0, whether the robot has made it or not."""
+        return self._pcm_solenoids(0)
+
+    @property
+    def compressor(self) -> LiveDict:
+        """The compressor of the robot's first module, CTRE's before REV's; else of CTRE's module 0."""
+        for number in self.pcm_compressor:
+            return self._pcm_compressor(number)
+        for number in self.ph_compressor:
+            return self._hub_compressor(number)
+        return self._pcm_compressor(0)
+
+    def pcm_solenoids(self) -> list[LiveList]:
+        """The solenoids of every CTRE module that the robot has made."""
+        return [self._pcm_solenoids(number) for number in self.pcm_compressor]
+
+    def hub_solenoids(self) -> list[LiveList]:
+        """The solenoids of every REV hub that the robot has made."""
+        return [self._hub_solenoids(number) for number in self.ph_compressor]
+
+    def initialized(self) -> list[Callable[[], bool]]:
+        """For each module there may be, the function that tells whether the robot has made it."""
+        return [
+            make(number).getInitialized
+            for make in (self._pcm_sim, self._hub_sim, self._power_sim)
+            for number in range(MODULES)
+        ]

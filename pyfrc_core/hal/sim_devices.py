@@ -1,0 +1,267 @@
+"""`CAN`: every SimDevice by name, as vendors and WPILib's gyros make them; `robot`: older names for some.
+
+WPILib offers no notice of a new SimDevice in Python, so names are looked up when asked for: that costs a
+tenth of a microsecond.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
+
+import hal
+from hal import simulation as hs
+from wpilib.simulation import SimDeviceSim
+
+from .containers import LiveDict, Slot
+from .kinds import ANY, BOOL, FLOAT, INT32, INT64, UnknownKey, choice
+from .paths import join
+
+Signature = tuple[tuple[str, int, tuple[str, ...]], ...]
+
+
+class SimDevice(LiveDict):
+    """The values of one SimDevice. A value that the robot adds later, and a device made anew, are found."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(join("CAN", name), dict)
+        self._name = name
+        self._handle = 0
+
+    def refresh(self) -> None:
+        """Look at the device's values again."""
+        self._handle = hs.getSimDeviceHandle(self._name)
+        self._getters.clear()
+        found: dict[str, Slot] = {}
+        if self._handle:
+            device = SimDeviceSim(self._name)
+            for value, _readonly in device.enumerateValues():
+                found[value] = _slot(device, value)
+        self._built = found
+        for watch_name, watch in self._watches.items():
+            if watch_name in found and (connect := found[watch_name].watch):
+                watch.store = connect(watch.fire)
+
+    def _current(self) -> bool:
+        return self._handle == hs.getSimDeviceHandle(self._name) != 0
+
+    def _slot(self, key: Any) -> Slot:
+        if not self._current() or key not in self._slots:
+            self.refresh()
+        return super()._slot(key)
+
+    def __getitem__(self, key: Any) -> Any:
+        if not self._current():
+            self.refresh()
+        return super().__getitem__(key)
+
+    def __contains__(self, key: object) -> bool:
+        if not self._current() or key not in self._slots:
+            self.refresh()
+        return key in self._slots
+
+    def __iter__(self) -> Iterator[str]:
+        if not hs.getSimDeviceHandle(self._name):
+            return iter(())
+        return iter([name for name, _ in SimDeviceSim(self._name).enumerateValues()])
+
+
+def _slot(device: SimDeviceSim, name: str) -> Slot:
+    raw = device.getValue(name)
+    make, kind = {
+        hal.Type.BOOLEAN: (device.getBoolean, BOOL),
+        hal.Type.DOUBLE: (device.getDouble, FLOAT),
+        hal.Type.INT: (device.getInt, INT32),
+        hal.Type.LONG: (device.getLong, INT64),
+        hal.Type.ENUM: (device.getEnum, ANY),
+    }[raw.type]
+    value: Any = make(name)
+
+    def watch(fire: Callable[[], None]) -> object:
+        return hs.registerSimValueChangedCallback(raw, lambda *_: fire(), False)
+
+    get = value.get
+    if raw.type == hal.Type.ENUM:
+        kind = choice({option: i for i, option in enumerate(SimDeviceSim.getEnumOptions(value))})
+        load = kind.load or int
+        get = lambda: load(value.get())  # noqa: E731
+    return Slot(get, value.set, kind, watch)
+
+
+class SimDevices(LiveDict):
+    """All SimDevices by name."""
+
+    def __init__(self) -> None:
+        super().__init__("CAN", dict)
+        self._devices: dict[str, SimDevice] = {}
+
+    def __getitem__(self, key: Any) -> SimDevice:
+        if key not in self:
+            raise self._unknown(key, None if len(self) else "a SimDevice appears when the robot makes it")
+        return self.device(key)
+
+    def device(self, name: str) -> SimDevice:
+        """The dict of a device, whether it is there or not."""
+        return self._devices.get(name) or self._devices.setdefault(name, SimDevice(name))
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        self[key].assign(value)
+
+    def __contains__(self, key: object) -> bool:
+        return isinstance(key, str) and hs.getSimDeviceHandle(key) != 0
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(SimDeviceSim.enumerateDevices(""))
+
+    def signature(self) -> Signature:
+        """What there is: it differs when a device or a value came or went. Refreshes what differs."""
+        now = []
+        for name in SimDeviceSim.enumerateDevices(""):
+            values = tuple([value for value, _readonly in SimDeviceSim(name).enumerateValues()])
+            handle = hs.getSimDeviceHandle(name)
+            device = self.device(name)
+            if device._handle != handle or tuple(device._slots) != values:
+                device.refresh()
+            now.append((name, handle, values))
+        return tuple(now)
+
+
+class Bridge(NamedTuple):
+    """The names that `robot` has for a kind of SimDevice.
+
+    :param device: matches the SimDevice's name; its first group is the port
+    :param keys:   the beginnings of the keys, with ``{}`` for the port
+    :param things: the end of a key and the value it stands for
+    """
+
+    device: re.Pattern[str]
+    keys: tuple[str, ...]
+    things: dict[str, str]
+
+
+_AXES = {axis: axis for axis in "xyz"}
+# Degrees and degrees per second about the vertical axis, which is z unless the robot says otherwise.
+_ADIS = {
+    "angle": "gyro_angle_z",
+    "rate": "gyro_rate_z",
+    **{f"{what}_{axis}": f"{gyro}_{axis}" for axis in "xyz" for what, gyro in
+       (("angle", "gyro_angle"), ("rate", "gyro_rate"), ("accel", "accel"))},
+}  # fmt: skip
+BRIDGES = (
+    Bridge(
+        re.compile(r"Gyro:ADXRS450\[(\d+)\]"), ("adxrs450_spi_{}",), {"angle": "angle_x", "rate": "rate_x"}
+    ),
+    Bridge(re.compile(r"Gyro:ADIS16448\[(\d+)\]"), ("adis16448_spi_{}",), _ADIS),
+    Bridge(re.compile(r"Gyro:ADIS16470\[(\d+)\]"), ("adis16470_spi_{}",), _ADIS),
+    Bridge(re.compile(r"Accel:ADXL345_SPI\[(\d+)\]"), ("adxl345_spi_{}",), _AXES),
+    Bridge(re.compile(r"Accel:ADXL345_I2C\[(\d+),\d+\]"), ("adxl345_i2c_{}",), _AXES),
+    Bridge(re.compile(r"Accel:ADXL362\[(\d+)\]"), ("adxl362_spi_{}",), _AXES),
+    Bridge(
+        re.compile(r"navX-Sensor\[(\d+)\]"),
+        ("navx_spi_{}", "navx_i2c_{}", "navxmxp_spi_{}", "navxmxp_i2c_{}"),
+        {
+            "angle": "Yaw",
+            "yaw": "Yaw",
+            "pitch": "Pitch",
+            "roll": "Roll",
+            "rate": "Rate",
+            "compass": "CompassHeading",
+            "fused": "FusedHeading",
+        },
+    ),
+)
+
+
+def bridged(name: str, values: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """The keys that `robot` has for the SimDevice `name`, each with the value it stands for."""
+    there = set(values)
+    for bridge in BRIDGES:
+        if match := bridge.device.fullmatch(name):
+            for key in bridge.keys:
+                for thing, value in bridge.things.items():
+                    if value in there:
+                        yield f"{key.format(match[1])}_{thing}", value
+
+
+class RobotDict(LiveDict):
+    """Free keys for devices, such as ``adxrs450_spi_0_angle`` (degrees); `get` gives 0 for a missing one.
+
+    A key that stands for a value of a SimDevice is that value, both ways. Written before the robot makes the
+    device, it is kept and applied when the device is found: by the next access to the key, `sync`, or
+    recording.
+    """
+
+    def __init__(self, devices: SimDevices) -> None:
+        super().__init__("robot", dict)
+        self._devices = devices
+        self._signature: Signature = ()
+        self._free: dict[str, Any] = {}
+        self._bridged: dict[str, tuple[SimDevice, str]] = {}
+
+    def sync(self, signature: Signature | None = None) -> None:
+        """Find new devices and hand them what was written for them."""
+        signature = self._devices.signature() if signature is None else signature
+        if signature == self._signature:
+            return
+        self._signature = signature
+        self._bridged = {
+            key: (self._devices.device(name), value)
+            for name, _handle, values in signature
+            for key, value in bridged(name, values)
+        }
+        for key in [key for key in self._free if key in self._bridged]:
+            device, value = self._bridged[key]
+            device[value] = self._free.pop(key)
+        for key in [key for key in self._watches if key in self._bridged]:
+            for _key, callback in self._watches.pop(key).listeners:
+                self.register(key, callback)
+
+    def _bridge(self, key: object) -> tuple[SimDevice, str] | None:
+        found = self._bridged.get(key)  # type: ignore[call-overload]
+        if found is None or not found[0]._current():
+            self.sync()
+            found = self._bridged.get(key)  # type: ignore[call-overload]
+        return found  # type: ignore[no-any-return]
+
+    def __getitem__(self, key: Any) -> Any:
+        if bridge := self._bridge(key):
+            return bridge[0][bridge[1]]
+        try:
+            return self._free[key]
+        except KeyError:
+            raise self._unknown(key) from None
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        if not isinstance(key, str):
+            raise UnknownKey(f"a key of robot is a text, not {key!r}", where=join("robot", key))
+        if bridge := self._bridge(key):
+            bridge[0][bridge[1]] = value
+            return
+        self._free[key] = value
+        if key in self._watches:
+            self._watches[key].fire()
+
+    def __delitem__(self, key: Any) -> None:
+        if key not in self._free:
+            raise self._unknown(key)
+        del self._free[key]
+
+    def __contains__(self, key: object) -> bool:
+        return key in self._free or self._bridge(key) is not None
+
+    def __iter__(self) -> Iterator[str]:
+        self.sync()
+        return iter([*self._free, *self._bridged])
+
+    def get(self, key: Any, default: Any = 0) -> Any:
+        """The value at `key`, 0 where it is missing."""
+        return super().get(key, default)
+
+    def register(self, key: Any, callback: Callable[[Any, Any], object], notify: bool = False) -> None:
+        """As for every dict; a key that nothing has set yet may be listened to as well."""
+        if bridge := self._bridge(key):
+            bridge[0].register(bridge[1], lambda _key, value: callback(key, value), notify)
+            return
+        self._built = {**self._slots, key: Slot(lambda: self.get(key), None)}
+        super().register(key, callback, notify)

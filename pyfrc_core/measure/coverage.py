@@ -1,0 +1,95 @@
+"""Which of the project's own lines run, also in the processes that tests are isolated in."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..project import Project
+
+if TYPE_CHECKING:
+    from coverage import Coverage
+
+
+@dataclass(frozen=True)
+class CoverageOptions:
+    """Which reports are wanted.
+
+    :param fail_under: the least percentage that counts as success
+    """
+
+    enabled: bool
+    html: Path | None = None
+    xml: Path | None = None
+    fail_under: float | None = None
+
+
+@dataclass
+class Measured:
+    """What came of it: `status` is 1 when too little was covered."""
+
+    status: int = 0
+
+
+@contextmanager
+def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
+    """Measure while this lasts, then report.
+
+    Lines count wherever they run: here, in forked and spawned processes, in threads. Only the project's own robot
+    code is measured: neither its tests nor anything installed.
+    """
+    result = Measured()
+    if not options.enabled:
+        yield result
+        return
+    from coverage import Coverage
+
+    # What each process measured lies here until it is combined; nothing of it is left in the project.
+    with tempfile.TemporaryDirectory(prefix="pyfrc-coverage-") as directory:
+        measurement = Coverage(
+            data_file=str(Path(directory) / "data"),
+            data_suffix=True,
+            source=[str(project.root)],
+            omit=[f"{tests}/*" for tests in project.test_directories] + ["*/site-packages/*"],
+            config_file=str(project.pyproject) if project.pyproject.is_file() else False,
+        )
+        measurement.start()
+        try:
+            yield result
+        finally:
+            measurement.stop()
+            measurement.save()
+        combined = Coverage(
+            data_file=str(Path(directory) / "combined"),
+            source=[str(project.root)],
+            omit=[f"{tests}/*" for tests in project.test_directories] + ["*/site-packages/*"],
+            config_file=str(project.pyproject) if project.pyproject.is_file() else False,
+        )
+        combined.combine([directory])
+        result.status = _report(combined, options)
+
+
+def _report(combined: Coverage, options: CoverageOptions) -> int:
+    from coverage.exceptions import NoDataError
+
+    print()
+    try:
+        total = combined.report(show_missing=True, file=sys.stdout)
+        if options.html is not None:
+            combined.html_report(directory=str(options.html))
+            print(f"coverage as web pages: {options.html / 'index.html'}")
+        if options.xml is not None:
+            combined.xml_report(outfile=str(options.xml))
+            print(f"coverage as XML: {options.xml}")
+    except NoDataError:
+        print("coverage: no line of the project was run", file=sys.stderr)
+        return 1
+    if options.fail_under is not None and total < options.fail_under:
+        print(f"coverage: {total:.1f} % is less than the {options.fail_under:g} % asked for", file=sys.stderr)
+        return 1
+    return 0

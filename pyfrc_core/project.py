@@ -1,0 +1,219 @@
+"""Where the robot project is, which class is its robot, and what its settings say."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from .config.settings import Settings, load_settings
+from .errors import ProjectError, RobotCodeError
+from .robot_files import RobotFiles
+
+if TYPE_CHECKING:
+    from .config.sim import SimConfig
+
+MAIN_FILE = "robot.py"
+
+#: The modules whose robot classes are there to be derived from.
+_LIBRARIES = ("wpilib", "commands2", "magicbot")
+
+
+@dataclass(frozen=True)
+class Project:
+    """One robot project.
+
+    :param main_file: the file with the robot class, absolute
+    :param class_name: the robot class's name, where the user has said it
+    """
+
+    main_file: Path
+    class_name: str | None = None
+
+    @property
+    def root(self) -> Path:
+        """The directory of the robot's code."""
+        return self.main_file.parent
+
+    @cached_property
+    def files(self) -> RobotFiles:
+        return RobotFiles(self.root)
+
+    @cached_property
+    def pyproject(self) -> Path:
+        """The project's pyproject.toml: beside the code, or one above it as its tests may be."""
+        beside, above = self.root / "pyproject.toml", self.root.parent / "pyproject.toml"
+        return above if above.is_file() and not beside.is_file() else beside
+
+    @cached_property
+    def settings(self) -> Settings:
+        return load_settings(self.pyproject)
+
+    @cached_property
+    def sim_config(self) -> SimConfig:
+        from .config.sim import load_sim_config
+
+        return load_sim_config(self.root)
+
+    @property
+    def test_directories(self) -> tuple[Path, Path]:
+        """Where tests may be, in the order in which they are looked for."""
+        return self.root / "tests", self.root.parent / "tests"
+
+    def find_tests(self) -> Path | None:
+        """The directory of the project's tests, if it has any test files."""
+        for directory in self.test_directories:
+            if any(directory.glob("**/test_*.py")) or any(directory.glob("**/*_test.py")):
+                return directory
+        return None
+
+    def load(self) -> type[Any]:
+        """Import the robot program and answer its robot class.
+
+        :raises RobotCodeError: when the user's code fails, naming the user's line
+        :raises ProjectError: when there is not exactly one robot class to choose
+        """
+        return self._choose_class(self._import())
+
+    def _import(self) -> ModuleType:
+        name, where = self.main_file.stem, self.main_file.name
+        loaded = sys.modules.get(name)
+        if loaded is not None and getattr(loaded, "__file__", None) == str(self.main_file):
+            return loaded  # a test file has imported it already
+        if sys.path[:1] != [str(self.root)]:
+            sys.path.insert(0, str(self.root))
+        specification = importlib.util.spec_from_file_location(name, self.main_file)
+        if specification is None or specification.loader is None:
+            raise ProjectError("this is not a Python file", where=where)
+        module = importlib.util.module_from_spec(specification)
+        sys.modules[name] = module
+        try:
+            specification.loader.exec_module(module)
+        except SyntaxError as error:
+            del sys.modules[name]
+            place = f"{self.files.relative(error.filename or where)}:{error.lineno}"
+            text = f"\n    {error.text.strip()}" if error.text else ""
+            raise RobotCodeError(f"SyntaxError: {error.msg}{text}", where=place) from error
+        except BaseException as error:
+            del sys.modules[name]
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            place = self.files.innermost_line(error.__traceback__) or where
+            raise RobotCodeError(
+                f"{type(error).__name__}: {error}",
+                where=place,
+                remedy="This happens while the file is imported.",
+            ) from error
+        return module
+
+    def _choose_class(self, module: ModuleType) -> type[Any]:
+        import wpilib
+
+        where = self.main_file.name
+        robots = {
+            value.__name__: value
+            for value in vars(module).values()
+            if isinstance(value, type)
+            and issubclass(value, wpilib.RobotBase)
+            and value.__module__.partition(".")[0] not in _LIBRARIES
+        }
+        here = {name: robot for name, robot in robots.items() if robot.__module__ == module.__name__}
+        # A robot class kept in another file of the project and imported here counts when there is none here.
+        robots = here or robots
+        wanted = self.class_name or self.settings.robot_class
+        if wanted is not None:
+            if wanted not in robots:
+                known = ", ".join(sorted(robots)) or "none"
+                raise ProjectError(
+                    f"there is no robot class {wanted!r}", where=where, remedy=f"There is: {known}."
+                )
+            return robots[wanted]
+        # A class that others here derive from is their base, not a robot of its own.
+        bases = {base for robot in robots.values() for base in robot.__mro__[1:]}
+        candidates = [robot for robot in robots.values() if robot not in bases]
+        if not candidates:
+            raise ProjectError(
+                "there is no robot class in this file",
+                where=where,
+                remedy="Define one, such as: class MyRobot(wpilib.TimedRobot). "
+                "If it is in another file, name that with --main FILE.",
+            )
+        if len(candidates) > 1:
+            lines = ", ".join(
+                f"{robot.__name__} ({where}:{_line_of_class(self.main_file, robot.__name__)})"
+                for robot in candidates
+            )
+            raise ProjectError(
+                f"there are {len(candidates)} robot classes: {lines}",
+                where=where,
+                remedy=f"Choose one with --robot-class {candidates[0].__name__}, "
+                f'or with robot_class = "{candidates[0].__name__}" under [tool.pyfrc] in pyproject.toml.',
+            )
+        return candidates[0]
+
+
+def _line_of_class(file: Path, name: str) -> int:
+    import ast
+
+    for node in ast.walk(ast.parse(file.read_bytes())):
+        if isinstance(node, ast.ClassDef) and node.name == name:
+            return node.lineno
+    return 1
+
+
+def find_project(
+    start: Path | None = None, main: Path | None = None, class_name: str | None = None
+) -> Project:
+    """The robot project that a command is about.
+
+    :param start: the project's directory, when the user names it; else the current one and those above are searched
+    :param main: the file with the robot class, when the user names it
+    :raises ProjectError: saying where was looked and for what
+    """
+    if main is not None:
+        file = (start / main if start is not None and not main.is_absolute() else main).absolute()
+        if not file.is_file():
+            raise ProjectError(
+                f"there is no file {main}", remedy="--main names the file with your robot class."
+            )
+        return Project(file.resolve(), class_name)
+    if start is not None:
+        if not start.is_dir():
+            raise ProjectError(f"there is no directory {start}", remedy="--project names your robot project.")
+        project = _project_in(start.resolve(), class_name)
+        if project is None:
+            raise _nothing_found(start, "in")
+        return project
+    here = Path.cwd()
+    for directory in (here, *here.parents):
+        project = _project_in(directory, class_name)
+        if project is not None:
+            return project
+    raise _nothing_found(here, "in or above")
+
+
+def _project_in(directory: Path, class_name: str | None) -> Project | None:
+    if (directory / MAIN_FILE).is_file():
+        return Project(directory / MAIN_FILE, class_name)
+    if (directory / "pyproject.toml").is_file():
+        main = load_settings(directory / "pyproject.toml").main
+        if main is not None:
+            file = directory / main
+            if not file.is_file():
+                raise ProjectError(
+                    f"[tool.pyfrc] names main = {main!r}, but there is no such file", where=directory
+                )
+            return Project(file.resolve(), class_name)
+    return None
+
+
+def _nothing_found(directory: Path, how: str) -> ProjectError:
+    return ProjectError(
+        f"no robot project found: there is no {MAIN_FILE} {how} {directory}",
+        remedy="Go to your project's directory, name it with --project DIR, name the file with --main FILE, "
+        "or make a new project with: pyfrc init",
+    )

@@ -1,0 +1,73 @@
+"""Which source files are the robot's own code: their `time.sleep` is robot time, their lines are shown first."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from types import FrameType, TracebackType
+
+# A virtual environment inside the project holds other people's code.
+_NOT_OURS = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
+_PYFRC = tuple(
+    str(Path(__file__).resolve().parents[1] / package) + os.sep
+    for package in ("pyfrc_core", "pyfrc", "pyfrc_cli")
+)
+
+
+class RobotFiles:
+    """The source files of one robot project.
+
+    :param root: the directory that holds robot.py
+    """
+
+    def __init__(self, root: Path) -> None:
+        self.root = str(root) + os.sep
+        self._tests = str(root / "tests") + os.sep
+        self._known: dict[str, bool] = {}
+
+    def is_robot_code(self, filename: str) -> bool:
+        """Whether this file is part of the robot program (its tests are not)."""
+        known = self._known.get(filename)
+        if known is None:
+            known = self.is_project_file(filename) and not filename.startswith(self._tests)
+            self._known[filename] = known
+        return known
+
+    def is_project_file(self, filename: str) -> bool:
+        """Whether this file belongs to the project at all: the robot program or its tests."""
+        if any(part in filename for part in _NOT_OURS) or filename.startswith(_PYFRC):
+            return False
+        return filename.startswith(self.root)
+
+    def called_from_robot_code(self, frame: FrameType) -> bool:
+        return self.is_robot_code(frame.f_code.co_filename)
+
+    def relative(self, filename: str) -> str:
+        """The name to show to the user: relative to the project."""
+        return filename.removeprefix(self.root)
+
+    def innermost_line(self, traceback: TracebackType | None) -> str | None:
+        """``robot.py:12`` for the user's line nearest to where an exception was raised, if one took part.
+
+        The robot's own line comes before a test's: the test only called it.
+        """
+        robot_line = test_line = None
+        while traceback is not None:
+            filename = traceback.tb_frame.f_code.co_filename
+            place = f"{self.relative(filename)}:{traceback.tb_lineno}"
+            if self.is_robot_code(filename):
+                robot_line = place
+            elif self.is_project_file(filename):
+                test_line = place
+            traceback = traceback.tb_next
+        return robot_line or test_line
+
+    def line_of_thread(self, ident: int) -> str | None:
+        """``robot.py:12`` for the user's line that a running thread is at, if it is in the user's code."""
+        frame = sys._current_frames().get(ident)
+        while frame is not None:
+            if self.is_project_file(frame.f_code.co_filename):
+                return f"{self.relative(frame.f_code.co_filename)}:{frame.f_lineno}"
+            frame = frame.f_back
+        return None

@@ -1,0 +1,131 @@
+"""Robot time: one number that only moves when it is told to, and the queue of what happens when it does.
+
+The trade-off: nothing here ever waits. Whoever wants time to pass says how far (`run_until`), and everything
+that is due on the way happens on the caller's own thread, in one order: a robot that sleeps half a second in its
+`teleopPeriodic` moves the clock by half a second itself, while driver-station packets, notifiers and other threads
+come and go beneath its call. That is what makes a run both fast (no hand-off between threads) and repeatable.
+
+Times are whole microseconds, as in WPILib's HAL, so that 20 ms packets never drift.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from heapq import heappop, heappush
+
+from ..hal.timing import deliver_packet, step_us, stop_and_zero
+from .endings import TestRanTooLong
+
+#: The driver station sends a packet every 20 ms.
+PACKET_US = 20_000
+
+DEFAULT_TIME_LIMIT = 500.0
+
+# What is due at the same microsecond happens in this order: the driver station speaks, then threads and notifiers
+# wake, then the robot's loop runs, then whoever watches (physics, recorders) looks at what it did.
+PACKET, WAKE_UP, ROBOT_LOOP, OBSERVE = range(4)
+
+Action = Callable[[], None]
+
+
+def to_us(seconds: float) -> int:
+    return round(seconds * 1_000_000)
+
+
+class Clock:
+    """The time of one robot run, and what is due in it."""
+
+    def __init__(self) -> None:
+        #: Called before each packet with the robot time in seconds: the place to change inputs.
+        self.before_packet: list[Callable[[float], None]] = []
+        self.initialize()
+
+    def initialize(self) -> None:
+        """Stop HAL time at 0, forget what was due, and have packets come every 20 ms from now on."""
+        stop_and_zero()
+        self.now_us = 0
+        self.limit_us = to_us(DEFAULT_TIME_LIMIT)
+        self._queue: list[tuple[int, int, int, Action]] = []
+        self._order = 0
+        self._next_packet = PACKET_US
+        self.at(PACKET_US, PACKET, self._packet)
+
+    @property
+    def now(self) -> float:
+        """Robot time in seconds."""
+        return self.now_us / 1_000_000
+
+    def at(self, due_us: int, rank: int, action: Action) -> None:
+        """Have `action` called when robot time reaches `due_us` (at once, if that has passed)."""
+        # The running number makes ties come first in, first out, and keeps the heap from comparing actions.
+        self._order += 1
+        heappush(self._queue, (due_us, rank, self._order, action))
+
+    def every(self, period_us: int, rank: int, action: Action) -> None:
+        """Have `action` called each period from now on, first when one period has passed."""
+
+        def again() -> None:
+            nonlocal due
+            due += period_us
+            self.at(due, rank, again)
+            action()
+
+        due = self.now_us + period_us
+        self.at(due, rank, again)
+
+    def run_until(self, target_us: int) -> None:
+        """Let time pass until `target_us`, doing everything that falls due on the way, in order.
+
+        May be called from within an action. Time never goes back: an inner call may leave the clock later than the
+        outer one asked for.
+
+        :raises TestRanTooLong: when the time limit comes first
+        """
+        __tracebackhide__ = True
+        queue = self._queue
+        end = min(target_us, self.limit_us)
+        while queue[0][0] <= end:  # there always is a next packet
+            self._run_next()
+        self._move_to(end)
+        if target_us > self.limit_us:
+            limit = self.limit_us / 1_000_000
+            raise TestRanTooLong(f"the robot ran for more than {limit:g} s of robot time, the limit")
+
+    def run_while(self, waiting: Callable[[], bool], deadline_us: int | None = None) -> None:
+        """Do what is due, one thing at a time, until `waiting` answers False or the deadline is reached.
+
+        :raises TestRanTooLong: when the time limit comes first
+        """
+        __tracebackhide__ = True
+        queue = self._queue
+        while waiting():
+            next_due = queue[0][0]
+            if deadline_us is not None and next_due > deadline_us:
+                return self.run_until(deadline_us)
+            if next_due > self.limit_us:
+                return self.run_until(next_due)
+            self._run_next()
+        return None
+
+    def _run_next(self) -> None:
+        __tracebackhide__ = True
+        due, _, _, action = heappop(self._queue)
+        self._move_to(due)
+        action()
+
+    def _move_to(self, time_us: int) -> None:
+        if time_us > self.now_us:
+            step_us(time_us - self.now_us)
+            self.now_us = time_us
+
+    @property
+    def next_packet_us(self) -> int:
+        return self._next_packet
+
+    def _packet(self) -> None:
+        __tracebackhide__ = True
+        self._next_packet += PACKET_US
+        self.at(self._next_packet, PACKET, self._packet)
+        for listener in self.before_packet:
+            listener(self.now)
+        deliver_packet()

@@ -1,0 +1,182 @@
+"""Locks and threads for robot code: what waits, waits in robot time; everything else is Python's own.
+
+`threading`'s events, conditions, semaphores, barriers and timers, `queue`'s queues and the thread pools of
+`concurrent.futures` are all built on its locks, so these few stand-ins carry them all into robot time. For
+threads that take no part in a robot run they behave as the originals do.
+"""
+
+from __future__ import annotations
+
+import _thread
+import sys
+import threading
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .clock import to_us
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+    from .threads import RobotThread, RobotThreads
+
+_LIBRARY = Path(threading.__file__).parent
+# The parts of the standard library that make locks and threads for whoever calls them.
+_BETWEEN = tuple(str(_LIBRARY / name) for name in ("threading.py", "queue.py", "concurrent", "sched.py"))
+# Where a thread of the robot begins, when nothing of the robot's own is on its stack (a pool's worker).
+_ROBOT_THREADS = str(Path(__file__).with_name("threads.py"))
+
+real_allocate_lock = _thread.allocate_lock
+real_thread_start = threading.Thread.start
+real_thread_join = threading.Thread.join
+
+
+class _Scope:
+    """The threads of the active robot run, if there is one; and the threads that wait for one to begin."""
+
+    def __init__(self) -> None:
+        self.threads: RobotThreads | None = None
+        self.waiting_to_begin: list[tuple[threading.Thread, Callable[[], object]]] = []
+        self.is_robot_code: Callable[[str], bool] = lambda filename: False
+        self.local = threading.local()
+
+    def taking_part(self) -> RobotThreads | None:
+        """The run's threads, if the calling thread is one of them and not in the middle of starting another."""
+        threads = self.threads
+        if threads is None or not threads.takes_part() or getattr(self.local, "starting", False):
+            return None
+        return threads
+
+
+scope = _Scope()
+
+
+class CooperativeLock:
+    """A lock for which threads of the robot wait in robot time."""
+
+    def __init__(self) -> None:
+        self._lock = real_allocate_lock()
+        self._waiters: list[RobotThread] = []
+        self.locked = self._lock.locked
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        __tracebackhide__ = True
+        if self._lock.acquire(False):
+            return True
+        if not blocking:
+            return self._lock.acquire(False, timeout)  # the real one complains of a time-out given with it
+        threads = scope.taking_part()
+        if threads is None:
+            return self._lock.acquire(True, timeout)
+        timeout_us = None if timeout < 0 else to_us(timeout)
+        return threads.wait(self._waiters, partial(self._lock.acquire, False), timeout_us)
+
+    def release(self) -> None:
+        self._lock.release()
+        if self._waiters and scope.threads is not None:
+            scope.threads.notify(self._waiters)
+
+    def __enter__(self) -> bool:
+        return self.acquire()
+
+    def __exit__(self, *exc_info: object) -> None:
+        self.release()
+
+    def _at_fork_reinit(self) -> None:
+        self._lock = real_allocate_lock()
+        self._waiters = []
+        self.locked = self._lock.locked
+
+    def __repr__(self) -> str:
+        return f"<{'locked' if self.locked() else 'unlocked'} pyfrc lock in robot time at {id(self):#x}>"
+
+
+def new_lock() -> CooperativeLock | _thread.LockType:
+    """`threading.Lock`. A library's own locks stay real: the threads it shares them with know no robot time."""
+    return CooperativeLock() if _on_behalf_of_robot_code(sys._getframe(1)) else real_allocate_lock()
+
+
+def start_thread(thread: threading.Thread) -> None:
+    """`Thread.start`: a thread that robot code starts gets its turns from the clock; a library's own does not."""
+    if _on_behalf_of_robot_code(sys._getframe(1)):
+        start_in_robot_time(thread)
+    else:
+        _start_really(thread)
+
+
+def start_in_robot_time(thread: threading.Thread) -> None:
+    """Start a thread of the robot; before there is a run (its module is being imported), have it begin with the run."""
+    if scope.threads is None:
+        scope.waiting_to_begin.append((thread, thread.run))
+    elif scope.taking_part() is None:
+        _start_really(thread)
+    else:
+        _begin(scope.threads, thread, thread.run)
+
+
+def _on_behalf_of_robot_code(caller: FrameType | None) -> bool:
+    """Whether robot code called, be it through the standard library (an event, a timer, a pool of threads)."""
+    while caller is not None and caller.f_code.co_filename.startswith(_BETWEEN):
+        caller = caller.f_back
+    if caller is None:
+        return False
+    filename = caller.f_code.co_filename
+    return scope.is_robot_code(filename) or filename == _ROBOT_THREADS
+
+
+def begin_waiting_threads() -> None:
+    """Start what robot code started before its run."""
+    waiting, scope.waiting_to_begin = scope.waiting_to_begin, []
+    for thread, body in waiting:
+        if scope.threads is not None:
+            _begin(scope.threads, thread, body)
+
+
+def _begin(threads: RobotThreads, thread: threading.Thread, body: Callable[[], object]) -> None:
+    record = threads.start(thread)
+    # `run` is what the new thread calls; it stays this until the thread is gone.
+    vars(thread)["run"] = partial(threads.run_body, record, body)
+    vars(thread)["_pyfrc_record"] = record
+    _start_really(thread)
+
+
+def _start_really(thread: threading.Thread) -> None:
+    scope.local.starting = True  # it waits for the new thread's first sign of life, and that in real time
+    try:
+        real_thread_start(thread)
+    finally:
+        scope.local.starting = False
+
+
+def record_of(thread: threading.Thread) -> RobotThread | None:
+    """What the run knows of this thread, if it is one of the robot's."""
+    record: RobotThread | None = vars(thread).get("_pyfrc_record")
+    return record
+
+
+def join_thread(thread: threading.Thread, timeout: float | None = None) -> None:
+    """`Thread.join`, in robot time when a robot's thread waits for another."""
+    record, threads = record_of(thread), scope.taking_part()
+    if record is None or threads is None or record is threads.current():
+        return real_thread_join(thread, timeout)
+    timeout_us = None if timeout is None else max(0, to_us(timeout))
+    threads.wait(record.joiners, lambda: record.finished, timeout_us)
+    return None
+
+
+def stand_ins() -> list[tuple[Any, str, Any]]:
+    """What to set where: (module or class, name, value)."""
+    import queue
+
+    python_rlock: Any = threading._PyRLock  # type: ignore[attr-defined]
+    python_queue: Any = queue._PySimpleQueue  # type: ignore[attr-defined]
+    return [
+        (threading, "Lock", new_lock),
+        (threading, "_allocate_lock", new_lock),
+        (threading, "RLock", python_rlock),  # the ones written in Python are built on the lock above
+        (queue, "SimpleQueue", python_queue),
+        (threading.Thread, "start", start_thread),
+        (threading.Thread, "join", join_thread),
+    ]

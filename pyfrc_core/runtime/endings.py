@@ -1,0 +1,33 @@
+"""The ways a test run of a robot ends before its test function returns.
+
+`TestEnded` and `TestRanTooLong` derive from `BaseException`, so that robot code's ``except Exception`` does not
+swallow the end of its own run. (Importable from their documented place, `pyfrc.test_support.fake_time`.)
+"""
+
+from __future__ import annotations
+
+
+class TestEnded(BaseException):
+    """This is thrown when the controller has been signaled to end the test.
+
+    It unwinds robot code that is waiting (in `wpilib.wait`, `time.sleep`, a lock) when its run is over.
+    Inherits from `BaseException`: a blanket ``except Exception`` does not catch it. Generally only pyfrc
+    itself needs to.
+    """
+
+    __test__ = False  # pytest: not a test class, for all its name
+
+
+class TestRanTooLong(BaseException):
+    """This is thrown when the time limit has expired (see `FakeTime.set_time_limit`), in robot time.
+
+    Inherits from `BaseException`: a blanket ``except Exception`` does not catch it.
+    """
+
+    __test__ = False
+
+
+class TestFroze(Exception):
+    """The robot code stopped letting time go on: an endless loop, or a call that never returns."""
+
+    __test__ = False

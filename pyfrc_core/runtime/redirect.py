@@ -1,0 +1,277 @@
+"""Robot code's ways to wait and to ask the time, led to the clock of the run.
+
+One table says what is replaced where. It is set once, before the robot's modules are imported (they bind names when
+they are); while no robot runs, and for callers that take no part in the run, each replacement does what the
+original did. `time`'s functions are robot time only when the robot project's own files call them: pytest and
+other libraries keep the real ones.
+"""
+
+from __future__ import annotations
+
+import queue
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import hal
+import hal.simulation
+import wpilib
+import wpilib.simulation
+
+from . import cooperative
+from .clock import to_us
+from .motor_safety import BORN_SAFE, MotorSafetyWatch
+from .notifier import Notifier
+
+if TYPE_CHECKING:
+    from .robot import RobotRun
+    from ..robot_files import RobotFiles
+
+#: What `time.time()` answers in robot code at robot time 0: noon, Eastern time, of the 2026 season's kickoff.
+KICKOFF = 1_768_064_400
+
+_real_sleep = time.sleep
+
+
+class Redirection:
+    """The replaced names of this process. There is one, since what it replaces is the process's own."""
+
+    def __init__(self) -> None:
+        self.run: RobotRun | None = None
+        self.motor_safety = MotorSafetyWatch()
+        self._files: RobotFiles | None = None
+        self._originals: list[tuple[Any, str, Any]] = []
+
+    @property
+    def installed(self) -> bool:
+        return bool(self._originals)
+
+    def install(self, files: RobotFiles) -> None:
+        """Replace the names, for the robot project with these files. Doing it again only changes the project."""
+        self._files = files
+        cooperative.scope.is_robot_code = files.is_robot_code
+        if self.installed:
+            return
+        for owner, name, replacement in self._replacements():
+            self._originals.append((owner, name, vars(owner).get(name, getattr(owner, name))))
+            setattr(owner, name, replacement)
+
+    def uninstall(self) -> None:
+        while self._originals:
+            owner, name, original = self._originals.pop()
+            setattr(owner, name, original)
+        cooperative.scope.is_robot_code = lambda filename: False
+
+    @contextmanager
+    def active(self, run: RobotRun) -> Iterator[None]:
+        """While this lasts, `run` has the say over time."""
+        if self.run is not None:
+            raise RuntimeError("a robot runs already in this process")
+        self.run = run
+        cooperative.scope.threads = Notifier.threads = run.threads
+        try:
+            yield
+        finally:
+            self.run = None
+            cooperative.scope.threads = Notifier.threads = None
+
+    # -- the table --------------------------------------------------------------------------------------------
+
+    def _replacements(self) -> list[tuple[Any, str, Any]]:
+        return [
+            *self._time_functions(),
+            *cooperative.stand_ins(),
+            *self._waiting_in_wpilib(),
+            *self._stepping_in_tests(),
+            *self._timed_robot(),
+            *self._motor_safety(),
+        ]
+
+    def _time_functions(self) -> list[tuple[Any, str, Any]]:
+        def asked_by_robot_code() -> bool:
+            files = self._files
+            return files is not None and files.is_robot_code(sys._getframe(2).f_code.co_filename)
+
+        def reading(name: str, from_us: Callable[[int], float]) -> tuple[Any, str, Any]:
+            real = getattr(time, name)
+
+            def read() -> Any:
+                if not asked_by_robot_code():
+                    return real()
+                return from_us(self.run.clock.now_us if self.run is not None else 0)
+
+            # A static method is called like a function but, like the built-in it replaces, is not bound when
+            # somebody makes it a class's attribute.
+            return time, name, staticmethod(read)
+
+        def sleep(seconds: float, /) -> None:
+            __tracebackhide__ = True
+            threads = cooperative.scope.taking_part()
+            if threads is None or not asked_by_robot_code():
+                return _real_sleep(seconds)
+            if seconds < 0:
+                raise ValueError("sleep length must be non-negative")
+            return threads.sleep_until(threads.clock.now_us + to_us(seconds))
+
+        def waits_in_threading() -> float:
+            # The deadlines of conditions and queues: kept by whoever waits, so told by thread, not by file.
+            threads = cooperative.scope.taking_part()
+            return real_monotonic() if threads is None else threads.clock.now
+
+        real_monotonic = time.monotonic
+        return [
+            (time, "sleep", staticmethod(sleep)),
+            reading("time", lambda us: KICKOFF + us / 1_000_000),
+            reading("time_ns", lambda us: KICKOFF * 1_000_000_000 + us * 1_000),
+            reading("monotonic", lambda us: us / 1_000_000),
+            reading("monotonic_ns", lambda us: us * 1_000),
+            reading("perf_counter", lambda us: us / 1_000_000),
+            reading("perf_counter_ns", lambda us: us * 1_000),
+            (threading, "_time", waits_in_threading),
+            (queue, "time", waits_in_threading),
+        ]
+
+    def _waiting_in_wpilib(self) -> list[tuple[Any, str, Any]]:
+        def wait(seconds: float) -> None:
+            __tracebackhide__ = True
+            threads = cooperative.scope.taking_part()
+            if threads is None:
+                return _real_sleep(seconds)
+            return threads.sleep_until(threads.clock.now_us + max(0, to_us(seconds)))
+
+        real_connection_wait = wpilib.DriverStation.waitForDsConnection
+
+        def wait_for_connection(timeout: float) -> bool:
+            __tracebackhide__ = True
+            threads = cooperative.scope.taking_part()
+            if threads is None:
+                return bool(real_connection_wait(timeout))
+            timeout_us = to_us(timeout) if timeout > 0 else None  # 0: for as long as it takes
+            return threads.wait([], _driver_station_attached, timeout_us)
+
+        def notifier_call(name: str, ours: str) -> tuple[Any, str, Any]:
+            real = getattr(hal, name)
+
+            def call(*args: Any, **kwargs: Any) -> Any:
+                __tracebackhide__ = True
+                run = self.run
+                if run is not None and (not args or args[0] in run.alarms):
+                    return getattr(run.alarms, ours)(*args, **kwargs)
+                return real(*args, **kwargs)
+
+            return hal, name, call
+
+        real_set_name = hal.setNotifierName
+
+        def set_notifier_name(handle: int, name: str) -> Any:
+            ours = self.run is not None and handle in self.run.alarms
+            return 0 if ours else real_set_name(handle, name)
+
+        return [
+            (wpilib, "wait", wait),
+            (wpilib, "Notifier", Notifier),
+            (wpilib.DriverStation, "waitForDsConnection", staticmethod(wait_for_connection)),
+            notifier_call("initializeNotifier", "initialize"),
+            notifier_call("updateNotifierAlarm", "update"),
+            notifier_call("cancelNotifierAlarm", "cancel"),
+            notifier_call("waitForNotifierAlarm", "wait"),
+            notifier_call("stopNotifier", "stop"),
+            notifier_call("cleanNotifier", "clean"),
+            (hal, "setNotifierName", set_notifier_name),
+        ]
+
+    def _stepping_in_tests(self) -> list[tuple[Any, str, Any]]:
+        """Tests that step WPILib's simulated time themselves move the robot with it."""
+
+        def stepping(owner: Any, name: str, in_us: Callable[[float], int]) -> tuple[Any, str, Any]:
+            real = getattr(owner, name)
+
+            def step(delta: float) -> None:
+                __tracebackhide__ = True
+                run = self.run
+                if run is None:
+                    real(delta)
+                else:
+                    run.clock.run_until(run.clock.now_us + in_us(delta))
+
+            return owner, name, step
+
+        def left_to_the_run(owner: Any, name: str) -> tuple[Any, str, Any]:
+            real = getattr(owner, name)
+
+            def call() -> None:
+                if self.run is None:
+                    real()
+
+            return owner, name, call
+
+        table = []
+        for owner, in_us in ((wpilib.simulation, to_us), (hal.simulation, int)):
+            table += [stepping(owner, "stepTiming", in_us), stepping(owner, "stepTimingAsync", in_us)]
+            # Time stands still between steps already, and begins at 0 with the run.
+            table += [left_to_the_run(owner, f"{verb}Timing") for verb in ("pause", "resume", "restart")]
+            table.append(left_to_the_run(owner, "waitForProgramStart"))
+        return table
+
+    def _timed_robot(self) -> list[tuple[Any, str, Any]]:
+        TimedRobot = wpilib.TimedRobot
+        real_add, real_start = TimedRobot.addPeriodic, TimedRobot.startCompetition
+        real_loop_start = TimedRobot.getLoopStartTime
+
+        def add_periodic(
+            robot: wpilib.TimedRobot, callback: Callable[[], None], period: float, offset: float = 0.0
+        ) -> None:
+            if self.run is None:
+                real_add(robot, callback, period, offset)
+            else:
+                self.run.timed_loop.add(callback, period, offset)
+
+        def start_competition(robot: wpilib.TimedRobot) -> None:
+            __tracebackhide__ = True
+            if self.run is None:
+                return real_start(robot)
+            self.run.timed_loop.begin(robot)
+            return self.run.timed_loop.run_blocking(self.run.threads)
+
+        def loop_start_time(robot: wpilib.TimedRobot) -> Any:
+            return real_loop_start(robot) if self.run is None else self.run.timed_loop.loop_start_us
+
+        return [
+            (TimedRobot, "addPeriodic", add_periodic),
+            (TimedRobot, "startCompetition", start_competition),
+            (TimedRobot, "getLoopStartTime", loop_start_time),
+        ]
+
+    def _motor_safety(self) -> list[tuple[Any, str, Any]]:
+        watch = self.motor_safety
+
+        def born_safe(drive: Any) -> tuple[Any, str, Any]:
+            real_init = drive.__init__
+
+            def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
+                real_init(self, *args, **kwargs)
+                watch.set_enabled(self, True)
+
+            return drive, "__init__", __init__
+
+        return [
+            (
+                wpilib.MotorSafety,
+                "setSafetyEnabled",
+                lambda motor, enabled: watch.set_enabled(motor, enabled),
+            ),
+            (wpilib.MotorSafety, "isSafetyEnabled", lambda motor: watch.is_enabled(motor)),
+            (wpilib.MotorSafety, "isAlive", lambda motor: watch.is_alive(motor)),
+            *(born_safe(drive) for drive in BORN_SAFE),
+        ]
+
+
+def _driver_station_attached() -> bool:
+    return bool(wpilib.DriverStation.isDSAttached())
+
+
+#: The redirection of this process.
+redirection = Redirection()

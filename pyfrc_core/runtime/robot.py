@@ -1,0 +1,164 @@
+"""One run of a robot program: the robot, its clock, its threads, from construction to its end.
+
+Tests, the simulator and replay all run a robot through this. Which of the two ways the loop is driven (in place for
+WPILib's `TimedRobot`, on a robot thread for robots with a loop of their own) shows nowhere outside.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from pathlib import Path
+from typing import Any
+
+import ntcore
+import wpilib
+
+from ..errors import RobotCodeError
+from ..hal import modes, timing
+from . import cooperative
+from .clock import OBSERVE, PACKET_US, Clock
+from .endings import TestEnded
+from .notifier import Alarms
+from .redirect import redirection
+from .threads import RobotThread, RobotThreads
+from .timed_loop import TimedLoop
+
+
+class RobotRun:
+    """A robot from its construction to its end, in robot time.
+
+    The thread that creates this drives the clock. The HAL is one per process, so only one run at a time can be.
+    """
+
+    def __init__(self) -> None:
+        self.clock = Clock()
+        self.threads = RobotThreads(self.clock)
+        self.alarms = Alarms(self.threads)
+        self.timed_loop = TimedLoop(self.clock, self.clock.now_us)
+        self.robot: Any = None
+        #: Threads that did not stop when the run ended.
+        self.still_running: list[RobotThread] = []
+        self._own_loop: RobotThread | None = None
+        self._started = self._ended = False
+        self._closing = contextlib.ExitStack()
+
+    def open(self) -> None:
+        """Take charge of the HAL: time at 0, the driver station attached and disabled, nothing pressed."""
+        self._closing.enter_context(redirection.active(self))
+        # Values that robot code publishes stay in this process: no server, no port, no file.
+        ntcore.NetworkTableInstance.getDefault().startLocal()
+        modes.reset_driver_station()
+        timing.deliver_packet()
+        wpilib.DriverStation.refreshData()
+        self.clock.before_packet.append(lambda now: redirection.motor_safety.on_packet())
+        cooperative.begin_waiting_threads()
+
+    def construct(self, robot_class: type[Any]) -> Any:
+        """Make the robot. Its `robotInit` runs with `start`."""
+        __tracebackhide__ = True
+        try:
+            self.robot = robot_class()
+        except TypeError as error:
+            raise _missing_super_init(robot_class, error) or error from None
+        if isinstance(self.robot, wpilib.TimedRobot):
+            # Its constructor has set an alarm that nobody will wait for, and the HAL would wait for somebody to.
+            wpilib.TimedRobot.endCompetition(self.robot)
+        return self.robot
+
+    @property
+    def alive(self) -> bool:
+        """Whether the robot program has started and has neither ended nor failed."""
+        if not self._started or self._ended or self.threads.failure is not None:
+            return False
+        return self._own_loop is None or not self._own_loop.finished
+
+    @property
+    def started(self) -> bool:
+        return self._started
+
+    def start(self) -> None:
+        """Begin the robot program: `robotInit`, then whatever its loop does at time 0."""
+        __tracebackhide__ = True
+        self._started = True
+        with self._failing():
+            if _has_loop_of_its_own(self.robot):
+                thread = threading.Thread(target=self._compete, name="robot", daemon=True)
+                cooperative.start_in_robot_time(thread)
+                self._own_loop = cooperative.record_of(thread)
+                self.clock.run_until(self.clock.now_us)
+            else:
+                self.timed_loop.begin(self.robot)
+                self.timed_loop.run_in_place()
+
+    def run_until(self, target_us: int) -> None:
+        """Let the robot run until `target_us`, raising what its code raises."""
+        __tracebackhide__ = True
+        with self._failing():
+            self.clock.run_until(target_us)
+
+    def next_packet(self) -> None:
+        """Let the robot run to the next driver-station packet and through everything that is due with it."""
+        self.run_until(self.clock.next_packet_us)
+
+    def observe(self, look: Any) -> None:
+        """Have `look` called after every packet, when the robot has done its part: ``look(now_in_seconds)``."""
+        self.clock.every(PACKET_US, OBSERVE, lambda: look(self.clock.now))
+
+    def end(self) -> None:
+        """End the robot program and its threads; time stands still from here on."""
+        __tracebackhide__ = True
+        if self._ended:
+            return
+        self._ended = True
+        self.timed_loop.stopped = True
+        try:
+            if self._started and self.threads.failure is None:
+                self.robot.endCompetition()
+        finally:
+            self.still_running = self.threads.end()
+
+    def close(self) -> None:
+        """Give the HAL back."""
+        try:
+            self.end()
+        finally:
+            self._closing.close()
+            ntcore.NetworkTableInstance.getDefault().stopLocal()
+            self.robot = None
+
+    def _compete(self) -> None:
+        __tracebackhide__ = True
+        self.robot.startCompetition()
+
+    @contextlib.contextmanager
+    def _failing(self) -> Any:
+        """Raise what went wrong, once, on whoever drives: not the `TestEnded` that unwound the robot for it."""
+        __tracebackhide__ = True
+        try:
+            yield
+        except TestEnded:
+            if self.threads.failure is None:
+                raise
+            raise self.threads.failure from None
+        except Exception as failure:
+            self.threads.failure = failure
+            raise
+
+
+def _missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:
+    """WPILib complains of a forgotten ``super().__init__()`` without naming the place; this does."""
+    code = getattr(robot_class.__init__, "__code__", None)
+    if code is None or "__init__() must be called when overriding" not in str(error):
+        return None
+    return RobotCodeError(
+        f"{robot_class.__name__}.__init__ does not call super().__init__()",
+        where=f"{Path(code.co_filename).name}:{code.co_firstlineno}",
+        remedy="Make that its first line.",
+    )
+
+
+def _has_loop_of_its_own(robot: Any) -> bool:
+    if not isinstance(robot, wpilib.TimedRobot):
+        return True
+    return type(robot).startCompetition is not wpilib.TimedRobot.startCompetition

@@ -1,0 +1,102 @@
+"""The loop of a `wpilib.TimedRobot`, in place: its loop body and periodic callbacks, called as they fall due.
+
+WPILib's own loop blocks in C++ until the next alarm; stepped from another thread, each loop costs two hand-offs
+between threads, many times what the loop itself does. Here the clock calls the body on whichever thread moves the
+time. A robot that overrides `startCompetition` and calls `super().startCompetition()` gets `run_blocking` instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import hal
+
+from .clock import ROBOT_LOOP, Clock, to_us
+
+if TYPE_CHECKING:
+    import wpilib
+
+    from .threads import RobotThreads
+
+
+class Periodic:
+    """One callback with its own rate."""
+
+    __slots__ = ("call", "due_us", "period_us")
+
+    def __init__(self, call: Callable[[], object], first_due_us: int, period_us: int) -> None:
+        self.call = call
+        self.due_us = first_due_us
+        self.period_us = period_us
+
+    def move_on(self, called_at_us: int) -> None:
+        """Fix the next time, skipping the periods that were missed, as WPILib does."""
+        self.due_us += self.period_us + (called_at_us - self.due_us) // self.period_us * self.period_us
+
+
+class TimedLoop:
+    """The callbacks of one `TimedRobot`.
+
+    :param created_us: when the robot was constructed; its periods count from there
+    """
+
+    def __init__(self, clock: Clock, created_us: int) -> None:
+        self._clock = clock
+        self._created_us = created_us
+        self._callbacks: list[Periodic] = []
+        self._in_place = False
+        self.stopped = False
+        #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
+        self.loop_start_us = 0
+
+    def add(self, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
+        """`TimedRobot.addPeriodic`: times in seconds."""
+        period_us = to_us(period)
+        if period_us <= 0:
+            raise ValueError(f"addPeriodic: the period must be longer than 0 s, not {period!r}")
+        start = self._created_us + to_us(offset)
+        first = start + (self._clock.now_us - start) // period_us * period_us + period_us
+        callback = Periodic(call, first, period_us)
+        self._callbacks.append(callback)
+        if self._in_place:
+            self._schedule(callback)
+
+    def begin(self, robot: wpilib.TimedRobot) -> None:
+        """What WPILib does before its first loop: the robot's own initialisation, then the loop's schedule."""
+        __tracebackhide__ = True
+        robot.robotInit()
+        robot._simulationInit()
+        hal.observeUserProgramStarting()
+        self.add(robot._loopFunc, robot.getPeriod())
+        self._callbacks.insert(0, self._callbacks.pop())  # WPILib schedules it before all others
+
+    def run_in_place(self) -> None:
+        """From now on the clock calls what is due."""
+        self._in_place = True
+        for callback in self._callbacks:
+            self._schedule(callback)
+
+    def _schedule(self, callback: Periodic) -> None:
+        clock, call = self._clock, callback.call
+
+        def run() -> None:
+            __tracebackhide__ = True
+            if self.stopped:
+                return
+            self.loop_start_us = now = clock.now_us
+            call()
+            callback.move_on(now)
+            clock.at(callback.due_us, ROBOT_LOOP, run)
+
+        clock.at(callback.due_us, ROBOT_LOOP, run)
+
+    def run_blocking(self, threads: RobotThreads) -> None:
+        """Call what is due on the calling thread, which waits in between, until the run ends."""
+        __tracebackhide__ = True
+        while not self.stopped:
+            callback = min(self._callbacks, key=lambda candidate: candidate.due_us)
+            threads.sleep_until(callback.due_us)
+            self.loop_start_us = now = self._clock.now_us
+            callback.call()
+            callback.move_on(now)

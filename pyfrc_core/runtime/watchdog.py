@@ -1,0 +1,151 @@
+"""Finds robot code that hangs, by its lack of progress: robot time stands still while the processor is busy with it.
+
+Processor time, not wall time, so that a busy machine cannot make a healthy robot fail. Code that is blocked on no
+processor time at all (it reads from a keyboard that nobody is at) is given a generous wall time instead; no robot
+that moves is ever judged by it.
+"""
+
+from __future__ import annotations
+
+import _thread
+import ctypes
+import faulthandler
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from .endings import TestFroze
+
+if TYPE_CHECKING:
+    from .robot import RobotRun
+    from ..robot_files import RobotFiles
+
+#: Processor seconds without a microsecond of robot time, after which robot code counts as hanging.
+HANG_SECONDS = 10.0
+#: Wall seconds blocked without any processor time, after which it does too.
+BLOCKED_SECONDS = 60.0
+
+#: The exit code of a process whose robot code could not be stopped otherwise.
+EXIT_HANGS = 86
+
+_SIGNAL = getattr(signal, "SIGVTALRM", None)  # not on Windows
+_wait, _wall, _cpu = time.sleep, time.monotonic, time.process_time
+_start_thread = threading.Thread.start
+_exit = os._exit
+
+
+class Watchdog:
+    """Watches one robot run from a thread of its own.
+
+    :param hang_seconds: processor seconds without progress
+    :param last_words: called with the explanation before the process is ended, when the code cannot be stopped;
+        without it the process is never ended
+    """
+
+    def __init__(
+        self,
+        run: RobotRun,
+        files: RobotFiles | None,
+        hang_seconds: float = HANG_SECONDS,
+        last_words: Callable[[str], None] | None = None,
+    ) -> None:
+        self._run = run
+        self._files = files
+        self._hang_seconds = hang_seconds
+        self._last_words = last_words
+        self._over = False
+        self._message = ""
+
+    @contextmanager
+    def watching(self) -> Iterator[None]:
+        """Watch while this lasts; code that hangs is interrupted with `TestFroze`."""
+        thread = threading.Thread(target=self._watch, name="pyfrc watchdog", daemon=True)
+        with self._interruptible():
+            _start_thread(thread)
+            try:
+                yield
+            finally:
+                self._over = True
+
+    def _watch(self) -> None:
+        clock = self._run.clock
+        seen, cpu, wall = clock.now_us, _cpu(), _wall()
+        warned = False
+        while not self._over:
+            _wait(min(0.25, self._hang_seconds / 4))
+            if clock.now_us != seen or self._over:
+                seen, cpu, wall, warned = clock.now_us, _cpu(), _wall(), False
+                continue
+            busy = _cpu() - cpu >= self._hang_seconds
+            blocked = _wall() - wall >= BLOCKED_SECONDS and _cpu() - cpu < 0.01 * BLOCKED_SECONDS
+            if not (busy or blocked):
+                continue
+            culprit = self._culprit()
+            if warned:
+                self._give_up(culprit)
+            self._message = self._explain(culprit, busy)
+            self._interrupt(culprit)
+            cpu, wall, warned = _cpu(), _wall(), True
+
+    def _culprit(self) -> int:
+        """The thread whose turn it is."""
+        running = self._run.threads.running
+        if running is not None and running.ident is not None:
+            return running.ident
+        return self._run.threads.driver
+
+    def _explain(self, ident: int, busy: bool) -> str:
+        line = self._files.line_of_thread(ident) if self._files is not None else None
+        place = f"{line}: " if line else ""
+        where = "a thread of the robot" if ident != self._run.threads.driver else "the robot code"
+        if busy:
+            what = f"{where} hangs here: {self._hang_seconds:g} s of computing, and robot time has not moved"
+            advice = "Is it an endless loop? A loop that waits for something must wait(), sleep or return."
+        else:
+            what = f"{where} is blocked here: it has waited {BLOCKED_SECONDS:g} s for something outside the robot"
+            advice = "Read from sockets, files and the keyboard in a thread of their own, or with a time-out."
+        return f"{place}{what} from {self._run.clock.now:.2f} s on.\n{advice}"
+
+    def _interrupt(self, ident: int) -> None:
+        if ident == threading.main_thread().ident and _SIGNAL is not None:
+            signal.pthread_kill(ident, _SIGNAL)  # interrupts a blocking call, too
+        else:
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(self._froze()))
+
+    def _froze(self) -> type[TestFroze]:
+        # Only a class can be raised in another thread, so the message travels in one.
+        message = self._message
+        return type(
+            "TestFroze", (TestFroze,), {"__str__": lambda self: message, "__module__": TestFroze.__module__}
+        )
+
+    @contextmanager
+    def _interruptible(self) -> Iterator[None]:
+        if _SIGNAL is None or _thread.get_ident() != threading.main_thread().ident:
+            yield
+            return
+
+        def interrupted(signum: int, frame: FrameType | None) -> None:
+            __tracebackhide__ = True
+            if not self._over:
+                raise TestFroze(self._message)
+
+        before = signal.signal(_SIGNAL, interrupted)
+        try:
+            yield
+        finally:
+            signal.signal(_SIGNAL, before)
+
+    def _give_up(self, ident: int) -> None:
+        """The code swallowed the interruption, or never came to see it."""
+        if self._last_words is None:
+            return
+        self._last_words(self._explain(ident, busy=True))
+        faulthandler.dump_traceback(sys.__stderr__ or 2)
+        _exit(EXIT_HANGS)

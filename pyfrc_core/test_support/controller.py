@@ -1,0 +1,194 @@
+"""Controlling the robot's state during a test."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, TypeAlias
+
+from ..config.settings import MatchSettings
+from ..hal import modes
+from ..runtime.clock import to_us
+from ..runtime.endings import TestEnded
+from .fake_time import FakeTime
+from .practice_match import PracticeMatch
+
+OnStep: TypeAlias = Callable[[float], object]
+
+
+class TestController:
+    """This object is used to control the robot during unit tests; your test gets it as the ``control`` fixture.
+
+    To set a game specific message for autonomous mode, set the `game_specific_message` property of this object; the
+    robot gets it upon transition into autonomous mode.
+
+    A robot is run in one of two ways: `run_test`, which calls your function on every packet, or
+    ``with control.run_robot():``, inside which `step_timing` moves the time.
+    """
+
+    __test__ = False  # pytest: not a test class, for all its name
+
+    def __init__(self, fake_time_inst: FakeTime, match: MatchSettings | None = None) -> None:
+        self._time = fake_time_inst
+        self._run = fake_time_inst.run
+        self._match_settings = match or MatchSettings()
+        self._practice_match: PracticeMatch | None = None
+        #: What the field sends with autonomous mode, such as ``"LRL"``.
+        self.game_specific_message: str | None = None
+
+    # -- modes ------------------------------------------------------------------------------------------------
+
+    def get_mode(self) -> modes.Mode:
+        """The mode that the robot is in: 'autonomous', 'teleop', 'test', or 'disabled'."""
+        return modes.get_mode()
+
+    def set_autonomous(self, enabled: bool = True) -> None:
+        """Puts the robot in autonomous mode, with the next packet."""
+        modes.set_game_message(self.game_specific_message or "")
+        modes.set_mode(autonomous=True, enabled=enabled)
+
+    def set_operator_control(self, enabled: bool = True) -> None:
+        """Puts the robot in operator control mode, with the next packet."""
+        modes.set_mode(enabled=enabled)
+
+    def set_test_mode(self, enabled: bool = True) -> None:
+        """Puts the robot in test mode (the robot mode, not related to unit testing), with the next packet."""
+        modes.set_mode(test=True, enabled=enabled)
+
+    def set_practice_match(self) -> None:
+        """Call this function to enable a practice match. Must only be called before `run_test` is called.
+
+        :raises RuntimeError: when the robot runs already
+        """
+        if self._run.started:
+            raise RuntimeError("set_practice_match() must be called before run_test()")
+        self._practice_match = PracticeMatch(self, self._match_settings)
+
+    # -- running, as documented ------------------------------------------------------------------------------
+
+    def run_test(self, controller: OnStep | type[Any] | None = None) -> Any:
+        """Call this to execute the robot code. Cannot be called more than once in a single test.
+
+        :param controller: a function that takes the current robot time in seconds, or a class (or an object) that has
+            such a method ``on_step``; of a class an instance is made. It is called before every driver-station
+            packet, and the robot sees with that packet what it sets. The robot runs for as long as it answers
+            something true.
+        :returns: the instance, if `controller` is a class
+        :raises RuntimeError: when called twice, or without a controller and without `set_practice_match`
+        """
+        __tracebackhide__ = True
+        self._begin("run_test")
+        instance, steps = self._steps(controller)
+
+        def step(now: float) -> None:
+            __tracebackhide__ = True
+            # A list, not a generator: each of them is to see every packet.
+            if not all([on_step(now) for on_step in steps]):
+                raise TestEnded
+            if not run.alive and run.started:
+                raise RuntimeError(
+                    f"the robot program ended by itself: startCompetition() returned at {now:.2f} s"
+                )
+
+        run = self._run
+        run.clock.before_packet.insert(0, step)
+        try:
+            run.start()
+            with suppress(TestEnded):
+                # Goes on until a step says it is over, or the time limit does.
+                run.run_until(run.clock.limit_us + 1)
+        finally:
+            run.clock.before_packet.remove(step)
+            run.end()
+        return instance
+
+    def _steps(self, controller: OnStep | type[Any] | None) -> tuple[Any, list[OnStep]]:
+        instance = controller() if inspect.isclass(controller) else None
+        steps: list[OnStep] = []
+        if self._practice_match is not None:
+            steps.append(self._practice_match.on_step)
+        if controller is not None:
+            target = controller if instance is None else instance
+            on_step = getattr(target, "on_step", target)
+            if not callable(on_step):
+                raise TypeError(
+                    f"run_test(controller): {controller!r} is neither a function nor a class with an on_step method"
+                )
+            steps.append(_answering(on_step))
+        if not steps:
+            raise RuntimeError(
+                "run_test() needs a function to call on each step, or set_practice_match() before it"
+            )
+        return instance, steps
+
+    # -- running, as today ------------------------------------------------------------------------------------
+
+    @contextmanager
+    def run_robot(self) -> Iterator[None]:
+        """``with control.run_robot():`` starts the robot (its `robotInit` runs on entry) and ends it on exit.
+
+        :raises RuntimeError: when the robot has run already in this test
+        """
+        __tracebackhide__ = True
+        self._begin("run_robot")
+        try:
+            self._run.start()
+            yield
+        finally:
+            self._run.end()
+
+    def step_timing(
+        self, *, seconds: float, autonomous: bool, enabled: bool, assert_alive: bool = True
+    ) -> float:
+        """Let the robot run for some time in a mode, driver-station packets delivered.
+
+        :param seconds: how long, in robot time
+        :param assert_alive: fail when the robot program is not running, before or afterwards
+        :returns: the seconds by which robot time has moved on
+        """
+        __tracebackhide__ = True
+        if assert_alive:
+            assert self.robot_is_alive, "the robot program is not running"
+        if autonomous:
+            self.set_autonomous(enabled)
+        else:
+            self.set_operator_control(enabled)
+        clock = self._run.clock
+        before = clock.now_us
+        self._run.run_until(before + to_us(seconds))
+        if assert_alive:
+            assert self.robot_is_alive, "the robot program has ended"
+        return (clock.now_us - before) / 1_000_000
+
+    @property
+    def robot_is_alive(self) -> bool:
+        """True while the robot program runs: it has started, and has neither ended nor failed."""
+        return self._run.alive
+
+    def _begin(self, how: str) -> None:
+        __tracebackhide__ = True
+        if self._run.started:
+            raise RuntimeError(
+                f"{how}(): the robot has run already in this test. It can only run once; "
+                "write a second test, or do everything in one run."
+            )
+
+
+def _answering(on_step: OnStep) -> OnStep:
+    """`on_step`, with a word of help for the one who forgets what it must answer."""
+    first = True
+
+    def step(now: float) -> object:
+        __tracebackhide__ = True
+        nonlocal first
+        answer = on_step(now)
+        if answer is None and first:
+            raise TypeError(
+                f"{getattr(on_step, '__qualname__', on_step)}() returned None: "
+                "return True for the robot to go on, False to end the test"
+            )
+        first = False
+        return answer
+
+    return step

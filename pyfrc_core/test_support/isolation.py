@@ -1,0 +1,230 @@
+"""Each test that uses the robot in a process of its own, several at a time, reported in order.
+
+WPILib's HAL, and robots that keep devices in classes and modules, do not survive a second robot in one process.
+The process that collects the tests has imported everything already, the robot's modules too; forking it takes a few
+milliseconds where starting anew takes half a second. Where fork is not to be had, a new process serves.
+
+Fixtures wider than one test (of a class, a module, the session) are set up here, before the fork, once, and torn down
+here, as everywhere in pytest.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from _pytest.runner import CallInfo, TestReport
+
+from .messages import decode, replay
+from .processes import FORK_IS_SAFE, ForkedTest, SpawnedTest, TestProcess, wait_for_any
+from .pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin
+from .spare import left_behind
+
+#: A test file that has anything of these in it may touch the HAL even without a fixture.
+_ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})
+
+
+class IsolatedTests:
+    """The part of the plugin that runs tests in processes of their own."""
+
+    def __init__(self, plugin: PyFrcPlugin) -> None:
+        self._plugin = plugin
+        self._running: dict[pytest.Item, TestProcess] = {}
+        self._announced: pytest.Item | None = None
+        self._python_threads = threading.active_count()
+
+    @pytest.hookimpl
+    def pytest_runtestloop(self, session: pytest.Session) -> bool | None:
+        if self._left_to_others(session):
+            return None
+        if session.testsfailed and not session.config.option.continue_on_collection_errors:
+            problems = session.testsfailed
+            raise session.Interrupted(f"{problems} error{'s' if problems != 1 else ''} during collection")
+        try:
+            self._run_all(session)
+        finally:
+            for process in self._running.values():
+                process.kill()
+            self._running.clear()
+        return True
+
+    def _left_to_others(self, session: pytest.Session) -> bool:
+        config = session.config
+        if config.option.collectonly or self._plugin.options.isolation == "none":
+            return True
+        # pytest-xdist has processes, and a loop, of its own.
+        return hasattr(config, "workerinput") or config.pluginmanager.hasplugin("dsession")
+
+    def _run_all(self, session: pytest.Session) -> None:
+        jobs = 1 if session.config.option.usepdb else self._plugin.options.jobs
+        items, waiting = session.items, []
+        # What is there now stays: a collector that went through it in each fork would copy all its memory.
+        gc.collect()
+        gc.freeze()
+        for position, item in enumerate(items):
+            nextitem = items[position + 1] if position + 1 < len(items) else None
+            if not self._uses_robot(item):
+                self._finish(session, waiting, down_to=0)
+                item.config.hook.pytest_runtest_protocol(item=item, nextitem=nextitem)
+                _stop_if_asked(session)
+                continue
+            self._finish(session, waiting, down_to=jobs - 1)
+            if _would_tear_down_fixtures(session, item):
+                self._finish(session, waiting, down_to=0)
+            _set_up_shared(session, item)
+            waiting.append(item)
+            if len(waiting) == 1:
+                self._announce(item)
+            self._running[item] = self._launch(item)
+        self._finish(session, waiting, down_to=0)
+        _tear_down_shared(session, items[-1] if items else None)
+
+    def _finish(self, session: pytest.Session, waiting: list[pytest.Item], down_to: int) -> None:
+        """Report tests, in their order, until no more than `down_to` are running."""
+        while len(waiting) > down_to:
+            process = self._running[waiting[0]]
+            if not process.finished:
+                wait_for_any(list(self._running.values()))
+                if (
+                    not process.finished
+                    and sum(not each.finished for each in self._running.values()) <= down_to
+                ):
+                    return
+                continue
+            item = waiting.pop(0)
+            self._announce(item)
+            del self._running[item]
+            _report(item, process)
+            item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+            _stop_if_asked(session)
+            if waiting:
+                self._announce(waiting[0])
+
+    def _announce(self, item: pytest.Item) -> None:
+        if self._announced is not item:
+            self._announced = item
+            item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+
+    def _launch(self, item: pytest.Item) -> TestProcess:
+        return ForkedTest(item, self._plugin) if self._can_fork() else SpawnedTest(item, self._plugin)
+
+    def _can_fork(self) -> bool:
+        isolation = self._plugin.options.isolation
+        if isolation != "auto":
+            return isolation == "fork"
+        if not FORK_IS_SAFE:
+            return False
+        if not self._plugin.imports_late:
+            with contextlib.suppress(Exception):  # told by each test that needs it
+                self._plugin.robot_class()
+        return not left_behind(self._python_threads)
+
+    def _uses_robot(self, item: pytest.Item) -> bool:
+        if ROBOT_FIXTURES.intersection(getattr(item, "fixturenames", ())):
+            return True
+        module = getattr(item, "module", None)
+        return module is not None and any(self._is_robotic(value) for value in vars(module).values())
+
+    def _is_robotic(self, value: object) -> bool:
+        name = (
+            getattr(value, "__name__", None)
+            if isinstance(value, type(os))
+            else getattr(value, "__module__", None)
+        )
+        if not isinstance(name, str):
+            return False
+        origin = getattr(sys.modules.get(name), "__file__", None) or ""
+        return name.partition(".")[0] in _ROBOT_LIBRARIES or self._plugin.project.files.is_robot_code(origin)
+
+
+def _stop_if_asked(session: pytest.Session) -> None:
+    """``-x``, ``--maxfail`` and their like."""
+    if session.shouldfail:
+        raise session.Failed(session.shouldfail)
+    if session.shouldstop:
+        raise session.Interrupted(session.shouldstop)
+
+
+def _report(item: pytest.Item, process: TestProcess) -> None:
+    """Replay here what the test's process told, and what it can no longer tell."""
+    done, phases = False, []
+    for message in decode(process.output()):
+        if message[0] == "done":
+            done = True
+        elif (report := replay(item, message)) is not None:
+            phases.append(report.when)
+    if done:
+        return
+    crash = process.explain_crash()
+    for phase in ("setup", "call", "teardown"):
+        if phase not in phases:
+            text = crash if phase == "call" else None
+            item.ihook.pytest_runtest_logreport(report=_made_up(item, phase, text, process.captured()))
+
+
+def _made_up(item: pytest.Item, phase: Any, failure: str | None, captured: str) -> TestReport:
+    return TestReport(
+        nodeid=item.nodeid,
+        location=item.location,
+        keywords=dict.fromkeys(item.keywords, 1),
+        outcome="failed" if failure else "passed",
+        longrepr=failure,
+        when=phase,
+        sections=[("Captured output of the process", captured)] if failure and captured else [],
+    )
+
+
+# -- fixtures that several tests share -------------------------------------------------------------------------------
+
+
+def _would_tear_down_fixtures(session: pytest.Session, item: pytest.Item) -> bool:
+    """Whether making way for `item` ends a fixture that a running test may still use."""
+    chain = set(item.listchain())
+    return any(
+        len(finalizers) > 1  # the first is the node's own teardown
+        for node, (finalizers, _) in session._setupstate.stack.items()
+        if node not in chain
+    )
+
+
+def _set_up_shared(session: pytest.Session, item: pytest.Item) -> None:
+    """Set up what `item` shares with others. What fails here fails again, and is reported, in the test's process."""
+    with _captured(item), contextlib.suppress(Exception, pytest.fail.Exception, pytest.skip.Exception):
+        session._setupstate.teardown_exact(item)
+        assert item.parent is not None
+        session._setupstate.setup(item.parent)
+        if "tmp_path_factory" in getattr(item, "fixturenames", ()):
+            # One numbered directory for the whole run, not one for each process.
+            item._request.getfixturevalue("tmp_path_factory").getbasetemp()  # type: ignore[attr-defined]
+        definitions = getattr(item, "_fixtureinfo", None)
+        for name in getattr(item, "fixturenames", ()):
+            known = definitions.name2fixturedefs.get(name) if definitions is not None else None
+            if known and known[-1].scope != "function":
+                item._request.getfixturevalue(name)  # type: ignore[attr-defined]
+
+
+def _tear_down_shared(session: pytest.Session, last: pytest.Item | None) -> None:
+    """What outlived the last test ends with it; a failure in that is that test's."""
+    if last is None:
+        return
+    call = CallInfo.from_call(lambda: session._setupstate.teardown_exact(None), when="teardown")
+    if call.excinfo is not None:
+        report = last.ihook.pytest_runtest_makereport(item=last, call=call)
+        last.ihook.pytest_runtest_logreport(report=report)
+
+
+@contextlib.contextmanager
+def _captured(item: pytest.Item) -> Iterator[None]:
+    """Output of shared fixtures belongs to the test that first needed them, as in pytest."""
+    capture: Any = item.config.pluginmanager.getplugin("capturemanager")
+    if capture is None:
+        yield
+    else:
+        with capture.item_capture("setup", item):
+            yield

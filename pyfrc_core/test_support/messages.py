@@ -1,0 +1,113 @@
+"""What a test's own process tells the one that reports: pytest's reports and warnings, as pickled pairs.
+
+One form for forked and spawned processes: a stream of frames, each a length and a pickle, so that whatever arrived
+before a crash can be read.
+"""
+
+from __future__ import annotations
+
+import pickle
+import struct
+import warnings
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+_LENGTH = struct.Struct("<I")
+
+Message = tuple[str, Any]
+
+
+def encode(kind: str, content: Any) -> bytes:
+    payload = pickle.dumps((kind, content))
+    return _LENGTH.pack(len(payload)) + payload
+
+
+def decode(stream: bytes) -> Iterator[Message]:
+    """The whole messages in `stream`; one that was cut off is left out."""
+    at = 0
+    while at + _LENGTH.size <= len(stream):
+        (length,) = _LENGTH.unpack_from(stream, at)
+        at += _LENGTH.size
+        if at + length > len(stream):
+            return
+        yield pickle.loads(stream[at : at + length])
+        at += length
+
+
+class Teller:
+    """Runs one test in its own process and tells everything that a report needs."""
+
+    def __init__(self, send: Callable[[bytes], None]) -> None:
+        self._send = send
+        self._config: pytest.Config | None = None
+
+    def run(self, item: pytest.Item) -> None:
+        """The whole of pytest's protocol for `item`, without a report on this side."""
+        self._config = item.config
+        item.config.pluginmanager.register(self, "pyfrc.teller")
+        try:
+            # The next item is the one's parent: what the test shares with others is not torn down here.
+            item.ihook.pytest_runtest_protocol(item=item, nextitem=item.parent)
+        except pytest.exit.Exception as leaving:
+            self.tell("exit", (leaving.msg, leaving.returncode))
+        except KeyboardInterrupt:
+            self.tell("interrupted", None)
+        if item.session.shouldstop:
+            self.tell("stop", item.session.shouldstop)
+        self.tell("done", None)
+
+    def tell(self, kind: str, content: Any) -> None:
+        self._send(encode(kind, content))
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item, nextitem: Any) -> bool:
+        from _pytest.runner import runtestprotocol
+
+        for report in runtestprotocol(item, log=False, nextitem=nextitem):
+            self.tell(
+                "report", item.config.hook.pytest_report_to_serializable(config=item.config, report=report)
+            )
+        return True
+
+    def pytest_warning_recorded(
+        self, warning_message: warnings.WarningMessage, when: str, nodeid: str, location: Any
+    ) -> None:
+        plain = {
+            "message": str(warning_message.message),
+            "category": warning_message.category,
+            "filename": warning_message.filename,
+            "lineno": warning_message.lineno,
+        }
+        try:
+            self.tell("warning", (plain, when, nodeid, location))
+        except Exception:  # a category that cannot be pickled, being local to a function
+            self.tell("warning", (plain | {"category": UserWarning}, when, nodeid, location))
+
+
+def replay(item: pytest.Item, message: Message) -> pytest.TestReport | None:
+    """Report here what the test's process told; answers the report, if it was one."""
+    kind, content = message
+    hook: Any = item.ihook
+    if kind == "report":
+        report = item.config.hook.pytest_report_from_serializable(config=item.config, data=content)
+        hook.pytest_runtest_logreport(report=report)
+        return report  # type: ignore[no-any-return]
+    if kind == "warning":
+        plain, when, nodeid, location = content
+        hook.pytest_warning_recorded.call_historic(
+            kwargs={
+                "warning_message": warnings.WarningMessage(**plain),
+                "when": when,
+                "nodeid": nodeid,
+                "location": location,
+            }
+        )
+    elif kind == "exit":
+        raise pytest.exit.Exception(content[0], content[1])
+    elif kind == "interrupted":
+        raise KeyboardInterrupt
+    elif kind == "stop":
+        item.session.shouldstop = content
+    return None

@@ -1,0 +1,60 @@
+"""How a test run was asked for."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from ..config.settings import TestSettings
+
+Isolation: TypeAlias = Literal["auto", "fork", "spawn", "none"]
+
+DEFAULT_SEED = 0
+
+
+@dataclass(frozen=True)
+class TestOptions:
+    """How a test run was asked for.
+
+    :param seed: what the random generators of Python and numpy start from, in every test
+    :param jobs: how many tests run at the same time
+    :param isolation: what each test that uses the robot runs in
+    :param trace_directory: where to write what the robot did in each test
+    :param hang_seconds: processor seconds without progress after which robot code counts as hanging
+    """
+
+    __test__ = False  # pytest: not a test class, for all its name
+
+    seed: int = DEFAULT_SEED
+    jobs: int = 1
+    isolation: Isolation = "auto"
+    trace_directory: Path | None = None
+    hang_seconds: float = 10.0
+
+    @classmethod
+    def combined(
+        cls,
+        settings: TestSettings,
+        *,
+        seed: int | None = None,
+        jobs: int | Literal["auto"] | None = None,
+        isolation: Isolation | None = None,
+        trace_directory: Path | None = None,
+    ) -> TestOptions:
+        """What the command line says, else what the project's settings say, else the defaults."""
+        jobs = jobs or settings.jobs
+        return cls(
+            seed=DEFAULT_SEED if seed is None else seed,
+            jobs=_usable_processors() if jobs == "auto" else jobs,
+            isolation=isolation or settings.isolation,
+            trace_directory=trace_directory,
+            hang_seconds=settings.hang_seconds,
+        )
+
+
+def _usable_processors() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

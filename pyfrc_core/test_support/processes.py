@@ -1,0 +1,311 @@
+"""The processes that tests run in: forked from this one, or started anew. What differs by platform is here."""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import os
+import pickle
+import re
+import selectors
+import signal
+import subprocess
+import sys
+import tempfile
+import warnings
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from itertools import takewhile
+from pathlib import Path
+from typing import IO, Any
+
+import pytest
+
+from ..runtime.watchdog import EXIT_HANGS
+from .messages import Teller
+from .pytest_plugin import PyFrcPlugin
+
+#: macOS has fork, but its system libraries do not survive it; Windows has none.
+FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
+
+# How long to wait before looking whether a process is gone without a word. Decides nothing else.
+_LOOK_SECONDS = 0.05
+
+_FAULT_LINE = re.compile(r'File "([^"]+)", line (\d+)')
+
+
+class TestProcess(ABC):
+    """One test in its own process."""
+
+    __test__ = False  # pytest: not a test class, for all its name
+
+    def __init__(self, item: pytest.Item, plugin: PyFrcPlugin) -> None:
+        self.item = item
+        self._files = plugin.project.files
+        self._message: bytes = b""
+        #: Where the process leaves word when it ends without a report.
+        self._last_words: IO[bytes] = tempfile.TemporaryFile()
+        #: What it printed, to stdout and stderr, and pytest had not yet collected.
+        self._captured: tuple[IO[bytes], IO[bytes]] = tempfile.TemporaryFile(), tempfile.TemporaryFile()
+        self.finished = False
+        self._status = 0
+
+    @abstractmethod
+    def poll(self) -> None:
+        """Take in what has come, and see whether the process has ended."""
+
+    @abstractmethod
+    def kill(self) -> None:
+        """End the process without waiting for its test."""
+
+    def fileno(self) -> int | None:
+        """What becomes readable when there is something to `poll`, if there is such a thing."""
+        return None
+
+    def output(self) -> bytes:
+        """The messages the process sent."""
+        return self._message
+
+    def captured(self) -> str:
+        """What the process printed since its last report."""
+        text = ""
+        for file in self._captured:
+            file.seek(0)
+            text += file.read().decode(errors="replace")
+        return text.strip()
+
+    def explain_crash(self) -> str:
+        """Why the process ended without finishing its test: the user's line first, where it can be told."""
+        self._last_words.seek(0)
+        words = self._last_words.read().decode(errors="replace").strip()
+        if self._status == EXIT_HANGS and words:
+            return words
+        if self._status < 0:
+            name = _signal_name(-self._status)
+            what = f"the robot's process was ended by signal {-self._status} ({name})"
+        else:
+            what = (
+                f"the robot's process ended itself with exit code {self._status}, in the middle of the test"
+            )
+        line = self._line_of_crash(words)
+        # Below the user's code, the stack is pyfrc's and pytest's: of no interest.
+        words = "\n".join(takewhile(lambda text: "pyfrc_core" not in text, words.splitlines()))
+        return f"{line}: {what}\n\n{words}".strip() if line else f"{what}\n\n{words}".strip()
+
+    def _line_of_crash(self, words: str) -> str | None:
+        for filename, number in _FAULT_LINE.findall(words):
+            if self._files.is_project_file(filename):
+                return f"{self._files.relative(filename)}:{number}"
+        return None
+
+
+def _signal_name(number: int) -> str:
+    try:
+        name = signal.Signals(number).name
+    except ValueError:
+        return "unknown"
+    return f"{name}, segmentation fault" if name == "SIGSEGV" else name
+
+
+@contextlib.contextmanager
+def forking_quietly() -> Iterator[None]:
+    """Python warns of forking where other threads are; the ones here (numpy's) are made for it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        yield
+
+
+def wait_for_any(processes: list[TestProcess]) -> None:
+    """Return when at least one of these has something new, or may have ended."""
+    with selectors.DefaultSelector() as selector:
+        for process in processes:
+            if not process.finished and (number := process.fileno()) is not None:
+                selector.register(number, selectors.EVENT_READ)
+        selector.select(_LOOK_SECONDS)
+    for process in processes:
+        if not process.finished:
+            process.poll()
+
+
+class ForkedTest(TestProcess):
+    """A fork of this process: everything imported is there already."""
+
+    def __init__(self, item: pytest.Item, plugin: PyFrcPlugin) -> None:
+        super().__init__(item, plugin)
+        self._pipe, writing_end = os.pipe()
+        os.set_blocking(self._pipe, False)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        with forking_quietly():
+            self._pid = os.fork()
+        if self._pid == 0:
+            _become_the_test(
+                item,
+                plugin,
+                lambda data: _write_all(writing_end, data),
+                self._last_words.fileno(),
+                (self._captured[0].fileno(), self._captured[1].fileno()),
+            )
+        os.close(writing_end)
+
+    def fileno(self) -> int | None:
+        return self._pipe
+
+    def poll(self) -> None:
+        # Asked before the pipe is read to its end: what an ended process wrote is there by now.
+        ended = self._reap(os.WNOHANG)
+        while True:
+            try:
+                data = os.read(self._pipe, 1 << 20)
+            except BlockingIOError:
+                break
+            if not data:
+                ended = ended or self._reap(0)
+                break
+            self._message += data
+        if ended:
+            self.finished = True
+            os.close(self._pipe)
+
+    def _reap(self, how: int) -> bool:
+        pid, status = os.waitpid(self._pid, how)
+        if pid:
+            self._status = os.waitstatus_to_exitcode(status)
+        return bool(pid)
+
+    def kill(self) -> None:
+        if not self.finished:
+            os.kill(self._pid, signal.SIGKILL)
+            self._reap(0)
+            self.finished = True
+            os.close(self._pipe)
+
+
+class SpawnedTest(TestProcess):
+    """A new interpreter that collects the tests again and runs one of them."""
+
+    def __init__(self, item: pytest.Item, plugin: PyFrcPlugin) -> None:
+        super().__init__(item, plugin)
+        handle, name = tempfile.mkstemp(prefix="pyfrc-test-")
+        os.close(handle)
+        self._file = Path(name)
+        words, words_name = tempfile.mkstemp(prefix="pyfrc-words-")
+        os.close(words)
+        self._words_file = Path(words_name)
+        invocation = item.config.invocation_params
+        job = {
+            "args": [str(argument) for argument in invocation.args],
+            "directory": str(invocation.dir),
+            "nodeid": item.nodeid,
+            "main_file": str(plugin.project.main_file),
+            "class_name": plugin.project.class_name,
+            "options": plugin.options,
+            "output": name,
+            "last_words": words_name,
+            "path": sys.path,
+        }
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "pyfrc_core.test_support.spawned"],
+            stdin=subprocess.PIPE,
+            stdout=self._captured[0],
+            stderr=self._captured[1],
+            cwd=str(invocation.dir),
+        )
+        assert self._process.stdin is not None
+        with self._process.stdin as stdin:
+            stdin.write(pickle.dumps(job))
+
+    def poll(self) -> None:
+        status = self._process.poll()
+        if status is not None:
+            self._status = status
+            self._collect()
+
+    def kill(self) -> None:
+        if not self.finished:
+            self._process.kill()
+            self._process.wait()
+            self._collect()
+
+    def _collect(self) -> None:
+        self._message = self._file.read_bytes()
+        self._last_words.write(self._words_file.read_bytes())
+        self._file.unlink()
+        self._words_file.unlink()
+        self.finished = True
+
+
+# -- on the other side -----------------------------------------------------------------------------------------------
+
+
+def _write_all(descriptor: int, data: bytes) -> None:
+    while data:
+        data = data[os.write(descriptor, data) :]
+
+
+def _become_the_test(
+    item: pytest.Item,
+    plugin: PyFrcPlugin,
+    send: Callable[[bytes], None],
+    last_words: int,
+    captured: tuple[int, int],
+) -> None:
+    """What the forked process does. Never returns."""
+    status = 1
+    try:
+        _capture_anew(item.config, captured)
+        leave_word_on_crash(plugin, last_words)
+        Teller(send).run(item)
+        save_coverage()
+        status = 0
+    except BaseException:
+        import traceback
+
+        _write_all(last_words, traceback.format_exc().encode())
+    finally:
+        _exit(status)
+
+
+_exit = os._exit
+
+
+def leave_word_on_crash(plugin: PyFrcPlugin, descriptor: int) -> None:
+    """Have what ends this process too early say where: a fault in C code, `os._exit`, code that cannot be stopped."""
+    plugin.own_process = True
+    faulthandler.enable(descriptor, all_threads=False)
+    plugin.last_words = lambda text: _write_all(descriptor, text.encode())
+
+    def telling_exit(status: int) -> None:
+        frame = sys._getframe(1)
+        _write_all(
+            descriptor,
+            f'os._exit({status}) was called:\n  File "{frame.f_code.co_filename}", line {frame.f_lineno}'
+            f" in {frame.f_code.co_name}\n".encode(),
+        )
+        save_coverage()
+        _exit(status)
+
+    os._exit = telling_exit  # type: ignore[assignment]
+
+
+def _capture_anew(config: pytest.Config, files: tuple[int, int]) -> None:
+    """Capture output in files that the parent can still read when this process is gone."""
+    capture: Any = config.pluginmanager.getplugin("capturemanager")
+    if capture is None or not capture.is_globally_capturing():
+        return
+    capture.stop_global_capturing()
+    capture.start_global_capturing()
+    streams = capture._global_capturing.out, capture._global_capturing.err
+    for stream, file in zip(streams, files, strict=True):
+        if hasattr(stream, "targetfd"):  # captures the file descriptor, not only sys.stdout
+            os.dup2(file, stream.tmpfile.fileno())
+    capture.suspend_global_capture(in_=False)
+
+
+def save_coverage() -> None:
+    """What was measured in this process is kept, if anything measures."""
+    coverage = sys.modules.get("coverage")
+    current = coverage.Coverage.current() if coverage is not None else None
+    if current is not None:
+        current.stop()
+        current.save()

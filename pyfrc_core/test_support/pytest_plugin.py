@@ -1,0 +1,193 @@
+"""The pytest plugin: fixtures for robot tests, seeds, and failures that name the user's line first."""
+
+from __future__ import annotations
+
+import random
+import re
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from .. import tests as ready_made
+from ..hal import HalData
+from ..project import Project
+from ..runtime.redirect import redirection
+from ..runtime.robot import RobotRun
+from ..runtime.trace import Trace
+from ..runtime.watchdog import Watchdog
+from .controller import TestController
+from .fake_time import FakeTime
+from .options import TestOptions
+from .reporting import headline, put_first
+
+#: The fixtures that have to do with the robot: a test that asks for one runs in a process of its own.
+ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "robot", "wpilib"})
+
+
+class ThreadStillRunningError(Exception):
+    """A thread of the robot went on when its test was over, although it was told to stop."""
+
+
+class PyFrcPlugin:
+    """Pytest plugin. Each documented member function name can be an argument to your test functions, and the data
+    that these functions return will be passed to your test function.
+
+    :param robot_class: your robot class; None to load it from the file when a test first needs it
+    :param robot_file: the file your robot code is started from
+    :param robot_path: the directory that your robot code is located at
+    """
+
+    #: pytest's name for this plugin, by which a second one of its kind is told from it.
+    __name__ = "pyfrc.robot"
+
+    def __init__(
+        self,
+        robot_class: type[Any] | None,
+        robot_file: str | Path,
+        robot_path: str | Path,
+        *,
+        project: Project | None = None,
+        options: TestOptions | None = None,
+        imports_late: bool = False,
+    ) -> None:
+        self.project = project or Project(Path(robot_file).resolve())
+        self.options = options or TestOptions.combined(self.project.settings.test)
+        #: Whether this process serves one test and ends with it, so that there is nobody to tidy up for.
+        self.own_process = False
+        #: Called with the explanation when robot code cannot be stopped otherwise than with its process.
+        self.last_words: Callable[[str], None] | None = None
+        #: Whether each test's own process imports the robot's modules, since they cannot be forked.
+        self.imports_late = imports_late
+        self._robot_class = robot_class
+        self._robot_file = str(Path(robot_file).resolve())
+        self._robot_path = str(Path(robot_path).resolve())
+        redirection.install(self.project.files)
+        if self._robot_path not in sys.path:
+            sys.path.insert(0, self._robot_path)
+
+    def robot_class(self) -> type[Any]:
+        """The robot class, imported when it is first asked for."""
+        if self._robot_class is None:
+            self._robot_class = self.project.load()
+        return self._robot_class
+
+    # -- fixtures ----------------------------------------------------------------------------------------------
+
+    @pytest.fixture
+    def control(self, fake_time: FakeTime, robot: Any) -> TestController:
+        """A fixture that provides control over the robot."""
+        return TestController(fake_time, self.project.settings.match)
+
+    @pytest.fixture
+    def fake_time(self, _robot_run: RobotRun) -> FakeTime:
+        """A fixture that gives you control over the time your robot is using."""
+        return FakeTime(_robot_run)
+
+    @pytest.fixture
+    def hal_data(self, _robot_run: RobotRun) -> HalData:
+        """Provides access to a dict with all the device data about the robot."""
+        return HalData()
+
+    @pytest.fixture
+    def robot(self, _robot_run: RobotRun) -> Any:
+        """Your robot instance. Its `robotInit` runs when the test starts the robot."""
+        __tracebackhide__ = True
+        return _robot_run.construct(self.robot_class())
+
+    @pytest.fixture
+    def robot_file(self) -> str:
+        """The absolute filename your robot code is started from."""
+        return self._robot_file
+
+    @pytest.fixture
+    def robot_path(self) -> str:
+        """The absolute directory that your robot code is located at."""
+        return self._robot_path
+
+    @pytest.fixture
+    def wpilib(self) -> ModuleType:
+        """The `wpilib` module. Provided for backwards compatibility."""
+        import wpilib
+
+        return wpilib
+
+    @pytest.fixture
+    def _robot_run(self, request: pytest.FixtureRequest) -> Iterator[RobotRun]:
+        """One run of the robot: its time, its threads; ended when the test is."""
+        __tracebackhide__ = True
+        self.robot_class()  # the robot's modules are imported before robot time begins
+        run = RobotRun()
+        watchdog = Watchdog(run, self.project.files, self.options.hang_seconds, self.last_words)
+        with watchdog.watching(), ExitStack() as closing:
+            run.open()
+            if not self.own_process:
+                closing.callback(_forget, run)
+            closing.enter_context(self._traced(run, request.node))
+            yield run
+            run.end()
+        if run.still_running:
+            names = ", ".join(f"{thread.name}" for record in run.still_running if (thread := record.thread))
+            raise ThreadStillRunningError(f"still running after the test was over: {names}")
+
+    def _traced(self, run: RobotRun, item: pytest.Item) -> ExitStack:
+        """Record what the robot does, if the user wants that."""
+        closing = ExitStack()
+        if self.options.trace_directory is not None:
+            self.options.trace_directory.mkdir(parents=True, exist_ok=True)
+            name = re.sub(r"[^\w.\[\]-]+", "_", item.nodeid)
+            file = (self.options.trace_directory / f"{name}.jsonl").open("w", encoding="utf-8")
+            closing.enter_context(file)
+            trace = Trace(HalData(), file)
+            run.observe(trace.look)
+            closing.callback(trace.finish)
+        return closing
+
+    # -- hooks ------------------------------------------------------------------------------------------------
+
+    def pytest_pycollect_makemodule(
+        self, module_path: Path, parent: pytest.Collector
+    ) -> pytest.Module | None:
+        """Names the ready-made tests after the module that users import them from, wherever pyfrc is installed."""
+        if module_path.parent != Path(ready_made.__file__).parent:
+            return None
+        return pytest.Module.from_parent(parent, path=module_path, nodeid="pyfrc.tests")
+
+    def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
+        """`test_autonomous(gamedata)` runs once for each message that the field may send."""
+        if "gamedata" in metafunc.fixturenames:
+            metafunc.parametrize("gamedata", self.project.sim_config.messages or [""])
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        random.seed(self.options.seed)
+        numpy = sys.modules.get("numpy")
+        if numpy is not None:
+            numpy.random.seed(self.options.seed % 2**32)
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
+        report = yield
+        if report.failed and call.excinfo is not None:  # type: ignore[attr-defined]
+            text = headline(call.excinfo.value, self.project.files)
+            if text is not None:
+                put_first(report, text)  # type: ignore[arg-type]
+            report.sections.append(
+                ("pyfrc", f"random seed: {self.options.seed} (--seed {self.options.seed} repeats it)")
+            )  # type: ignore[attr-defined]
+        return report
+
+
+def _forget(run: RobotRun) -> None:
+    """End the run and let go of its robot, so that the next robot in this process finds its devices free."""
+    import gc
+
+    run.close()
+    commands2 = sys.modules.get("commands2")
+    if commands2 is not None:
+        commands2.CommandScheduler.resetInstance()
+    gc.collect()

@@ -1,0 +1,100 @@
+"""Run a project's tests: what `pyfrc test` does."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from .. import tests as ready_made
+from ..errors import PyfrcError
+from ..project import Project
+from .isolation import IsolatedTests
+from .options import TestOptions
+from .processes import FORK_IS_SAFE
+from .pytest_plugin import PyFrcPlugin
+from .spare import Spare
+
+
+class NoTestsError(PyfrcError):
+    """The project has no tests."""
+
+
+class _NoUnusedHypothesis:
+    """Spares a run that has not used hypothesis its import, which its plugin does for an empty summary."""
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
+        plugins = session.config.pluginmanager
+        if "hypothesis" not in sys.modules and (unused := plugins.getplugin("hypothesispytest")):
+            plugins.unregister(unused)
+
+
+def run_tests(
+    project: Project,
+    options: TestOptions,
+    *,
+    builtin: bool = False,
+    pytest_args: Sequence[str] = (),
+) -> int:
+    """Run the project's tests, or the ready-made ones, and answer pytest's exit code.
+
+    :param builtin: run the ready-made tests when the project has none
+    :param pytest_args: passed on to pytest as they are
+    :raises NoTestsError: when the project has none, and `builtin` is not wanted
+    :raises RobotCodeError: when the robot's code cannot be imported
+    """
+    args = _arguments(project, builtin, pytest_args)
+
+    def session(imports_late: bool = False) -> int:
+        plugin = PyFrcPlugin(
+            None, project.main_file, project.root, project=project, options=options, imports_late=imports_late
+        )
+        if not imports_late:
+            plugin.robot_class()  # a robot that cannot be imported is told once, not by every test
+            if spare is not None and spare.needed():
+                return spare.take_over()
+        return int(pytest.main(args, plugins=[plugin, IsolatedTests(plugin), _NoUnusedHypothesis()]))
+
+    spare = None
+    if FORK_IS_SAFE and options.isolation in ("auto", "fork"):
+        spare = Spare(partial(session, imports_late=True))
+    try:
+        return session()
+    finally:
+        if spare is not None:
+            spare.dismiss()
+
+
+def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> list[str]:
+    """What to call pytest with."""
+    args = [*pytest_args, f"--rootdir={project.pyproject.parent}", *_configuration(project)]
+    if _names_tests(pytest_args):
+        return args
+    directory = project.find_tests()
+    if directory is not None:
+        return [*args, str(directory)]
+    if builtin:
+        return [*args, "--pyargs", f"{ready_made.__name__}.basic"]
+    looked = " and ".join(str(path) for path in project.test_directories)
+    raise NoTestsError(
+        f"this project has no tests: looked for files named test_*.py or *_test.py in {looked}",
+        remedy="Run the ready-made tests with: pyfrc test --builtin",
+    )
+
+
+def _configuration(project: Project) -> list[str]:
+    """The project's own pytest configuration; pytest would look for it beside the test files, wherever they are."""
+    for name in ("pytest.ini", ".pytest.ini", "pyproject.toml", "tox.ini", "setup.cfg"):
+        file = project.pyproject.with_name(name)
+        if file.is_file():
+            return ["-c", str(file)]
+    return []
+
+
+def _names_tests(args: Sequence[str]) -> bool:
+    """Whether the user has said which files to run."""
+    return any(not arg.startswith("-") and Path(arg.partition("::")[0]).exists() for arg in args)

@@ -1,0 +1,75 @@
+"""A fork of this process, kept from before the robot's modules were imported, in case they cannot be forked.
+
+A robot that makes devices or threads when its module is imported (a motor in a class variable) starts threads in
+WPILib's C++ that a fork would not have, and that the HAL would wait for. Its tests then run from the spare, where each
+test's process imports the robot itself: slower by that import, not by a new interpreter for every test.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Callable
+
+from ..hal import devices_exist
+from ..runtime.cooperative import scope
+from .processes import forking_quietly, save_coverage
+
+
+class Spare:
+    """The process as it is now, to be gone back to.
+
+    :param work: what the spare does when it takes over; answers the exit code
+    """
+
+    def __init__(self, work: Callable[[], int]) -> None:
+        self._over = False
+        self._threads = threading.active_count()
+        reading_end, self._go = os.pipe()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        with forking_quietly():
+            self._pid = os.fork()
+        if self._pid == 0:
+            os.close(self._go)
+            status = 0
+            try:
+                if os.read(reading_end, 1):
+                    status = work()
+            finally:
+                save_coverage()
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(status)
+        os.close(reading_end)
+
+    def needed(self) -> bool:
+        """Whether what was imported since has left something behind that a fork would not survive."""
+        return left_behind(self._threads)
+
+    def dismiss(self) -> None:
+        """It is not needed, or has done its work."""
+        if not self._over:
+            self._over = True
+            os.close(self._go)
+            os.waitpid(self._pid, 0)
+
+    def take_over(self) -> int:
+        """Let the spare do the work instead of this process; answers its exit code."""
+        self._over = True
+        os.write(self._go, b"!")
+        os.close(self._go)
+        while True:
+            try:
+                return os.waitstatus_to_exitcode(os.waitpid(self._pid, 0)[1])
+            except KeyboardInterrupt:
+                continue  # the spare has got it too, and says what it makes of it
+
+
+def left_behind(python_threads: int) -> bool:
+    """Whether this process has threads or devices that a fork of it would lack, and wait for.
+
+    :param python_threads: how many there were when all was well
+    """
+    return bool(scope.waiting_to_begin) or threading.active_count() > python_threads or devices_exist()

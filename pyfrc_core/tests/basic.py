@@ -1,0 +1,44 @@
+"""Tests that run just about any robot through its modes, to find out whether its code crashes.
+
+What they do not do is find out whether the robot does what you want: for that, write tests of your own.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..test_support.controller import TestController
+from ..test_support.fake_time import FakeTime
+
+# How long each mode runs by itself, in seconds.
+_AUTONOMOUS_SECONDS = 15.0
+_OTHER_SECONDS = 5.0
+
+
+def test_autonomous(control: TestController, fake_time: FakeTime, robot: Any, gamedata: str) -> None:
+    """Runs autonomous mode by itself, once for each message that the field may send."""
+    __tracebackhide__ = True
+    control.game_specific_message = gamedata
+    control.set_autonomous(enabled=True)
+    control.run_test(lambda now: now < _AUTONOMOUS_SECONDS)
+
+
+def test_disabled(control: TestController, fake_time: FakeTime, robot: Any) -> None:
+    """Runs disabled mode by itself."""
+    __tracebackhide__ = True
+    control.set_autonomous(enabled=False)
+    control.run_test(lambda now: now < _OTHER_SECONDS)
+
+
+def test_operator_control(control: TestController, fake_time: FakeTime, robot: Any) -> None:
+    """Runs operator control mode by itself."""
+    __tracebackhide__ = True
+    control.set_operator_control(enabled=True)
+    control.run_test(lambda now: now < _OTHER_SECONDS)
+
+
+def test_practice(control: TestController, fake_time: FakeTime, robot: Any) -> None:
+    """Runs through the entire span of a practice match."""
+    __tracebackhide__ = True
+    control.set_practice_match()
+    control.run_test()

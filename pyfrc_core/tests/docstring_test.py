@@ -1,0 +1,70 @@
+"""A test that all of your robot code has docstrings.
+
+Properly using docstrings will make your code more maintainable and look more professional. To use it, add
+``from pyfrc.tests.docstring_test import *`` to a file in your tests directory.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from ..robot_files import RobotFiles
+
+__all__ = ["ignore_object", "test_docstrings"]
+
+
+def ignore_object(o: Any, robot_path: str) -> bool:
+    """Returns true if the object can be ignored: it does not come from the robot's own code.
+
+    :param o: a module, class or function
+    :param robot_path: the directory of the robot's code
+    """
+    try:
+        source = inspect.getsourcefile(inspect.unwrap(o))
+    except (TypeError, ValueError):
+        return True
+    if source is None:
+        return True
+    return not RobotFiles(Path(robot_path).resolve()).is_robot_code(str(Path(source).resolve()))
+
+
+def test_docstrings(robot: Any, robot_path: str) -> None:
+    """The purpose of this test is to ensure that all of your robot code has docstrings."""
+    __tracebackhide__ = True
+    missing = sorted(
+        place
+        for module in list(sys.modules.values())
+        if isinstance(module, ModuleType) and not ignore_object(module, robot_path)
+        for place in _without_docstring(module, robot_path)
+    )
+    assert not missing, "these have no docstring:\n" + "\n".join(missing)
+
+
+def _without_docstring(module: ModuleType, robot_path: str) -> list[str]:
+    found = [] if module.__doc__ else [_place(module, module.__name__, robot_path)]
+    for name, value in vars(module).items():
+        if not (inspect.isclass(value) or inspect.isfunction(value)) or value.__module__ != module.__name__:
+            continue
+        if ignore_object(value, robot_path):
+            continue
+        if not value.__doc__:
+            found.append(_place(value, name, robot_path))
+        if inspect.isclass(value):
+            found += [
+                _place(method, f"{name}.{method_name}", robot_path)
+                for method_name, method in vars(value).items()
+                if inspect.isfunction(method)
+                and not method_name.startswith("_")
+                and not inspect.getdoc(method)
+            ]
+    return found
+
+
+def _place(o: Any, name: str, robot_path: str) -> str:
+    source = Path(inspect.getsourcefile(o) or "?").resolve()
+    line = 1 if inspect.ismodule(o) else inspect.getsourcelines(o)[1]
+    return f"{source.relative_to(Path(robot_path).resolve())}:{line}: {name}"

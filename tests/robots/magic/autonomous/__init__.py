@@ -1,0 +1,1 @@
+"""Autonomous modes: magicbot finds them by looking into this folder."""

@@ -1,0 +1,436 @@
+"""The tree over real WPILib devices. Channels differ from test to test: the HAL's handles are global."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+
+import hal
+import pytest
+import wpilib
+from hal import simulation as hs
+from hypothesis import given
+from hypothesis import strategies as st
+from wpilib import simulation as sim
+
+from pyfrc_core.hal import HalData
+
+
+@pytest.fixture
+def tree() -> Iterator[HalData]:
+    hs.resetDriverStationData()
+    yield HalData()
+    hs.resetDriverStationData()
+
+
+LISTS = {
+    "joysticks": 6, "analog_gyro": 2, "analog_out": 8, "analog_in": 8, "analog_trigger": 8, "pwm": 20,
+    "d0_pwm": 26, "relay": 4, "mxp": 16, "dio": 26, "filter": 3, "encoder": 8, "counter": 8, "solenoid": 8,
+}  # fmt: skip
+FIELDS = {
+    "time": "program_start remaining has_source",
+    "event": "name match_type match_number replay_number game_specific_message",
+    "control": "enabled autonomous test eStop dsAttached fmsAttached has_source",
+    "joysticks[0]": "buttons axes povs name has_source",
+    "accelerometer": "active range x y z has_source",
+    "analog_gyro[0]": "initialized deadband volts_per_degree offset center angle rate",
+    "analog_out[7]": "initialized voltage",
+    "analog_in[0]": "voltage avg_voltage value avg_value accumulator_value accumulator_count lsb_weight "
+    "offset has_source initialized avg_bits oversample_bits accumulator_center accumulator_deadband",
+    "analog_trigger[0]": "initialized port trig_lower trig_upper trig_type trig_state",
+    "compressor": "initialized closed_loop_enabled on pressure_switch current has_source",
+    "pwm[19]": "initialized type raw_value value period_scale zero_latch elim_deadband",
+    "d0_pwm[25]": "duty_cycle pin",
+    "relay[3]": "initialized fwd rev",
+    "mxp[15]": "initialized",
+    "dio[25]": "value initialized is_input pulse_length filter_idx has_source",
+    "filter[2]": "enabled period",
+    "encoder[7]": "count value period direction has_source initialized config max_period reverse_direction "
+    "samples_to_average distance_per_pulse rate min_rate",
+    "counter[7]": "count direction has_source initialized period mode",
+    "solenoid[7]": "initialized value",
+    "power": "vin_voltage vin_current "
+    + " ".join(
+        f"user_{w}_{r}" for w in ("voltage", "current", "active", "faults") for r in ("6v", "5v", "3v3")
+    ),
+}
+
+
+def test_every_documented_list_has_its_length(tree: HalData) -> None:
+    assert {key: len(tree[key]) for key in LISTS} == LISTS
+
+
+@pytest.mark.parametrize("path", FIELDS)
+def test_every_documented_field_is_there_and_can_be_read(tree: HalData, path: str) -> None:
+    place = tree.read(path)
+    assert not set(FIELDS[path].split()) - set(place)
+    assert len(dict(place)) == len(place)
+
+
+def test_other_documented_keys(tree: HalData) -> None:
+    for key in ("robot", "reports", "pcm", "pdp", "CAN", "custom", "ph", "duty_cycle", "addressable_led"):
+        assert key in tree
+        assert tree[key] is not None
+    assert tree["pwm_loop_timing"] == 40
+    assert tree["d0_pwm_rate"] is tree["error_data"] is tree["user_program_state"] is None
+    assert tree["fpga_button"] is False
+    assert tree["event"]["name"] == "sim-event"
+    assert (tree["analog_in"][0]["lsb_weight"], tree["analog_in"][0]["offset"]) == (1, 65535)
+
+
+def test_behaves_as_the_containers_it_replaces(tree: HalData) -> None:
+    sticks = tree["joysticks"]
+    assert len(list(tree["dio"])) == 26
+    assert sticks[-1] is sticks[5]
+    assert sticks[1:3] == [sticks[1], sticks[2]]
+    assert tree.get("nothing") is None
+    assert "pwm" in tree
+    assert "nothing" not in tree
+    assert tree["control"] == {**tree["control"]}
+    assert tree["control"].get("enabled") is False
+    assert tree["filter"] == [{"enabled": False, "period": 0}] * 3
+    assert "value" in repr(tree["pwm"][0])
+    assert "pwm" in repr(tree)
+    tree["control"] = {"enabled": True, "test": True}
+    assert (tree["control"]["enabled"], tree["control"]["test"]) == (True, True)
+    tree.setdefault("custom", {})["My Label"] = 1
+    assert tree["custom"] == {"My Label": 1}
+    kept = tree["custom"]
+    tree["custom"] = {"other": 2}
+    assert kept == {"other": 2}
+    with pytest.raises(KeyError):
+        del tree["pwm"]
+
+
+def test_pwm_shows_what_the_robot_set_and_takes_what_a_test_sets(tree: HalData) -> None:
+    pwm = tree["pwm"][10]
+    assert pwm["initialized"] is False
+    motor = wpilib.PWMSparkMax(10)
+    motor.set(0.5)
+    assert pwm["initialized"] is True
+    assert pwm["value"] == 0.5
+    pwm["value"] = -0.25
+    assert motor.get() == -0.25
+
+
+def test_a_tree_made_after_the_devices_shows_them() -> None:
+    output = wpilib.DigitalOutput(20)
+    output.set(False)
+    dio = HalData()["dio"][20]
+    assert (dio["initialized"], dio["is_input"], dio["value"]) == (True, False, False)
+
+
+def test_inputs_reach_the_robot(tree: HalData) -> None:
+    switch, analog, gyro = wpilib.DigitalInput(11), wpilib.AnalogInput(4), wpilib.AnalogGyro(1)
+    tree["dio"][11]["value"] = 0
+    tree["analog_gyro"][1]["angle"] = 90
+    tree["fpga_button"] = True
+    tree["power"]["vin_voltage"] = 11.5
+    assert switch.get() is False
+    assert gyro.getAngle() == 90.0
+    assert wpilib.RobotController.getUserButton() is True
+    assert wpilib.RobotController.getBatteryVoltage() == 11.5
+    for value in (0, 1, 819, 2048, 4095):
+        tree["analog_in"][4]["value"] = value
+        assert analog.getValue() == tree["analog_in"][4]["value"] == value
+    tree["analog_in"][4]["avg_voltage"] = 2.5
+    assert analog.getVoltage() == 2.5
+    tree["fpga_button"], tree["power"]["vin_voltage"] = False, 12.0
+
+
+@given(st.integers(-(2**31), 2**31 - 1))
+def test_encoder_count(count: int) -> None:
+    encoder, data = wpilib.Encoder(12, 13, False, wpilib.Encoder.EncodingType.k1X), HalData()
+    entry = next(e for e in data["encoder"] if e["config"]["ASource_Channel"] == 12)
+    entry["count"] = count
+    assert encoder.getRaw() == entry["count"] == entry["value"] == count
+
+
+def test_encoder_fields(tree: HalData) -> None:
+    encoder = wpilib.Encoder(14, 15)
+    encoder.setDistancePerPulse(0.5)
+    entry = next(e for e in tree["encoder"] if e["initialized"])
+    assert entry["config"] == {"ASource_Channel": 14, "BSource_Channel": 15}
+    assert entry["distance_per_pulse"] == 0.5
+    entry["value"] = 10.0
+    assert encoder.getDistance() == entry["distance"] == 5.0
+    entry["rate"] = 3
+    assert encoder.getRate() == pytest.approx(3)
+    with pytest.raises(ValueError, match="config"):
+        entry["config"] = {}
+
+
+def test_other_devices_of_the_roborio(tree: HalData) -> None:
+    relay = wpilib.Relay(2)
+    relay.set(wpilib.Relay.Value.kForward)
+    assert dict(tree["relay"][2]) == {"initialized": True, "fwd": True, "rev": False}
+    out = wpilib.AnalogOutput(1)
+    out.setVoltage(3.5)
+    assert dict(tree["analog_out"][1]) == {"initialized": True, "voltage": 3.5}
+    trigger = wpilib.AnalogTrigger(5)
+    trigger.setLimitsVoltage(1, 2)
+    made = next(t for t in tree["analog_trigger"] if t["initialized"])
+    assert (made["trig_lower"], made["trig_upper"]) == (1.0, 2.0)
+    light = wpilib.DigitalOutput(16)
+    light.enablePWM(0.25)
+    assert {"initialized": True, "duty_cycle": 0.25, "pin": 16} in list(tree["d0_pwm"])
+    strip = wpilib.AddressableLED(9)
+    strip.setLength(2)
+    strip.setData([wpilib.AddressableLED.LEDData(1, 2, 3)] * 2)
+    assert tree["addressable_led"][0]["data"] == [[1, 2, 3], [1, 2, 3]]
+    tree["addressable_led"][0]["data"] = [[9, 8, 7]] * 2
+    assert tree["addressable_led"][0]["data"][1] == [9, 8, 7]
+    with pytest.raises(ValueError, match="each 0 to 255"):
+        tree["addressable_led"][0]["data"] = [[256, 0, 0]]
+    duty = wpilib.DutyCycle(wpilib.DigitalInput(17))
+    entry = next(d for d in tree["duty_cycle"] if d["initialized"])
+    entry["output"] = 0.75
+    assert duty.getOutput() == 0.75
+    accelerometer = wpilib.BuiltInAccelerometer()
+    tree["accelerometer"]["x"] = 1.5
+    assert accelerometer.getX() == 1.5
+    assert tree["accelerometer"]["range"] == "8G"
+    wpilib.RobotController.setRadioLEDState(wpilib.RadioLEDState.kOrange)
+    assert tree["roborio"]["radio_led_state"] == "orange"
+    wpilib.RobotController.setRadioLEDState(wpilib.RadioLEDState.kOff)
+
+
+def test_channels_that_the_roborio_lacks_are_kept_values(tree: HalData) -> None:
+    tree["analog_out"][5]["voltage"] = 2.0
+    tree["counter"][0]["count"] = 7
+    assert tree["analog_out"][5] == {"initialized": False, "voltage": 2.0}
+    assert tree["counter"][0]["count"] == 7
+    assert tree["counter"][1]["count"] == 0
+
+
+def test_pneumatics_of_both_makers(tree: HalData) -> None:
+    assert not tree["pcm"]
+    with pytest.raises(KeyError, match="appears when the robot makes it"):
+        tree["pcm"][0]
+    ctre = wpilib.Solenoid(0, wpilib.PneumaticsModuleType.CTREPCM, 2)
+    ctre.set(True)
+    assert list(tree["pcm"]) == [0]
+    assert tree["pcm"][0] is tree["solenoid"]
+    assert [s["value"] for s in tree["solenoid"]] == [False, False, True, *[False] * 5]
+    tree["solenoid"][2]["value"] = False
+    assert ctre.get() is False
+    rev = wpilib.Solenoid(1, wpilib.PneumaticsModuleType.REVPH, 15)
+    rev.set(True)
+    assert list(tree["pcm"]) == [0, 1]
+    assert list(tree["ph"]) == [1]
+    assert tree["pcm"][1] is tree["ph"][1]
+    assert len(tree["ph"][1]) == 16
+    assert tree["pcm"][1][15]["value"] is True
+    tree["ph_compressor"][1]["pressure_switch"] = True
+    assert wpilib.Compressor(1, wpilib.PneumaticsModuleType.REVPH).getPressureSwitchValue() is True
+    assert tree["compressor"] is tree["pcm_compressor"][0]
+    tree["compressor"]["current"] = 4.5
+    assert wpilib.Compressor(0, wpilib.PneumaticsModuleType.CTREPCM).getCurrent() == 4.5
+
+
+def test_power_distribution(tree: HalData) -> None:
+    assert 3 not in tree["pdp"]
+    pdh = wpilib.PowerDistribution(3, wpilib.PowerDistribution.ModuleType.kRev)
+    entry = tree["pdp"][3]
+    entry["current"][5] = 3.5
+    entry["voltage"] = 11
+    assert pdh.getCurrent(5) == 3.5
+    assert pdh.getVoltage() == 11.0
+    assert entry["total_current"] == pdh.getTotalCurrent() == 3.5
+    with pytest.raises(ValueError, match="sum of current"):
+        entry["total_current"] = 1
+    heard: list[object] = []
+    entry.register("current", lambda key, value: heard.append((key, value[2])))
+    entry["current"][2] = 1.0
+    assert heard == [("current", 1.0)]
+
+
+@pytest.mark.parametrize("value", ["blue2", "Blue2", 5, hal.AllianceStationID.kBlue2])
+def test_alliance_station(tree: HalData, value: object) -> None:
+    assert tree["alliance_station"] == "red1"
+    tree["alliance_station"] = value
+    station = tree["alliance_station"]
+    assert station == 5
+    assert station == "blue2"
+    assert station == hal.AllianceStationID.kBlue2
+    assert station != "red1"
+    assert json.dumps(station) == "5"
+    assert str(station) == "blue2"
+    packet()
+    assert wpilib.DriverStation.getAlliance() == wpilib.DriverStation.Alliance.kBlue
+
+
+def packet() -> None:
+    hs.notifyDriverStationNewData()
+    wpilib.DriverStation.refreshData()
+
+
+def test_match(tree: HalData) -> None:
+    tree["event"] = {"name": "Été", "match_type": "elimination", "match_number": 7, "replay_number": 2}
+    tree["event"]["game_specific_message"] = "LRL"
+    tree["time"]["remaining"] = 12.5
+    tree["control"].update(enabled=True, autonomous=True, fmsAttached=True)
+    packet()
+    station = wpilib.DriverStation
+    assert (station.getEventName(), station.getMatchNumber(), station.getReplayNumber()) == ("Été", 7, 2)
+    assert station.getMatchType() == station.MatchType.kElimination
+    assert tree["event"]["match_type"] == "elimination"
+    assert station.getGameSpecificMessage() == tree["event"]["game_specific_message"] == "LRL"
+    assert station.getMatchTime() == 12.5
+    assert station.isAutonomousEnabled()
+    assert station.isFMSAttached()
+    with pytest.raises(ValueError, match="at most 64 bytes"):
+        tree["event"]["game_specific_message"] = "x" * 65
+
+
+@given(st.integers(0, 5), st.integers(0, 11), st.floats(-1, 1, width=32))
+def test_a_joystick_axis_reaches_the_robot_with_the_next_packet(stick: int, axis: int, value: float) -> None:
+    data = HalData()
+    data["joysticks"][stick]["axes"][axis] = value
+    assert data["joysticks"][stick]["axes"][axis] == value
+    packet()
+    assert wpilib.DriverStation.getStickAxis(stick, axis) == value
+
+
+def test_joystick_buttons_and_povs(tree: HalData) -> None:
+    stick = tree["joysticks"][2]
+    assert len(stick["buttons"]) == 13
+    assert stick["povs"] == [-1] * 12
+    stick["buttons"][3] = True
+    stick["povs"][1] = 90
+    assert stick["buttons"][3] is True
+    assert stick["povs"][:3] == [-1, 90, -1]
+    assert (stick["axis_count"], stick["button_count"], stick["pov_count"]) == (0, 3, 2)
+    packet()
+    assert wpilib.DriverStation.getStickButton(2, 3)
+    assert not wpilib.DriverStation.getStickButton(2, 2)
+    assert wpilib.DriverStation.getStickPOV(2, 0) == -1
+    assert wpilib.DriverStation.getStickPOV(2, 1) == 90
+    stick["button_count"] = 32
+    assert len(stick["buttons"]) == 33
+    stick["name"] = "Gamepad"
+    assert stick["name"] == "Gamepad"
+    stick["axes"] = [0.5, -0.5]
+    assert stick["axes"][:3] == [0.5, -0.5, 0.0]
+
+
+def test_joysticks_show_what_wpilib_simulators_set(tree: HalData) -> None:
+    pad = sim.XboxControllerSim(3)
+    pad.setLeftX(0.25)
+    pad.setAButton(True)
+    assert tree["joysticks"][3]["axes"][0] == 0.25
+    assert tree["joysticks"][3]["buttons"][1] is True
+    packet()
+    wpilib.XboxController(3).setRumble(wpilib.XboxController.RumbleType.kLeftRumble, 1.0)
+    assert tree["joysticks"][3]["left_rumble"] == 65535
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "error", "says"),
+    [
+        ("pwm[0].value", "fast", TypeError, r"pwm\[0\].value: expected a number from -1 to 1, not 'fast'"),
+        ("pwm[0].value", 1.5, ValueError, "from -1 to 1"),
+        ("pwm[0].value", float("nan"), ValueError, "from -1 to 1"),
+        ("pwm[0].value", True, TypeError, "a number"),
+        ("encoder[0].count", 2.5, ValueError, "whole number"),
+        ("encoder[0].count", 2**31, ValueError, "whole number from"),
+        ("encoder[0].count", None, TypeError, "whole number"),
+        ("dio[0].value", "off", TypeError, "True or False"),
+        ("dio[0].value", 2, ValueError, "True or False"),
+        ("joysticks[0].axes[1]", 1.01, ValueError, r"joysticks\[0\].axes\[1\]"),
+        ("joysticks[0].axes[-1]", "x", TypeError, r"joysticks\[0\].axes\[11\]"),
+        ("joysticks[0].povs[0]", 361, ValueError, "-1 or an angle from 0 to 360"),
+        ("joysticks[0].axes", [0.0] * 13, ValueError, "13 values are too many for 12"),
+        ("joysticks[0].axes", 1, TypeError, "expected a list"),
+        ("alliance_station", "red4", ValueError, "'red3'"),
+        ("alliance_station", None, TypeError, "one of"),
+        ("event.name", 3, TypeError, "a text"),
+        ("user_program_state", "flying", ValueError, "teleop"),
+        ("control", 3, TypeError, "expected a dict"),
+        ("custom", 3, TypeError, "expected a dict"),
+        ("pwm[0].valu", 1, KeyError, "did you mean 'value'.*zero_latch"),
+        ("pmw[0].value", 1, KeyError, "did you mean 'pwm'.*There is: CAN"),
+        ("pwm[20].value", 1, IndexError, r"pwm\[20\].*the list has 20"),
+        ("pwm.value", 1, ValueError, "pwm is a list"),
+        ("pwm[0].value.x", 1, ValueError, r"pwm\[0\].value is a float"),
+        ("custom.a.b", 1, KeyError, "no 'a' in custom"),
+        ("CAN.Motor.Velocity", 1, KeyError, "no key 'Motor' in CAN"),
+    ],
+)
+def test_wrong_writes_say_what_is_wrong(
+    tree: HalData, path: str, value: object, error: type[Exception], says: str
+) -> None:
+    with pytest.raises(error, match=f"(?s){says}"):
+        tree.write(path, value)
+
+
+def test_numbers_of_other_types_are_taken(tree: HalData) -> None:
+    numpy = pytest.importorskip("numpy")
+    tree["analog_in"][0]["voltage"] = numpy.float32(1.5)
+    tree["encoder"][7]["count"] = numpy.int64(3)
+    tree["encoder"][7]["direction"] = numpy.bool_(True)
+    tree["analog_gyro"][0]["angle"] = float("nan")
+    assert (tree["analog_in"][0]["voltage"], tree["encoder"][7]["count"]) == (1.5, 3)
+    tree["analog_in"][0]["voltage"] = tree["encoder"][7]["count"] = tree["analog_gyro"][0]["angle"] = 0
+
+
+def test_listeners_hear_each_set_once(tree: HalData) -> None:
+    heard: list[tuple[str, object]] = []
+
+    def hear(key: str, value: object) -> None:
+        heard.append((key, value))
+
+    motor, pwm = wpilib.PWMSparkMax(11), tree["pwm"][11]
+    pwm.register("value", hear, notify=True)
+    motor.set(0.5)
+    pwm["value"] = 0.25
+    pwm["value"] = 0.25
+    assert heard == [("value", 0.0), ("value", 0.5), ("value", 0.25), ("value", 0.25)]
+    heard.clear()
+    encoder = tree["encoder"][6]
+    encoder.register("value", hear)
+    encoder.register("count", hear)
+    encoder["count"] = 4
+    assert heard == [("value", 4), ("count", 4)]
+    heard.clear()
+    tree["control"].register("enabled", hear)
+    hs.setDriverStationEnabled(True)
+    tree.register("user_program_state", hear)
+    tree["user_program_state"] = "teleop"
+    tree["joysticks"][0].register("axes", hear)
+    tree["joysticks"][0]["axes"][1] = 0.5
+    assert [key for key, _ in heard] == ["enabled", "user_program_state", "axes"]
+    with pytest.raises(KeyError):
+        pwm.register("speed", hear)
+
+
+def test_what_a_listener_raises_reaches_the_one_who_set(tree: HalData) -> None:
+    def refuse(_key: str, _value: object) -> None:
+        raise RuntimeError("no")
+
+    tree["pwm"][12].register("value", refuse)
+    with pytest.raises(RuntimeError, match="no"):
+        tree["pwm"][12]["value"] = 0.5
+
+
+def test_snapshot_is_plain(tree: HalData) -> None:
+    tree["custom"].update({"a": (1, {2}), "b": object(), "c": float("nan")})
+    copy = tree.snapshot()
+    assert type(copy["alliance_station"]) is int
+    assert copy["custom"]["a"] == [1, [2]]
+    assert copy["custom"]["b"] == "<object>"
+    assert set(copy) == set(tree)
+    assert json.loads(json.dumps(copy, allow_nan=True))["pwm"][3]["value"] == 0.0
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")  # WPILib's threads do not matter to the child
+def test_a_fork_has_a_tree_of_its_own(tree: HalData) -> None:
+    list(tree.leaves())
+    child = os.fork()
+    if child == 0:
+        tree["custom"]["x"] = 1
+        os._exit(0 if dict(tree.leaves())["custom.x"] == 1 else 1)
+    assert os.waitpid(child, 0)[1] == 0
+    assert "custom.x" not in dict(tree.leaves())
