@@ -4,40 +4,27 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Literal
 
 import click
 
 from .project_options import chosen_project, project_options
 
-if TYPE_CHECKING:
-    from typing import Literal
 
-
-class Jobs(click.ParamType):
+def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int | Literal["auto"] | None:
     """A number of processes, or ``auto``."""
-
-    name = "jobs"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> int | Literal["auto"]:
-        if value == "auto":
-            return "auto"
-        try:
-            jobs = int(value)
-        except ValueError:
-            jobs = 0
-        if jobs < 1:
-            self.fail(f"{value!r} is neither a number of processes, 1 or more, nor 'auto'.", param, ctx)
-        return jobs
+    if value is None or value == "auto":
+        return value  # type: ignore[return-value]
+    if not value.isdecimal() or int(value) < 1:
+        raise click.BadParameter(f"{value!r} is neither a number of processes, 1 or more, nor 'auto'.", ctx, param)
+    return int(value)
 
 
 @click.command("test", context_settings={"help_option_names": ["-h", "--help"]})
 @project_options
 @click.option("--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own.")
 @click.option(
-    "-j", "--jobs", type=Jobs(), metavar="N", help="How many tests run at a time. Default: auto, one a core."
+    "-j", "--jobs", callback=_jobs, metavar="N", help="How many tests run at a time. Default: auto, one a core."
 )
 @click.option("--seed", type=click.IntRange(min=0), help="What the random generators start from. Default: 0.")
 @click.option(
@@ -46,9 +33,7 @@ class Jobs(click.ParamType):
     help="What each test that uses the robot runs in: a fork of this process, a new one, or this one.",
 )
 @click.option("--no-isolation", is_flag=True, help="Run all tests in one process: --isolation none.")
-@click.option(
-    "--coverage", is_flag=True, help="Measure which lines of the project the tests run, and report them."
-)
+@click.option("--coverage", is_flag=True, help="Measure which lines of the project the tests run, and report them.")
 @click.option(
     "--coverage-html",
     metavar="DIR",

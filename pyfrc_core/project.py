@@ -128,9 +128,7 @@ class Project:
         if wanted is not None:
             if wanted not in robots:
                 known = ", ".join(sorted(robots)) or "none"
-                raise ProjectError(
-                    f"there is no robot class {wanted!r}", where=where, remedy=f"There is: {known}."
-                )
+                raise ProjectError(f"there is no robot class {wanted!r}", where=where, remedy=f"There is: {known}.")
             return robots[wanted]
         # A class that others here derive from is their base, not a robot of its own.
         bases = {base for robot in robots.values() for base in robot.__mro__[1:]}
@@ -144,8 +142,7 @@ class Project:
             )
         if len(candidates) > 1:
             lines = ", ".join(
-                f"{robot.__name__} ({where}:{_line_of_class(self.main_file, robot.__name__)})"
-                for robot in candidates
+                f"{robot.__name__} ({where}:{_line_of_class(self.main_file, robot.__name__)})" for robot in candidates
             )
             raise ProjectError(
                 f"there are {len(candidates)} robot classes: {lines}",
@@ -165,9 +162,7 @@ def _line_of_class(file: Path, name: str) -> int:
     return 1
 
 
-def find_project(
-    start: Path | None = None, main: Path | None = None, class_name: str | None = None
-) -> Project:
+def find_project(start: Path | None = None, main: Path | None = None, class_name: str | None = None) -> Project:
     """The robot project that a command is about.
 
     :param start: the project's directory, when the user names it; else the current one and those above are searched
@@ -177,9 +172,7 @@ def find_project(
     if main is not None:
         file = (start / main if start is not None and not main.is_absolute() else main).absolute()
         if not file.is_file():
-            raise ProjectError(
-                f"there is no file {main}", remedy="--main names the file with your robot class."
-            )
+            raise ProjectError(f"there is no file {main}", remedy="--main names the file with your robot class.")
         return Project(file.resolve(), class_name)
     if start is not None:
         if not start.is_dir():
@@ -204,9 +197,7 @@ def _project_in(directory: Path, class_name: str | None) -> Project | None:
         if main is not None:
             file = directory / main
             if not file.is_file():
-                raise ProjectError(
-                    f"[tool.pyfrc] names main = {main!r}, but there is no such file", where=directory
-                )
+                raise ProjectError(f"[tool.pyfrc] names main = {main!r}, but there is no such file", where=directory)
             return Project(file.resolve(), class_name)
     return None
 

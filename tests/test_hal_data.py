@@ -51,9 +51,7 @@ FIELDS = {
     "counter[7]": "count direction has_source initialized period mode",
     "solenoid[7]": "initialized value",
     "power": "vin_voltage vin_current "
-    + " ".join(
-        f"user_{w}_{r}" for w in ("voltage", "current", "active", "faults") for r in ("6v", "5v", "3v3")
-    ),
+    + " ".join(f"user_{w}_{r}" for w in ("voltage", "current", "active", "faults") for r in ("6v", "5v", "3v3")),
 }
 
 

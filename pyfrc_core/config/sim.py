@@ -48,9 +48,7 @@ def load_sim_config(root: Path) -> SimConfig:
     try:
         document = json.loads(file.read_text("utf-8-sig"))
     except json.JSONDecodeError as malformed:
-        raise SettingsError(
-            f"not valid JSON: {malformed.msg}", where=f"sim/config.json:{malformed.lineno}"
-        ) from None
+        raise SettingsError(f"not valid JSON: {malformed.msg}", where=f"sim/config.json:{malformed.lineno}") from None
     except UnicodeDecodeError as malformed:
         raise SettingsError(f"not UTF-8 text: {malformed}", where="sim/config.json") from None
     if not isinstance(document, dict):

@@ -93,9 +93,7 @@ class LiveDict(MutableMapping[Any, Any]):
         hint = nearest(str(key), keys)
         if hint.startswith("did you mean"):
             hint += " There is: " + ", ".join(sorted(keys))
-        return UnknownKey(
-            f"there is no key {key!r} in {where}", where=join(self._path, key), remedy=remedy or hint
-        )
+        return UnknownKey(f"there is no key {key!r} in {where}", where=join(self._path, key), remedy=remedy or hint)
 
     def __getitem__(self, key: Any) -> Any:
         try:

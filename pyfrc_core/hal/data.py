@@ -11,7 +11,7 @@ from wpilib import simulation as sim
 from . import devices, driver_station
 from .containers import LiveDict, LiveList, Slot, kept, plain
 from .fields import group
-from .kinds import Kind, UnknownKey, WrongPath, WrongType
+from .kinds import UnknownKey, WrongPath, WrongType
 from .modules import Modules
 from .paths import Segment, format_path, join, parse_path
 from .recording import Recording
@@ -61,9 +61,7 @@ class HalData(LiveDict):
             "event": driver_station.event,
             "joysticks": driver_station.joysticks,
             "robot": lambda: RobotDict(self["CAN"]),
-            "accelerometer": lambda: group(
-                "accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER
-            ),
+            "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER),
             **{kind.name: kind.devices for kind in devices.KINDS},
             "solenoid": lambda: modules.solenoid,
             "pcm": lambda: modules.pcm,
@@ -138,9 +136,7 @@ class HalData(LiveDict):
                 if isinstance(place, (LiveDict, LiveList)):
                     raise
                 where = format_path(segments[:depth])
-                raise UnknownKey(
-                    f"there is no {segment!r} in {where}", where=join(where, segment)
-                ) from problem
+                raise UnknownKey(f"there is no {segment!r} in {where}", where=join(where, segment)) from problem
         return place
 
     @staticmethod

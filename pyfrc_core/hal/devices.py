@@ -243,11 +243,7 @@ KINDS = (
             F("average_size", default=0),
             F("pulse_length_threshold", default=0.0),
             *(F(f"{way}_source_{part}") for way in ("up", "down") for part in ("channel", "trigger")),
-            *(
-                F(f"{way}_{edge}_edge", default=False)
-                for way in ("up", "down")
-                for edge in ("rising", "falling")
-            ),
+            *(F(f"{way}_{edge}_edge", default=False) for way in ("up", "down") for edge in ("rising", "falling")),
         ),
     ),
 )

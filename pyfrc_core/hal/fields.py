@@ -83,9 +83,7 @@ class DeviceKind:
             device = self.make(index) if self.make and index < self.real else None
             slots = {field.name: field.slot(device) for field in self.fields}
             if self.config is not None:
-                slots["config"] = Slot(
-                    partial(self.config, index), None, recorded=False, remedy="the robot sets it"
-                )
+                slots["config"] = Slot(partial(self.config, index), None, recorded=False, remedy="the robot sets it")
             return slots
 
         return LiveDict(path, build)

@@ -66,9 +66,7 @@ def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
 
     def build() -> dict[str, Slot]:
         slots = {field.name: field.slot(module) for field in DISTRIBUTION}
-        currents = ValueList(
-            join(path, "current"), FLOAT, lambda: CHANNELS, module.getCurrent, module.setCurrent
-        )
+        currents = ValueList(join(path, "current"), FLOAT, lambda: CHANNELS, module.getCurrent, module.setCurrent)
         slots["current"] = Slot(lambda: currents, None, watch=watch)
         # As the HAL computes it when the robot asks.
         slots["total_current"] = Slot(

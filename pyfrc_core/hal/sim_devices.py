@@ -149,9 +149,7 @@ _ADIS = {
        (("angle", "gyro_angle"), ("rate", "gyro_rate"), ("accel", "accel"))},
 }  # fmt: skip
 BRIDGES = (
-    Bridge(
-        re.compile(r"Gyro:ADXRS450\[(\d+)\]"), ("adxrs450_spi_{}",), {"angle": "angle_x", "rate": "rate_x"}
-    ),
+    Bridge(re.compile(r"Gyro:ADXRS450\[(\d+)\]"), ("adxrs450_spi_{}",), {"angle": "angle_x", "rate": "rate_x"}),
     Bridge(re.compile(r"Gyro:ADIS16448\[(\d+)\]"), ("adis16448_spi_{}",), _ADIS),
     Bridge(re.compile(r"Gyro:ADIS16470\[(\d+)\]"), ("adis16470_spi_{}",), _ADIS),
     Bridge(re.compile(r"Accel:ADXL345_SPI\[(\d+)\]"), ("adxl345_spi_{}",), _AXES),

@@ -64,13 +64,14 @@ class Clock:
     def every(self, period_us: int, rank: int, action: Action) -> None:
         """Have `action` called each period from now on, first when one period has passed."""
 
+        due = self.now_us + period_us
+
         def again() -> None:
             nonlocal due
             due += period_us
             self.at(due, rank, again)
             action()
 
-        due = self.now_us + period_us
         self.at(due, rank, again)
 
     def run_until(self, target_us: int) -> None:

@@ -27,8 +27,8 @@ from .motor_safety import BORN_SAFE, MotorSafetyWatch
 from .notifier import Notifier
 
 if TYPE_CHECKING:
-    from .robot import RobotRun
     from ..robot_files import RobotFiles
+    from .robot import RobotRun
 
 #: What `time.time()` answers in robot code at robot time 0: noon, Eastern time, of the 2026 season's kickoff.
 KICKOFF = 1_768_064_400

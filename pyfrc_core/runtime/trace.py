@@ -44,9 +44,7 @@ class Trace:
         if not changed and not gone:
             return
         self._before = values
-        line = json.dumps(
-            {"t": round(now, 6), "set": changed} | ({"gone": gone} if gone else {}), sort_keys=True
-        )
+        line = json.dumps({"t": round(now, 6), "set": changed} | ({"gone": gone} if gone else {}), sort_keys=True)
         self._hash.update(line.encode())
         if self._out is not None:
             self._out.write(line + "\n")

@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING
 from .endings import TestFroze
 
 if TYPE_CHECKING:
-    from .robot import RobotRun
     from ..robot_files import RobotFiles
+    from .robot import RobotRun
 
 #: Processor seconds without a microsecond of robot time, after which robot code counts as hanging.
 HANG_SECONDS = 10.0
@@ -121,9 +121,7 @@ class Watchdog:
     def _froze(self) -> type[TestFroze]:
         # Only a class can be raised in another thread, so the message travels in one.
         message = self._message
-        return type(
-            "TestFroze", (TestFroze,), {"__str__": lambda self: message, "__module__": TestFroze.__module__}
-        )
+        return type("TestFroze", (TestFroze,), {"__str__": lambda self: message, "__module__": TestFroze.__module__})
 
     @contextmanager
     def _interruptible(self) -> Iterator[None]:

@@ -83,13 +83,11 @@ class TestController:
 
         def step(now: float) -> None:
             __tracebackhide__ = True
-            # A list, not a generator: each of them is to see every packet.
-            if not all([on_step(now) for on_step in steps]):
+            answers = [on_step(now) for on_step in steps]  # each of them is to see every packet
+            if not all(answers):
                 raise TestEnded
             if not run.alive and run.started:
-                raise RuntimeError(
-                    f"the robot program ended by itself: startCompetition() returned at {now:.2f} s"
-                )
+                raise RuntimeError(f"the robot program ended by itself: startCompetition() returned at {now:.2f} s")
 
         run = self._run
         run.clock.before_packet.insert(0, step)
@@ -117,9 +115,7 @@ class TestController:
                 )
             steps.append(_answering(on_step))
         if not steps:
-            raise RuntimeError(
-                "run_test() needs a function to call on each step, or set_practice_match() before it"
-            )
+            raise RuntimeError("run_test() needs a function to call on each step, or set_practice_match() before it")
         return instance, steps
 
     # -- running, as today ------------------------------------------------------------------------------------
@@ -138,9 +134,7 @@ class TestController:
         finally:
             self._run.end()
 
-    def step_timing(
-        self, *, seconds: float, autonomous: bool, enabled: bool, assert_alive: bool = True
-    ) -> float:
+    def step_timing(self, *, seconds: float, autonomous: bool, enabled: bool, assert_alive: bool = True) -> float:
         """Let the robot run for some time in a mode, driver-station packets delivered.
 
         :param seconds: how long, in robot time

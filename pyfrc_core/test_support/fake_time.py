@@ -45,9 +45,7 @@ class FakeTime:
         :raises RuntimeError: when the robot runs already
         """
         if self.run.started:
-            raise RuntimeError(
-                "the robot is running: its time can only be set back before run_test() or run_robot()"
-            )
+            raise RuntimeError("the robot is running: its time can only be set back before run_test() or run_robot()")
         self.run.clock.initialize()
 
     def reset(self) -> None:

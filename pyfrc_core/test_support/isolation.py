@@ -19,7 +19,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from _pytest.runner import CallInfo, TestReport
 
 from .messages import decode, replay
 from .processes import FORK_IS_SAFE, ForkedTest, SpawnedTest, TestProcess, wait_for_any
@@ -63,7 +62,8 @@ class IsolatedTests:
 
     def _run_all(self, session: pytest.Session) -> None:
         jobs = 1 if session.config.option.usepdb else self._plugin.options.jobs
-        items, waiting = session.items, []
+        items = session.items
+        waiting: list[pytest.Item] = []
         # What is there now stays: a collector that went through it in each fork would copy all its memory.
         gc.collect()
         gc.freeze()
@@ -91,16 +91,14 @@ class IsolatedTests:
             process = self._running[waiting[0]]
             if not process.finished:
                 wait_for_any(list(self._running.values()))
-                if (
-                    not process.finished
-                    and sum(not each.finished for each in self._running.values()) <= down_to
-                ):
+                if not process.finished and sum(not each.finished for each in self._running.values()) <= down_to:
                     return
                 continue
             item = waiting.pop(0)
             self._announce(item)
             del self._running[item]
             _report(item, process)
+            process.close()
             item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
             _stop_if_asked(session)
             if waiting:
@@ -132,11 +130,7 @@ class IsolatedTests:
         return module is not None and any(self._is_robotic(value) for value in vars(module).values())
 
     def _is_robotic(self, value: object) -> bool:
-        name = (
-            getattr(value, "__name__", None)
-            if isinstance(value, type(os))
-            else getattr(value, "__module__", None)
-        )
+        name = getattr(value, "__name__", None) if isinstance(value, type(os)) else getattr(value, "__module__", None)
         if not isinstance(name, str):
             return False
         origin = getattr(sys.modules.get(name), "__file__", None) or ""
@@ -168,8 +162,8 @@ def _report(item: pytest.Item, process: TestProcess) -> None:
             item.ihook.pytest_runtest_logreport(report=_made_up(item, phase, text, process.captured()))
 
 
-def _made_up(item: pytest.Item, phase: Any, failure: str | None, captured: str) -> TestReport:
-    return TestReport(
+def _made_up(item: pytest.Item, phase: Any, failure: str | None, captured: str) -> pytest.TestReport:
+    return pytest.TestReport(
         nodeid=item.nodeid,
         location=item.location,
         keywords=dict.fromkeys(item.keywords, 1),
@@ -198,7 +192,7 @@ def _set_up_shared(session: pytest.Session, item: pytest.Item) -> None:
     with _captured(item), contextlib.suppress(Exception, pytest.fail.Exception, pytest.skip.Exception):
         session._setupstate.teardown_exact(item)
         assert item.parent is not None
-        session._setupstate.setup(item.parent)
+        session._setupstate.setup(item.parent)  # type: ignore[arg-type]
         if "tmp_path_factory" in getattr(item, "fixturenames", ()):
             # One numbered directory for the whole run, not one for each process.
             item._request.getfixturevalue("tmp_path_factory").getbasetemp()  # type: ignore[attr-defined]
@@ -213,7 +207,7 @@ def _tear_down_shared(session: pytest.Session, last: pytest.Item | None) -> None
     """What outlived the last test ends with it; a failure in that is that test's."""
     if last is None:
         return
-    call = CallInfo.from_call(lambda: session._setupstate.teardown_exact(None), when="teardown")
+    call = pytest.CallInfo.from_call(lambda: session._setupstate.teardown_exact(None), when="teardown")
     if call.excinfo is not None:
         report = last.ihook.pytest_runtest_makereport(item=last, call=call)
         last.ihook.pytest_runtest_logreport(report=report)

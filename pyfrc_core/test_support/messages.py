@@ -66,9 +66,7 @@ class Teller:
         from _pytest.runner import runtestprotocol
 
         for report in runtestprotocol(item, log=False, nextitem=nextitem):
-            self.tell(
-                "report", item.config.hook.pytest_report_to_serializable(config=item.config, report=report)
-            )
+            self.tell("report", item.config.hook.pytest_report_to_serializable(config=item.config, report=report))
         return True
 
     def pytest_warning_recorded(

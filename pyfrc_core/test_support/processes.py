@@ -44,9 +44,9 @@ class TestProcess(ABC):
         self._files = plugin.project.files
         self._message: bytes = b""
         #: Where the process leaves word when it ends without a report.
-        self._last_words: IO[bytes] = tempfile.TemporaryFile()
+        self._last_words: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
         #: What it printed, to stdout and stderr, and pytest had not yet collected.
-        self._captured: tuple[IO[bytes], IO[bytes]] = tempfile.TemporaryFile(), tempfile.TemporaryFile()
+        self._captured: tuple[IO[bytes], ...] = tuple(tempfile.TemporaryFile() for _ in ("stdout", "stderr"))
         self.finished = False
         self._status = 0
 
@@ -57,6 +57,11 @@ class TestProcess(ABC):
     @abstractmethod
     def kill(self) -> None:
         """End the process without waiting for its test."""
+
+    def close(self) -> None:
+        """Let go of what the process has left, once it is reported."""
+        for file in (self._last_words, *self._captured):
+            file.close()
 
     def fileno(self) -> int | None:
         """What becomes readable when there is something to `poll`, if there is such a thing."""
@@ -84,9 +89,7 @@ class TestProcess(ABC):
             name = _signal_name(-self._status)
             what = f"the robot's process was ended by signal {-self._status} ({name})"
         else:
-            what = (
-                f"the robot's process ended itself with exit code {self._status}, in the middle of the test"
-            )
+            what = f"the robot's process ended itself with exit code {self._status}, in the middle of the test"
         line = self._line_of_crash(words)
         # Below the user's code, the stack is pyfrc's and pytest's: of no interest.
         words = "\n".join(takewhile(lambda text: "pyfrc_core" not in text, words.splitlines()))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from types import ModuleType
@@ -149,9 +149,7 @@ class PyFrcPlugin:
 
     # -- hooks ------------------------------------------------------------------------------------------------
 
-    def pytest_pycollect_makemodule(
-        self, module_path: Path, parent: pytest.Collector
-    ) -> pytest.Module | None:
+    def pytest_pycollect_makemodule(self, module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
         """Names the ready-made tests after the module that users import them from, wherever pyfrc is installed."""
         if module_path.parent != Path(ready_made.__file__).parent:
             return None
@@ -170,15 +168,16 @@ class PyFrcPlugin:
             numpy.random.seed(self.options.seed % 2**32)
 
     @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Iterator[None]:
+    def pytest_runtest_makereport(
+        self, item: pytest.Item, call: pytest.CallInfo[None]
+    ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         report = yield
-        if report.failed and call.excinfo is not None:  # type: ignore[attr-defined]
+        if report.failed and call.excinfo is not None:
             text = headline(call.excinfo.value, self.project.files)
             if text is not None:
-                put_first(report, text)  # type: ignore[arg-type]
-            report.sections.append(
-                ("pyfrc", f"random seed: {self.options.seed} (--seed {self.options.seed} repeats it)")
-            )  # type: ignore[attr-defined]
+                put_first(report, text)
+            seed = self.options.seed
+            report.sections.append(("pyfrc", f"random seed: {seed} (--seed {seed} repeats it)"))
         return report
 
 

@@ -57,9 +57,7 @@ def _without_docstring(module: ModuleType, robot_path: str) -> list[str]:
             found += [
                 _place(method, f"{name}.{method_name}", robot_path)
                 for method_name, method in vars(value).items()
-                if inspect.isfunction(method)
-                and not method_name.startswith("_")
-                and not inspect.getdoc(method)
+                if inspect.isfunction(method) and not method_name.startswith("_") and not inspect.getdoc(method)
             ]
     return found
 
