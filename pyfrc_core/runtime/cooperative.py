@@ -95,12 +95,12 @@ class CooperativeLock:
 
 def new_lock() -> CooperativeLock | _thread.LockType:
     """`threading.Lock`. A library's own locks stay real: the threads it shares them with know no robot time."""
-    return CooperativeLock() if _on_behalf_of_robot_code(sys._getframe(1)) else real_allocate_lock()
+    return CooperativeLock() if on_behalf_of_robot_code(sys._getframe(1)) else real_allocate_lock()
 
 
 def start_thread(thread: threading.Thread) -> None:
     """`Thread.start`: a thread that robot code starts gets its turns from the clock; a library's own does not."""
-    if _on_behalf_of_robot_code(sys._getframe(1)):
+    if on_behalf_of_robot_code(sys._getframe(1)):
         start_in_robot_time(thread)
     else:
         _start_really(thread)
@@ -116,7 +116,7 @@ def start_in_robot_time(thread: threading.Thread) -> None:
         _begin(scope.threads, thread, thread.run)
 
 
-def _on_behalf_of_robot_code(caller: FrameType | None) -> bool:
+def on_behalf_of_robot_code(caller: FrameType | None) -> bool:
     """Whether robot code called, be it through the standard library (an event, a timer, a pool of threads)."""
     while caller is not None and caller.f_code.co_filename.startswith(_BETWEEN):
         caller = caller.f_back

@@ -42,7 +42,6 @@ class Redirection:
     def __init__(self) -> None:
         self.run: RobotRun | None = None
         self.motor_safety = MotorSafetyWatch()
-        self._files: RobotFiles | None = None
         self._originals: list[tuple[Any, str, Any]] = []
 
     @property
@@ -51,7 +50,6 @@ class Redirection:
 
     def install(self, files: RobotFiles) -> None:
         """Replace the names, for the robot project with these files. Doing it again only changes the project."""
-        self._files = files
         cooperative.scope.is_robot_code = files.is_robot_code
         if self.installed:
             return
@@ -92,8 +90,7 @@ class Redirection:
 
     def _time_functions(self) -> list[tuple[Any, str, Any]]:
         def asked_by_robot_code() -> bool:
-            files = self._files
-            return files is not None and files.is_robot_code(sys._getframe(2).f_code.co_filename)
+            return cooperative.on_behalf_of_robot_code(sys._getframe(2))
 
         def reading(name: str, from_us: Callable[[int], float]) -> tuple[Any, str, Any]:
             real = getattr(time, name)

@@ -52,6 +52,10 @@ class RobotThread:
         self.go = _taken_lock()  # released when it is its turn
         self.done = _taken_lock()  # released when it hands the turn back
 
+    @property
+    def left_alone(self) -> bool:
+        return self.detached and self.thread is not None and self.thread.daemon
+
 
 def _taken_lock() -> _thread.LockType:
     lock = _allocate_lock()
@@ -242,7 +246,10 @@ class RobotThreads:
     # -- the end ------------------------------------------------------------------------------------------------
 
     def end(self) -> list[RobotThread]:
-        """Raise `TestEnded` in whatever each thread waits for; answers the threads that did not stop."""
+        """Raise `TestEnded` in whatever each thread waits for; answers the threads that did not stop.
+
+        A daemon thread that waits for the world outside does no harm where it is, and is not one of them.
+        """
         self.ending = True
         for record in list(self._all):
             if record.detached and record.done.acquire(blocking=False):
@@ -253,4 +260,4 @@ class RobotThreads:
                     break
                 with contextlib.suppress(Exception):  # what a thread says while it is being stopped
                     self._give_turn(record)
-        return [record for record in self._all if not record.finished]
+        return [record for record in self._all if not (record.finished or record.left_alone)]

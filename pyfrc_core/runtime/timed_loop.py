@@ -55,8 +55,8 @@ class TimedLoop:
         period_us = to_us(period)
         if period_us <= 0:
             raise ValueError(f"addPeriodic: the period must be longer than 0 s, not {period!r}")
-        start = self._created_us + to_us(offset)
-        first = start + (self._clock.now_us - start) // period_us * period_us + period_us
+        periods_gone = (self._clock.now_us - self._created_us) // period_us
+        first = self._created_us + to_us(offset) + (periods_gone + 1) * period_us
         callback = Periodic(call, first, period_us)
         self._callbacks.append(callback)
         if self._in_place:

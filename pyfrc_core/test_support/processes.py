@@ -46,7 +46,9 @@ class TestProcess(ABC):
         #: Where the process leaves word when it ends without a report.
         self._last_words: IO[bytes] = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `close`
         #: What it printed, to stdout and stderr, and pytest had not yet collected.
-        self._captured: tuple[IO[bytes], ...] = tuple(tempfile.TemporaryFile() for _ in ("stdout", "stderr"))
+        self._captured: list[IO[bytes]] = []
+        for _ in ("stdout", "stderr"):
+            self._captured.append(tempfile.TemporaryFile())  # noqa: SIM115 - closed likewise
         self.finished = False
         self._status = 0
 

@@ -1,0 +1,148 @@
+"""Robot projects made for one test, and the `pyfrc` command run in them as a user would."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+# What would make a run here differ from the user's: the outer pytest's settings, measurements, colours.
+_NOT_PASSED_ON = ("COVERAGE_", "PYTEST_", "COV_CORE_")
+_NOT_PASSED_ON_EITHER = {
+    "PYTHONHASHSEED",
+    "PYTHONPATH",
+    "FORCE_COLOR",
+    "PY_COLORS",
+    "CLICOLOR_FORCE",
+    "CI",
+    "BUILD_NUMBER",
+}
+
+_BANNER = re.compile(r"^=+ .+ =+$")
+_BLOCK = re.compile(r"^_{2,} (.+?) _{2,}$")
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a command did: its exit code, and what it printed."""
+
+    code: int
+    stdout: str
+    stderr: str
+
+    @property
+    def output(self) -> str:
+        """Everything printed: what went to standard output, then the errors."""
+        return self.stdout + self.stderr
+
+    @property
+    def first_error(self) -> str:
+        """The first line of the error that a command ended with."""
+        return self.stderr.partition("\n")[0].removeprefix("error: ")
+
+    def blocks(self) -> dict[str, str]:
+        """What pytest shows of each failure and error, by the test's name."""
+        found: dict[str, list[str]] = {}
+        block: list[str] = []
+        for line in self.stdout.splitlines():
+            if (heading := _BLOCK.match(line)) is not None:
+                block = found.setdefault(heading[1], [])
+            elif _BANNER.match(line):
+                block = []
+            else:
+                block.append(line)
+        return {name: "\n".join(lines).strip() for name, lines in found.items()}
+
+    def outcomes(self) -> dict[str, str]:
+        """Of a run with ``-v``: each test's outcome, in the order in which they were reported."""
+        lines = re.findall(r"^(\S+::.+?) (PASSED|FAILED|ERROR|SKIPPED|XFAIL|XPASS)\b", self.stdout, re.MULTILINE)
+        return dict(lines)
+
+
+@dataclass(frozen=True)
+class RobotProject:
+    """A robot project in a directory of its own."""
+
+    path: Path
+    #: Where the runs' temporary files go; empty again when they have tidied up.
+    temporary: Path
+
+    def write(self, files: Mapping[str, str]) -> None:
+        """Write the files, named relative to the project, their text without its common indentation."""
+        for name, text in files.items():
+            file = self.path / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(dedent(text).lstrip("\n"), encoding="utf-8")
+
+    def line(self, name: str, text: str) -> int:
+        """The number of the one line of a file with `text` in it."""
+        lines = (self.path / name).read_text(encoding="utf-8").splitlines()
+        numbers = [number for number, line in enumerate(lines, 1) if text in line]
+        assert len(numbers) == 1, f"{text!r} is in the lines {numbers} of {name}"
+        return numbers[0]
+
+    def place(self, name: str, text: str) -> str:
+        """``robot.py:12``, for the one line of a file with `text` in it."""
+        return f"{name}:{self.line(name, text)}"
+
+    def run(
+        self,
+        *args: str | Path,
+        env: Mapping[str, str] | None = None,
+        cwd: Path | None = None,
+        stdin: str | None = None,
+        program: str = "pyfrc",
+    ) -> Result:
+        """Run ``pyfrc`` with these arguments, as a user would in the project's directory, and wait for its end."""
+        environment = {
+            name: value
+            for name, value in os.environ.items()
+            if name not in _NOT_PASSED_ON_EITHER and not name.startswith(_NOT_PASSED_ON)
+        }
+        environment |= {"COLUMNS": "120", "TMPDIR": str(self.temporary), "TEMP": str(self.temporary)}
+        done = subprocess.run(
+            [sys.executable, "-m", program, *map(str, args)],
+            cwd=cwd or self.path,
+            env=environment | dict(env or {}),
+            stdin=subprocess.DEVNULL if stdin is None else None,
+            input=stdin,
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            check=False,
+        )
+        return Result(done.returncode, done.stdout, done.stderr)
+
+    def pytest(self, *args: str | Path, cwd: Path | None = None, env: Mapping[str, str] | None = None) -> Result:
+        """Run plain ``pytest``, as an editor does."""
+        return self.run(*args, cwd=cwd, env=env, program="pytest")
+
+
+MakeProject = Callable[[Mapping[str, str]], RobotProject]
+
+
+def _new_project(directory: Path, files: Mapping[str, str]) -> RobotProject:
+    project = RobotProject(directory / "robot-project", directory / "temporary")
+    project.path.mkdir()
+    project.temporary.mkdir()
+    project.write(files)
+    return project
+
+
+@pytest.fixture
+def make_project(tmp_path: Path) -> MakeProject:
+    """Makes a robot project of files; for one test."""
+    return lambda files: _new_project(tmp_path, files)
+
+
+@pytest.fixture(scope="session")
+def make_shared_project(tmp_path_factory: pytest.TempPathFactory) -> MakeProject:
+    """Makes a robot project of files, for fixtures that several tests share: each process that is spared counts."""
+    return lambda files: _new_project(tmp_path_factory.mktemp("shared"), files)

@@ -1,0 +1,111 @@
+"""The same robot, inputs and seed do the same, bit for bit: however often, in whichever interpreter, however busy."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+ROBOTS = Path(__file__).parent / "robots"
+NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
+
+#: Five interpreters started anew, each testing the robot four times, make 20.
+SESSIONS, TESTED_IN_EACH = 5, 4
+
+#: The ready-made tests, with a match that is shorter than the real one, for the sake of the suite's time.
+SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 5\nteleop = 15\n"
+
+#: Where another run of this test, by another version of Python, left its hashes to compare with.
+HASHES_OF_OTHERS = "PYFRC_TRACE_HASHES"
+
+
+def pyfrc_test(project: Path, *args: str) -> str:
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST_", "COVERAGE_"))}
+    environment.pop("PYTHONHASHSEED", None)  # pyfrc is to see to that itself
+    done = subprocess.run(
+        [sys.executable, "-m", "pyfrc", "test", *args],
+        cwd=project,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture
+def project(name: str, tmp_path: Path) -> Path:
+    """A copy of the sample robot, since running a robot leaves files in its project."""
+    return Path(
+        shutil.copytree(ROBOTS / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", ".pytest_cache"))
+    )
+
+
+@contextmanager
+def busy_processes(count: int) -> Iterator[None]:
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+
+
+def hashes(directory: Path) -> Iterator[tuple[str, str]]:
+    """(test, hash of its trace) for each trace in the directory."""
+    for trace in sorted(directory.iterdir()):
+        test = trace.stem.partition("_test.py_")[2]
+        last = json.loads(trace.read_text("utf-8").splitlines()[-1])
+        yield test, last["sha256"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_sample_robot_passes_the_ready_made_tests_and_its_own(project: Path) -> None:
+    output = pyfrc_test(project, "--", "-v")
+    assert "pyfrc_test.py::test_practice PASSED" in output
+    assert "failed" not in output
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_tested_twenty_times_it_does_the_same(name: str, project: Path, tmp_path: Path) -> None:
+    shutil.rmtree(project / "tests")
+    (project / "tests").mkdir()
+    for number in range(TESTED_IN_EACH):
+        (project / "tests" / f"run{number}_test.py").write_text("from pyfrc.tests import *\n")
+    with (project / "pyproject.toml").open("a") as pyproject:
+        pyproject.write(SETTINGS)
+
+    seen: dict[str, set[str]] = defaultdict(set)
+    tested = 0
+    for session in range(SESSIONS):
+        with busy_processes(8 if session == 0 else 0):
+            pyfrc_test(project, "--trace", str(tmp_path / f"traces{session}"))
+        for test, digest in hashes(tmp_path / f"traces{session}"):
+            seen[test].add(digest)
+            tested += test == "test_practice"
+
+    assert tested == SESSIONS * TESTED_IN_EACH
+    assert {test: len(digests) for test, digests in seen.items()} == dict.fromkeys(seen, 1)
+    compare_with_other_interpreters(name, {test: digest for test, (digest,) in seen.items()})
+
+
+def compare_with_other_interpreters(name: str, found: dict[str, str]) -> None:
+    """The first interpreter leaves its hashes, the others must have the same."""
+    directory = os.environ.get(HASHES_OF_OTHERS)
+    if directory is None:
+        return
+    file = Path(directory) / f"{name}.json"
+    if file.exists():
+        assert found == json.loads(file.read_text())
+    else:
+        file.write_text(json.dumps(found, indent=2))

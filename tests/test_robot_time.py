@@ -1,0 +1,643 @@
+"""Robot time, as tests and robot code see it: one clock for packets, loops, threads, notifiers and whatever waits.
+
+Each project here is run once; its tests are the assertions.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+ROBOT = """
+    import concurrent.futures, queue, threading, time
+    import hal, wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def __init__(self):
+            super().__init__()
+            self.log = []
+            self.each_loop = lambda: None
+            self.addPeriodic(lambda: self.fast.append(self.now()), 0.005, 0.002)
+            self.fast = []
+
+        def robotInit(self):
+            self.log.append(("init", self.now()))
+
+        def now(self):
+            return round(wpilib.Timer.getFPGATimestamp(), 6)
+
+        def robotPeriodic(self):
+            self.each_loop()
+"""
+
+
+def passes(make_project, tests: str, robot: str = ROBOT, **files: str) -> None:
+    project = make_project({"robot.py": robot, "tests/test_it.py": tests, **files})
+    result = project.run("test", "--", "-q")
+    assert result.code == 0, result.output
+
+
+def test_fake_time(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import pytest
+        from pyfrc.test_support.fake_time import TestRanTooLong
+
+        def test_starts_at_zero_and_moves_when_told(fake_time):
+            assert fake_time.get() == 0
+            fake_time.increment_time_by(1.5)
+            assert fake_time.get() == 1.5
+
+        def test_packets_come_every_20_ms(fake_time):
+            fake_time.increment_time_by(0.03)
+            fake_time.increment_new_packet()
+            assert fake_time.get() == 0.04
+            fake_time.increment_new_packet()
+            assert fake_time.get() == 0.06
+
+        def test_limit(fake_time):
+            fake_time.set_time_limit(10)
+            fake_time.increment_time_by(10)
+            with pytest.raises(TestRanTooLong):
+                fake_time.increment_time_by(0.001)
+            assert fake_time.get() == 10
+
+        def test_default_limit_is_500_seconds(fake_time):
+            fake_time.increment_time_by(500)
+            with pytest.raises(TestRanTooLong):
+                fake_time.increment_new_packet()
+
+        def test_reset(fake_time):
+            fake_time.set_time_limit(1)
+            fake_time.increment_time_by(1)
+            fake_time.reset()
+            assert fake_time.get() == 0
+            fake_time.increment_time_by(400)
+
+        def test_time_cannot_go_back(fake_time, control, robot):
+            with pytest.raises(ValueError, match="back"):
+                fake_time.increment_time_by(-1)
+            with control.run_robot():
+                with pytest.raises(RuntimeError, match="running"):
+                    fake_time.reset()
+
+        def test_moves_the_robot(fake_time, control, robot):
+            with control.run_robot():
+                fake_time.increment_time_by(1)
+                assert len(robot.fast) == 199
+        """,
+    )
+
+
+def test_loops_and_callbacks_keep_their_rates(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_offsets(control, robot):
+            loops = []
+            robot.each_loop = lambda: loops.append(robot.now())
+            control.run_test(lambda tm: tm < 0.1)
+            assert robot.log == [("init", 0.0)]
+            assert loops == [0.02, 0.04, 0.06, 0.08]
+            assert robot.fast[:4] == [0.007, 0.012, 0.017, 0.022]
+
+        def test_added_later(control, robot):
+            calls = []
+            with control.run_robot():
+                control.step_timing(seconds=0.05, autonomous=False, enabled=True)
+                robot.addPeriodic(lambda: calls.append(robot.now()), 0.01)
+                control.step_timing(seconds=0.03, autonomous=False, enabled=True)
+            assert calls == [0.06, 0.07, 0.08]
+
+        def test_an_overrun_skips_the_loops_it_missed(control, robot):
+            import wpilib
+            loops = []
+            def slow():
+                loops.append(robot.now())
+                if len(loops) == 1:
+                    wpilib.wait(0.05)
+            robot.each_loop = slow
+            control.run_test(lambda tm: tm < 0.14)
+            assert loops == [0.02, 0.07, 0.08, 0.1, 0.12]
+
+        def test_wpilibs_own_stepping_moves_the_robot(control, robot):
+            from wpilib.simulation import DriverStationSim, stepTiming
+            loops = []
+            robot.each_loop = lambda: loops.append(robot.isEnabled())
+            with control.run_robot():
+                DriverStationSim.setEnabled(True)
+                DriverStationSim.notifyNewData()
+                stepTiming(0.1)
+            assert loops == [True] * 5
+
+        def test_loop_start_time(control, robot):
+            starts = []
+            robot.each_loop = lambda: starts.append(robot.getLoopStartTime())
+            control.run_test(lambda tm: tm < 0.06)
+            assert starts == [20000, 40000]
+        """,
+    )
+
+
+def test_waiting_in_the_loop_lets_everything_else_go_on(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import pytest
+
+        def test_steps_are_called_while_the_robot_sleeps(control, robot):
+            import robot as module
+            steps = []
+            woke = []
+            def nap():
+                if not woke:
+                    module.time.sleep(0)
+                    module.wpilib.wait(0.2)
+                    woke.append(robot.now())
+            robot.each_loop = nap
+            def step(tm):
+                steps.append(tm)
+                return tm < 0.3
+            control.run_test(step)
+            assert woke == [0.22]
+            assert steps == [pytest.approx(0.02 * n) for n in range(1, 16)]
+
+        def test_an_assertion_meanwhile_is_not_for_the_robot_to_swallow(control, robot):
+            def careless():
+                try:
+                    wait(1)
+                except Exception:
+                    robot.log.append("swallowed")
+            from wpilib import wait
+            robot.each_loop = careless
+            def step(tm):
+                assert tm < 0.5, "seen"
+                return True
+            with pytest.raises(AssertionError, match="seen"):
+                control.run_test(step)
+            assert "swallowed" not in robot.log
+        """,
+    )
+
+
+def test_python_time_is_robot_time_in_robot_code_only(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import time
+        import helper
+
+        def test_readings(control, robot):
+            seen = []
+            robot.each_loop = lambda: seen.append(helper.readings())
+            before = time.monotonic()
+            control.run_test(lambda tm: tm < 100)
+            assert time.monotonic() - before < 50, "a test's own clock is the real one"
+            first, last = seen[0], seen[-1]
+            for name in first:
+                assert abs(last[name] - first[name] - 99.96) < 1e-3, name
+            assert first["monotonic"] == 0.02
+            assert helper.Holder().clock() >= 0, "a function of time kept in a class is not bound"
+
+        def test_sleep(control, robot, fake_time):
+            slept = []
+            def nap():
+                if not slept:
+                    slept.append(helper.nap(3600))
+            robot.each_loop = nap
+            fake_time.set_time_limit(1e7)
+            control.run_test(lambda tm: not slept)
+            assert slept == [3600.0]
+        """,
+        **{
+            "helper.py": """
+            import time
+            from time import sleep
+
+            class Holder:
+                clock = time.monotonic
+
+            def readings():
+                return {
+                    "time": time.time(), "time_ns": time.time_ns() / 1e9, "monotonic": time.monotonic(),
+                    "monotonic_ns": time.monotonic_ns() / 1e9, "perf_counter": time.perf_counter(),
+                    "perf_counter_ns": time.perf_counter_ns() / 1e9,
+                }
+
+            def nap(seconds):
+                before = time.monotonic()
+                sleep(seconds)
+                return time.monotonic() - before
+            """
+        },
+    )
+
+
+THREADS = """
+    import concurrent.futures, queue, threading, time
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.log = []
+            self.lock = threading.Lock()
+            self.queue = queue.Queue()
+            self.event = threading.Event()
+            self.pool = concurrent.futures.ThreadPoolExecutor(2)
+            for work in (self.holder, self.consumer, self.waiter):
+                threading.Thread(target=work, daemon=True).start()
+            threading.Timer(0.75, lambda: self.say("timer")).start()
+
+        def say(self, what):
+            self.log.append((what, round(time.monotonic(), 3)))
+
+        def holder(self):
+            time.sleep(0.1)
+            with self.lock:
+                time.sleep(0.2)
+            self.say("released")
+
+        def consumer(self):
+            while True:
+                try:
+                    self.say(self.queue.get(timeout=0.5))
+                except queue.Empty:
+                    self.say("nothing came")
+
+        def waiter(self):
+            self.event.wait()
+            self.say("event")
+            helper = threading.Thread(target=time.sleep, args=(0.1,))
+            helper.start()
+            helper.join(0.04)
+            self.say("still there" if helper.is_alive() else "gone")
+            helper.join()
+            self.say("gone" if not helper.is_alive() else "still there")
+
+        def once(self, at, do):
+            if round(wpilib.Timer.getFPGATimestamp(), 3) == at:
+                do()
+
+        def robotPeriodic(self):
+            self.once(0.2, self.take)
+            self.once(0.4, lambda: self.queue.put("message"))
+            self.once(0.6, self.event.set)
+            self.once(1.0, lambda: self.say(("pool", self.pool.submit(self.work, 0.25).result())))
+
+        def take(self):
+            with self.lock:
+                self.say("loop has the lock")
+
+        def work(self, seconds):
+            time.sleep(seconds)
+            return "worked"
+"""
+
+
+def test_threads_locks_queues_events_timers_and_pools_keep_robot_time(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import threading
+
+        def test_all_of_it(control, robot):
+            control.run_test(lambda tm: tm < 1.4)
+            assert sorted(robot.log[:2]) == [("loop has the lock", 0.3), ("released", 0.3)]
+            assert robot.log[2:9] == [
+                ("message", 0.4),
+                ("event", 0.6),
+                ("still there", 0.64),
+                ("gone", 0.7),
+                ("timer", 0.75),
+                ("nothing came", 0.9),
+                (("pool", "worked"), 1.25),
+            ]
+        """,
+        THREADS,
+    )
+
+
+def test_notifiers(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_single_periodic_stop_and_dropped(control, robot):
+            control.run_test(lambda tm: tm < 0.5)
+            assert robot.calls["periodic"] == [0.05, 0.1, 0.15, 0.2]
+            assert robot.calls["single"] == [0.033]
+            assert robot.calls["slow"] == [0.1, 0.2, 0.3, 0.4]
+            assert robot.calls["dropped"] == []
+            assert robot.calls["hal"] == [0.07, 0.14]
+        """,
+        """
+        import threading
+        import hal, wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.calls = {name: [] for name in ("periodic", "single", "slow", "dropped", "hal")}
+                self.periodic = wpilib.Notifier(lambda: self.call("periodic"))
+                self.periodic.startPeriodic(0.05)
+                self.single = wpilib.Notifier(lambda: self.call("single"))
+                self.single.setName("single")
+                self.single.startSingle(0.033)
+                self.slow = wpilib.Notifier(self.sleepy)
+                self.slow.startPeriodic(0.1)
+                wpilib.Notifier(lambda: self.call("dropped")).startPeriodic(0.01)
+                threading.Thread(target=self.alarm, daemon=True).start()
+
+            def call(self, name):
+                self.calls[name].append(round(wpilib.Timer.getFPGATimestamp(), 6))
+
+            def sleepy(self):
+                self.call("slow")
+                wpilib.wait(0.03)
+
+            def alarm(self):
+                handle, _ = hal.initializeNotifier()
+                for time in (70000, 140000):
+                    hal.updateNotifierAlarm(handle, time)
+                    if hal.waitForNotifierAlarm(handle)[0]:
+                        self.call("hal")
+                hal.cleanNotifier(handle)
+
+            def robotPeriodic(self):
+                if wpilib.Timer.getFPGATimestamp() > 0.21:
+                    self.periodic.stop()
+        """,
+    )
+
+
+STEPPED_IN_BOTH_STYLES = """
+    from wpilib.simulation import JoystickSim, PWMSim
+
+    def test_documented(control, robot, hal_data):
+        seen = []
+        def step(tm):
+            seen.append(hal_data["pwm"][0]["value"])
+            hal_data["joysticks"][0]["axes"][1] = -1 if tm >= 0.5 else 0
+            return tm < 1
+        control.set_operator_control()
+        control.run_test(step)
+        assert seen == [0.0] * 25 + [1.0] * 25
+
+    def test_today(control, robot):
+        with control.run_robot():
+            stick = JoystickSim(0)
+            assert control.step_timing(seconds=0.5, autonomous=False, enabled=True) == 0.5
+            assert PWMSim(0).getSpeed() == 0.0
+            stick.setRawAxis(1, -1)
+            control.step_timing(seconds=0.5, autonomous=False, enabled=True)
+            assert PWMSim(0).getSpeed() == 1.0
+            assert control.robot_is_alive
+        assert not control.robot_is_alive
+"""
+
+DRIVES = """
+        def robotInit(self):
+            self.motor = wpilib.PWMSparkMax(0)
+            self.stick = wpilib.Joystick(0)
+
+        def teleopPeriodic(self):
+            self.motor.set(-self.stick.getRawAxis(1))
+"""
+
+LOOPS = {
+    "wpilib's": f"""
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):{DRIVES}
+    """,
+    "wpilib's, started by the robot": f"""
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):{DRIVES}
+        def startCompetition(self):
+            super().startCompetition()
+    """,
+    "its own": f"""
+    import wpilib
+
+    class MyRobot(wpilib.RobotBase):{DRIVES}
+        def startCompetition(self):
+            self.robotInit()
+            self.running = True
+            while self.running:
+                wpilib.wait(0.02)
+                wpilib.DriverStation.refreshData()
+                if self.isTeleopEnabled():
+                    self.teleopPeriodic()
+
+        def endCompetition(self):
+            self.running = False
+    """,
+    "its own, by wpilib's body": f"""
+    import wpilib
+
+    class MyRobot(wpilib.IterativeRobotBase):{DRIVES}
+        def __init__(self):
+            super().__init__(0.02)
+
+        def startCompetition(self):
+            self.robotInit()
+            while True:
+                wpilib.wait(0.02)
+                self._loopFunc()
+
+        def endCompetition(self):
+            pass
+    """,
+}
+
+
+@pytest.mark.parametrize("loop", LOOPS)
+def test_whose_loop_it_is_shows_nowhere_outside(loop: str, make_project) -> None:
+    passes(make_project, STEPPED_IN_BOTH_STYLES, LOOPS[loop])
+
+
+def test_motor_safety_is_checked_in_robot_time(make_project) -> None:
+    """A drive that is not fed is stopped within its expiration and four packets, and one that is fed never is."""
+    passes(
+        make_project,
+        """
+        import pytest
+
+        @pytest.mark.parametrize("fed", [True, False])
+        def test_it(fed, control, robot, hal_data):
+            robot.fed = fed
+            control.set_operator_control()
+            speeds = {}
+            def step(tm):
+                speeds[round(tm, 2)] = hal_data["pwm"][0]["value"]
+                return tm < 60
+            control.run_test(step)
+            assert robot.drive.isSafetyEnabled()
+            moving = [tm for tm, speed in speeds.items() if speed]
+            assert moving[0] == 0.04
+            assert moving[-1] == (60.0 if fed else pytest.approx(0.16, abs=0.05))
+        """,
+        """
+        import wpilib
+        from wpilib.drive import DifferentialDrive
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.drive = DifferentialDrive(wpilib.PWMSparkMax(0), wpilib.PWMSparkMax(1))
+
+            def teleopInit(self):
+                self.drive.tankDrive(1, 1)
+
+            def teleopPeriodic(self):
+                if self.fed:
+                    self.drive.feed()
+        """,
+    )
+
+
+def test_both_styles_of_test_in_one_project(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import pytest
+
+        class Steps:
+            def __init__(self):
+                self.calls = 0
+
+            def on_step(self, tm):
+                self.calls += 1
+                return tm < 1
+
+        def test_a_class(control, robot):
+            assert control.run_test(Steps).calls == 50
+
+        def test_an_object(control, robot):
+            steps = Steps()
+            assert control.run_test(steps) is None
+            assert steps.calls == 50
+
+        def test_today(control, robot):
+            with control.run_robot():
+                assert control.step_timing(seconds=1.0, autonomous=True, enabled=True) == 1.0
+                assert control.get_mode() == "autonomous"
+
+        def test_modes(control, robot):
+            modes = []
+            def step(tm):
+                modes.append(control.get_mode())
+                if tm >= 0.3: control.set_test_mode()
+                elif tm >= 0.2: control.set_operator_control()
+                elif tm >= 0.1: control.set_autonomous()
+                return tm < 0.4
+            control.run_test(step)
+            assert list(dict.fromkeys(modes)) == ["disabled", "autonomous", "teleop", "test"]
+
+        def test_game_message(control, robot):
+            import wpilib
+            control.game_specific_message = "LRL"
+            seen = set()
+            robot.each_loop = lambda: seen.add(wpilib.DriverStation.getGameSpecificMessage())
+            control.set_autonomous()
+            control.run_test(lambda tm: tm < 0.1)
+            assert seen == {"LRL"}
+
+        def test_only_once(control, robot):
+            control.run_test(lambda tm: False)
+            with pytest.raises(RuntimeError, match="run already"):
+                with control.run_robot():
+                    pass
+        """,
+    )
+
+
+def test_practice_match_of_another_season(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import wpilib
+
+        def test_match(control, robot):
+            seen = []
+            def look():
+                mode = control.get_mode()
+                if not seen or seen[-1][0] != mode:
+                    seen.append([mode, 0, wpilib.DriverStation.getMatchTime()])
+                seen[-1][1] += 1
+            robot.each_loop = look
+            control.set_practice_match()
+            control.run_test()
+            assert [(mode, loops) for mode, loops, _ in seen] == [
+                ("disabled", 49), ("autonomous", 1000), ("disabled", 25), ("teleop", 500)
+            ]
+            assert seen[1][2] == 20.0 and seen[3][2] == 10.0
+        """,
+        **{"pyproject.toml": "[tool.pyfrc.match]\nautonomous = 20\npause = 0.5\nteleop = 10\n"},
+    )
+
+
+def test_autonomous_runs_once_for_each_message_of_the_game(make_project) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "tests/pyfrc_test.py": "from pyfrc.tests import *\n",
+            "sim/config.json": '{"pyfrc": {"game_specific_messages": ["LLL", "RRR"]}}',
+        }
+    )
+    result = project.run("test", "--", "-v", "-k", "autonomous")
+    assert result.code == 0
+    assert [name.partition("::")[2] for name in result.outcomes()] == ["test_autonomous[LLL]", "test_autonomous[RRR]"]
+
+
+def test_threads_started_while_the_robot_is_imported(make_project) -> None:
+    """They begin with the robot, in robot time, in a process of their own."""
+    passes(
+        make_project,
+        """
+        import robot as module
+
+        def test_it(control, robot):
+            control.run_test(lambda tm: tm < 1.05)
+            assert module.beats == [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
+        """,
+        """
+        import threading, time
+        import wpilib
+
+        beats = []
+
+        def beat():
+            while True:
+                time.sleep(0.1)
+                beats.append(round(time.monotonic(), 3))
+
+        threading.Thread(target=beat, daemon=True).start()
+
+        class MyRobot(wpilib.TimedRobot):
+            pass
+        """,
+    )
+
+
+def test_a_thread_blocked_on_the_outside_world_does_not_stop_the_clock(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_it(control, robot):
+            control.run_test(lambda tm: tm < 5)
+            assert robot.loops == 249
+        """,
+        """
+        import socket, threading
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            loops = 0
+
+            def robotInit(self):
+                self.ours, self.theirs = socket.socketpair()
+                threading.Thread(target=lambda: self.ours.recv(1), daemon=True).start()
+
+            def robotPeriodic(self):
+                self.loops += 1
+        """,
+    )
