@@ -586,6 +586,43 @@ def test_a_parametrised_fixture_is_not_torn_down_under_a_running_test(make_proje
     ]
 
 
+def test_an_error_in_the_teardown_of_a_shared_fixture_is_told(make_project: MakeProject) -> None:
+    tests = """
+        import pytest
+
+
+        @pytest.fixture(scope="module")
+        def field():
+            yield
+            raise OSError("the field is stuck")
+
+
+        def test_first(field, control):
+            pass
+
+
+        def test_last(field, control):
+            pass
+    """
+    other = "def test_other(control):\n    pass\n"
+    plain = "def test_plain():\n    pass\n"
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "tests/test_a.py": tests,
+            "tests/test_b.py": other,
+            "tests/test_c.py": tests,
+            "tests/test_d.py": plain,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 1, result.output
+    assert re.search(r"6 passed, 2 errors", result.stdout)
+    place = project.place("tests/test_a.py", "the field is stuck")
+    assert result.blocks()["ERROR at teardown of test_last"].startswith(f"{place}: OSError: the field is stuck\n")
+    assert "ERROR tests/test_c.py::test_last" in result.stdout
+
+
 # -- where tests are ------------------------------------------------------------------------------------------------
 
 
@@ -713,6 +750,7 @@ def test_coverage_counts_lines_of_the_robot_wherever_they_run(
     project = make_project({**MEASURED, "robot.py": robot})
     result = project.run("test", "--coverage", "-j", "2", "--isolation", isolation)
     assert result.code == 0, result.output
+    assert result.stderr == ""
     assert covered(result) == {"robot.py": "100%", "arm.py": "100%", "TOTAL": "100%"}
     assert list(project.path.rglob(".coverage*")) == []
     assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []

@@ -7,13 +7,23 @@ and robot code call (`wpilib.simulation.stepTiming` and its kin), so they always
 from __future__ import annotations
 
 import hal
-from hal.simulation import notifyDriverStationNewData, pauseTiming, restartTiming, resumeTiming, stepTiming
+from hal.simulation import (
+    notifyDriverStationNewData,
+    pauseTiming,
+    resetAllSimData,
+    restartTiming,
+    resumeTiming,
+    stepTiming,
+)
 
 #: Advance HAL time by so many microseconds, waking the notifiers of C++ code that come due.
 step_us = stepTiming
 
 #: Hand the robot what the driver station has been set to, as the next packet.
 deliver_packet = notifyDriverStationNewData
+
+#: All sensors and outputs back to what they are in a HAL that was never used.
+forget_inputs = resetAllSimData
 
 
 def stop_and_zero() -> None:

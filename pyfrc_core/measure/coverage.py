@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import os
 import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..project import Project
 
@@ -36,6 +38,30 @@ class Measured:
     status: int = 0
 
 
+#: How processes that are started anew hear of it: an environment variable with the settings, as JSON.
+_SETTINGS = "PYFRC_COVERAGE"
+
+
+def measure_here() -> None:
+    """Measure in this process, if it is part of a run that is measured. A fork goes on measuring by itself."""
+    if _SETTINGS in os.environ:
+        from coverage import Coverage
+
+        measurement = Coverage(data_suffix=True, **json.loads(os.environ[_SETTINGS]))
+        # A process that waits for others runs no line of the project, and need not complain of it.
+        measurement.set_option("run:disable_warnings", ["no-data-collected"])
+        measurement.start()
+
+
+def save_here() -> None:
+    """Keep what was measured in this process, if anything was."""
+    coverage = sys.modules.get("coverage")
+    current = coverage.Coverage.current() if coverage is not None else None
+    if current is not None:
+        current.stop()
+        current.save()
+
+
 @contextmanager
 def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
     """Measure while this lasts, then report.
@@ -51,25 +77,20 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
 
     # What each process measured lies here until it is combined; nothing of it is left in the project.
     with tempfile.TemporaryDirectory(prefix="pyfrc-coverage-") as directory:
-        measurement = Coverage(
-            data_file=str(Path(directory) / "data"),
-            data_suffix=True,
-            source=[str(project.root)],
-            omit=[f"{tests}/*" for tests in project.test_directories] + ["*/site-packages/*"],
-            config_file=str(project.pyproject) if project.pyproject.is_file() else False,
-        )
-        measurement.start()
+        settings: dict[str, Any] = {
+            "data_file": str(Path(directory) / "data"),
+            "source": [str(project.root)],
+            "omit": [*(f"{tests}/*" for tests in project.test_directories), "*/site-packages/*"],
+            "config_file": str(project.pyproject) if project.pyproject.is_file() else False,
+        }
+        os.environ[_SETTINGS] = json.dumps(settings)
+        measure_here()
         try:
             yield result
         finally:
-            measurement.stop()
-            measurement.save()
-        combined = Coverage(
-            data_file=str(Path(directory) / "combined"),
-            source=[str(project.root)],
-            omit=[f"{tests}/*" for tests in project.test_directories] + ["*/site-packages/*"],
-            config_file=str(project.pyproject) if project.pyproject.is_file() else False,
-        )
+            save_here()
+            del os.environ[_SETTINGS]
+        combined = Coverage(**settings)
         combined.combine([directory])
         result.status = _report(combined, options)
 

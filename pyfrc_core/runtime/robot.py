@@ -15,7 +15,7 @@ import ntcore
 import wpilib
 
 from ..errors import RobotCodeError
-from ..hal import modes, timing
+from ..hal import devices_exist, modes, timing
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .endings import TestEnded
@@ -48,6 +48,8 @@ class RobotRun:
         self._closing.enter_context(redirection.active(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
         ntcore.NetworkTableInstance.getDefault().startLocal()
+        if not devices_exist():  # of an earlier run in this process, only its inputs are left
+            timing.forget_inputs()
         modes.reset_driver_station()
         timing.deliver_packet()
         wpilib.DriverStation.refreshData()
@@ -125,6 +127,9 @@ class RobotRun:
         finally:
             self._closing.close()
             ntcore.NetworkTableInstance.getDefault().stopLocal()
+            # What is still due, and the loop, hold on to the robot.
+            self.clock.initialize()
+            self.timed_loop = TimedLoop(self.clock, 0)
             self.robot = None
 
     def _compete(self) -> None:

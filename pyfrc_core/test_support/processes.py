@@ -21,6 +21,7 @@ from typing import IO, Any
 
 import pytest
 
+from ..measure.coverage import save_here
 from ..runtime.watchdog import EXIT_HANGS
 from .messages import Teller
 from .pytest_plugin import PyFrcPlugin
@@ -261,7 +262,7 @@ def _become_the_test(
         _capture_anew(item.config, captured)
         leave_word_on_crash(plugin, last_words)
         Teller(send).run(item)
-        save_coverage()
+        save_here()
         status = 0
     except BaseException:
         import traceback
@@ -287,7 +288,7 @@ def leave_word_on_crash(plugin: PyFrcPlugin, descriptor: int) -> None:
             f'os._exit({status}) was called:\n  File "{frame.f_code.co_filename}", line {frame.f_lineno}'
             f" in {frame.f_code.co_name}\n".encode(),
         )
-        save_coverage()
+        save_here()
         _exit(status)
 
     os._exit = telling_exit  # type: ignore[assignment]
@@ -305,12 +306,3 @@ def _capture_anew(config: pytest.Config, files: tuple[int, int]) -> None:
         if hasattr(stream, "targetfd"):  # captures the file descriptor, not only sys.stdout
             os.dup2(file, stream.tmpfile.fileno())
     capture.suspend_global_capture(in_=False)
-
-
-def save_coverage() -> None:
-    """What was measured in this process is kept, if anything measures."""
-    coverage = sys.modules.get("coverage")
-    current = coverage.Coverage.current() if coverage is not None else None
-    if current is not None:
-        current.stop()
-        current.save()

@@ -126,7 +126,7 @@ class PyFrcPlugin:
         with watchdog.watching(), ExitStack() as closing:
             run.open()
             if not self.own_process:
-                closing.callback(_forget, run)
+                closing.callback(_forget, run, request.node)
             closing.enter_context(self._traced(run, request.node))
             yield run
             run.end()
@@ -181,11 +181,15 @@ class PyFrcPlugin:
         return report
 
 
-def _forget(run: RobotRun) -> None:
+def _forget(run: RobotRun, item: pytest.Item) -> None:
     """End the run and let go of its robot, so that the next robot in this process finds its devices free."""
     import gc
 
     run.close()
+    # What else holds on to the robot: the test's arguments, and the traceback of its failure.
+    getattr(item, "funcargs", {}).clear()
+    for name in ("last_exc", "last_value", "last_traceback"):
+        vars(sys).pop(name, None)
     commands2 = sys.modules.get("commands2")
     if commands2 is not None:
         commands2.CommandScheduler.resetInstance()

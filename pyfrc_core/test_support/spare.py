@@ -13,8 +13,9 @@ import threading
 from collections.abc import Callable
 
 from ..hal import devices_exist
+from ..measure.coverage import save_here
 from ..runtime.cooperative import scope
-from .processes import forking_quietly, save_coverage
+from .processes import forking_quietly
 
 
 class Spare:
@@ -37,8 +38,8 @@ class Spare:
             try:
                 if os.read(reading_end, 1):
                     status = work()
+                    save_here()
             finally:
-                save_coverage()
                 sys.stdout.flush()
                 sys.stderr.flush()
                 os._exit(status)

@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+from ..measure.coverage import measure_here, save_here
+
 
 class OnlyOneTest:
     """Runs the one test of the job, silently, through the same protocol as a forked test."""
@@ -50,12 +52,14 @@ def main() -> None:
     job = pickle.load(sys.stdin.buffer)
     sys.path[:] = job["path"]
     os.chdir(job["directory"])
+    measure_here()
     from ..project import Project
     from .pytest_plugin import PyFrcPlugin
 
     project = Project(Path(job["main_file"]), job["class_name"])
     plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=job["options"])
     status = pytest.main(job["args"], plugins=[plugin, OnlyOneTest(job, plugin)])
+    save_here()
     sys.stdout.flush()
     os._exit(int(status))  # without waiting for what the robot left running
 

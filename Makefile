@@ -1,0 +1,32 @@
+# Each of the first two does all the set-up it needs, on a fresh machine with Python 3.10 to 3.14.
+PYTHON ?= python3
+VENV ?= .venv
+RUN := $(VENV)/bin/python -m
+
+.PHONY: demo test check clean
+
+demo: $(VENV)/installed  ## make a robot project in demo/ and run its tests with coverage
+	test -d demo || $(RUN) pyfrc init demo
+	$(RUN) pyfrc test --project demo --coverage
+
+test: $(VENV)/installed-dev  ## run this project's own tests; ARGS go to pytest
+	$(RUN) pytest -n auto --dist worksteal $(ARGS)
+
+check: $(VENV)/installed-dev  ## the style and the types
+	$(RUN) ruff check .
+	$(RUN) ruff format --check .
+	$(RUN) mypy
+
+$(VENV)/bin/python:
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/installed: pyproject.toml | $(VENV)/bin/python
+	$(RUN) pip install --quiet --editable .
+	touch $@
+
+$(VENV)/installed-dev: pyproject.toml | $(VENV)/bin/python
+	$(RUN) pip install --quiet --editable ".[dev]"
+	touch $@ $(VENV)/installed
+
+clean:
+	rm -rf $(VENV) demo

@@ -1,0 +1,206 @@
+"""Where the robot is: found from anywhere in the project, told by options or settings, made by `pyfrc init`."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from conftest import MakeProject, RobotProject
+
+from pyfrc import __version__
+
+ROBOT = """
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        name = "found"
+"""
+
+FINDS_IT = """
+    def test_found(control, robot):
+        control.run_test(lambda tm: tm < 1)
+        assert robot.name == "found"
+"""
+
+
+def assert_finds_it(project: RobotProject, *args: str | Path, cwd: Path | None = None) -> None:
+    result = project.run("test", *args, cwd=cwd)
+    assert result.code == 0, result.output
+    assert "1 passed" in result.stdout
+
+
+def test_a_project_is_found_from_a_directory_in_it(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": FINDS_IT, "deploy/paths/one.txt": "left\n"})
+    assert_finds_it(project, cwd=project.path / "deploy" / "paths")
+
+
+def test_a_project_is_found_where_an_option_says(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": FINDS_IT})
+    assert_finds_it(project, "--project", project.path, cwd=project.temporary)
+
+
+def test_a_program_of_another_name_is_found_where_an_option_says(make_project: MakeProject) -> None:
+    project = make_project({"practice.py": ROBOT, "tests/test_a.py": FINDS_IT})
+    assert_finds_it(project, "--main", "practice.py")
+
+
+def test_a_program_of_another_name_is_found_by_the_settings(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "src/practice.py": ROBOT,
+            "src/tests/test_a.py": FINDS_IT,
+            "pyproject.toml": '[tool.pyfrc]\nmain = "src/practice.py"\n',
+        }
+    )
+    assert_finds_it(project)
+
+
+def test_all_settings_hold_for_a_program_deep_in_the_project(make_project: MakeProject) -> None:
+    another = "\n\n    class Another(wpilib.TimedRobot):\n        pass\n"
+    project = make_project(
+        {
+            "src/robots/practice.py": ROBOT + another,
+            "src/robots/tests/test_a.py": FINDS_IT,
+            "pyproject.toml": '[tool.pyfrc]\nmain = "src/robots/practice.py"\nrobot_class = "MyRobot"\n',
+        }
+    )
+    assert_finds_it(project)
+
+
+def test_settings_win_over_a_robot_py_beside_them(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT.replace("found", "not meant"),
+            "practice.py": ROBOT,
+            "tests/test_a.py": FINDS_IT,
+            "pyproject.toml": '[tool.pyfrc]\nmain = "practice.py"\n',
+        }
+    )
+    assert_finds_it(project)
+
+
+def test_a_program_that_the_settings_name_wrongly_is_told(make_project: MakeProject) -> None:
+    project = make_project({"pyproject.toml": '[tool.pyfrc]\nmain = "practise.py"\n'})
+    result = project.run("test")
+    assert result.code == 2
+    assert "main = 'practise.py', but there is no such file" in result.first_error
+
+
+def test_a_robot_class_of_another_file_is_found(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": "from frame.chassis import MyRobot\n",
+            "frame/__init__.py": "",
+            "frame/chassis.py": ROBOT,
+            "tests/test_a.py": FINDS_IT,
+        }
+    )
+    assert_finds_it(project)
+
+
+def test_of_a_base_class_and_its_derived_class_the_derived_is_the_robot(make_project: MakeProject) -> None:
+    robot = """
+        import wpilib
+
+
+        class BaseRobot(wpilib.TimedRobot):
+            name = "base"
+
+
+        class MyRobot(BaseRobot):
+            name = "found"
+    """
+    assert_finds_it(make_project({"robot.py": robot, "tests/test_a.py": FINDS_IT}))
+
+
+def test_a_robot_run_as_a_program_is_not_started_by_its_import(make_project: MakeProject) -> None:
+    robot = ROBOT + '\n\n    if __name__ == "__main__":\n        wpilib.run(MyRobot)\n'
+    assert_finds_it(make_project({"robot.py": robot, "tests/test_a.py": FINDS_IT}))
+
+
+def test_a_project_with_spaces_and_accents_in_its_name_is_found(make_project: MakeProject) -> None:
+    project = make_project({"équipe 4711/robot.py": ROBOT, "équipe 4711/tests/test_a.py": FINDS_IT})
+    assert_finds_it(project, cwd=project.path / "équipe 4711")
+
+
+# -- pyfrc init -----------------------------------------------------------------------------------------------------
+
+
+def contents(directory: Path) -> dict[str, bytes]:
+    return {
+        file.relative_to(directory).as_posix(): file.read_bytes() for file in directory.rglob("*") if file.is_file()
+    }
+
+
+def test_init_writes_a_project_once_and_overwrites_nothing(make_project: MakeProject) -> None:
+    project = make_project({})
+    first = project.run("init")
+    assert first.code == 0, first.output
+    written = contents(project.path)
+    assert {"robot.py", "pyproject.toml", ".gitignore"} <= written.keys()
+    assert any(re.match(r"tests/.*test.*\.py", name) for name in written)
+    for name in written:
+        assert name in first.stdout.replace("\\", "/")
+
+    (project.path / "robot.py").write_text("# mine\n")
+    (project.path / "pyproject.toml").unlink()
+    before = contents(project.path)
+    second = project.run("init")
+    assert second.code == 2, second.output
+    assert "nothing was written" in second.stderr
+    assert "robot.py" in second.stderr
+    assert "pyproject.toml" not in second.stderr
+    assert contents(project.path) == before
+
+
+def test_init_makes_a_project_whose_tests_pass(make_project: MakeProject) -> None:
+    project = make_project({})
+    made = project.run("init", "new robot")
+    assert made.code == 0, made.output
+    directory = project.path / "new robot"
+    assert "pyfrc test" in made.stdout
+    result = project.run("test", cwd=directory)
+    assert result.code == 0, result.output
+    assert re.search(r"=+ \d+ passed in ", result.stdout)
+
+
+def test_init_does_not_take_a_file_for_a_directory(make_project: MakeProject) -> None:
+    project = make_project({"taken": "a file\n"})
+    result = project.run("init", "taken")
+    assert result.code == 2
+    assert "taken is a file, not a directory" in result.first_error
+
+
+# -- the command itself ---------------------------------------------------------------------------------------------
+
+
+def test_the_version_is_told(make_project: MakeProject) -> None:
+    result = make_project({}).run("--version")
+    assert result.code == 0
+    assert result.stdout.strip() == f"pyfrc, version {__version__}"
+
+
+@pytest.mark.parametrize("option", ["-h", "--help"])
+def test_the_help_lists_the_commands(make_project: MakeProject, option: str) -> None:
+    result = make_project({}).run(option)
+    assert result.code == 0
+    assert re.search(r"^  test +\S", result.stdout, re.MULTILINE)
+    assert re.search(r"^  init +\S", result.stdout, re.MULTILINE)
+
+
+def test_the_help_of_a_command_tells_its_options(make_project: MakeProject) -> None:
+    result = make_project({}).run("test", "-h")
+    assert result.code == 0
+    for option in (
+        "--project",
+        "--main",
+        "--robot-class",
+        "--builtin",
+        "--jobs",
+        "--seed",
+        "--isolation",
+        "--coverage",
+    ):
+        assert option in result.stdout
