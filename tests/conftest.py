@@ -144,5 +144,5 @@ def make_project(tmp_path: Path) -> MakeProject:
 
 @pytest.fixture(scope="session")
 def make_shared_project(tmp_path_factory: pytest.TempPathFactory) -> MakeProject:
-    """Makes a robot project of files, for fixtures that several tests share: each process that is spared counts."""
+    """Makes a robot project of files, for a fixture that several tests share."""
     return lambda files: _new_project(tmp_path_factory.mktemp("shared"), files)
