@@ -233,7 +233,8 @@ def make_cases(ours: Environment, todays: Environment, directory: Path) -> list[
 
 def print_table(machine: dict[str, Any], results: list[dict[str, Any]], rounds: int) -> None:
     """The figures, for people."""
-    print(f"{machine['cores']} cores, Python {machine['python']}, {machine['platform']}; {rounds} rounds, medians")
+    host = f"{machine['cores']} cores (load {machine['load']}), Python {machine['python']}, {machine['platform']}"
+    print(f"{host}; {rounds} rounds, medians")
     for side in ("ours", "todays"):
         print(f"{side}: " + ", ".join(f"{name} {version}" for name, version in machine[side].items()))
     print(f"\n{'case':<37}{'ours':>12}{'other':>12}{'ratio':>8}   min..max of rounds")
@@ -268,6 +269,8 @@ def main() -> None:
         "cores": os.cpu_count(),
         "python": platform.python_version(),
         "platform": platform.system(),
+        # Of what else goes on here, before anything is measured; Windows does not know it.
+        "load": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None,
         "ours": ours.versions("pyfrc", "wpilib", "pytest"),
         "todays": todays.versions("pyfrc", "robotpy", "wpilib", "pytest"),
     }

@@ -64,9 +64,7 @@ class IsolatedTests:
         jobs = 1 if session.config.option.usepdb else self._plugin.options.jobs
         items = session.items
         waiting: list[pytest.Item] = []
-        # What is there now stays: a collector that went through it in each fork would copy all its memory.
-        gc.collect()
-        gc.freeze()
+        gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory
         for position, item in enumerate(items):
             nextitem = items[position + 1] if position + 1 < len(items) else None
             if not self._uses_robot(item):

@@ -17,6 +17,7 @@ class PracticeMatch:
 
     def __init__(self, control: TestController, settings: MatchSettings) -> None:
         self._control = control
+        self._mode: modes.Mode | None = None
         self._autonomous_from = to_us(settings.before)
         self._autonomous_until = self._autonomous_from + to_us(settings.autonomous)
         self._teleop_from = self._autonomous_until + to_us(settings.pause)
@@ -38,7 +39,8 @@ class PracticeMatch:
         return True
 
     def _enter(self, mode: modes.Mode, left_us: int) -> None:
-        if self._control.get_mode() != mode:
+        if mode != self._mode:
+            self._mode = mode
             if mode == "autonomous":
                 self._control.set_autonomous()
             else:

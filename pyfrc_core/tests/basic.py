@@ -15,6 +15,14 @@ _AUTONOMOUS_SECONDS = 15.0
 _OTHER_SECONDS = 5.0
 
 
+# First, being the longest: the others run beside it.
+def test_practice(control: TestController, fake_time: FakeTime, robot: Any) -> None:
+    """Runs through the entire span of a practice match."""
+    __tracebackhide__ = True
+    control.set_practice_match()
+    control.run_test()
+
+
 def test_autonomous(control: TestController, fake_time: FakeTime, robot: Any, gamedata: str) -> None:
     """Runs autonomous mode by itself, once for each message that the field may send."""
     __tracebackhide__ = True
@@ -35,10 +43,3 @@ def test_operator_control(control: TestController, fake_time: FakeTime, robot: A
     __tracebackhide__ = True
     control.set_operator_control(enabled=True)
     control.run_test(lambda now: now < _OTHER_SECONDS)
-
-
-def test_practice(control: TestController, fake_time: FakeTime, robot: Any) -> None:
-    """Runs through the entire span of a practice match."""
-    __tracebackhide__ = True
-    control.set_practice_match()
-    control.run_test()
