@@ -1,77 +1,73 @@
 """WPILib's motor safety, checked in robot time.
 
-WPILib checks from a C++ thread of its own, in wall time: at our speed it would find a motor "not updated often
-enough" whenever the machine happens to be busy between two of its instructions. Here a motor whose safety is on is
-switched off in WPILib's eyes except for the instant in which this module has it checked, on every fourth packet while
-the robot is enabled, as that thread does on a robot.
+WPILib checks from a C++ thread that every driver-station packet wakes, in wall time: at our speed it would find a motor
+"not updated often enough" whenever the machine happens to be busy between two of its instructions, and waking it costs
+about as much as the robot's whole loop. So that thread is made deaf to packets, and its check, WPILib's own, is made here:
+on every fourth packet while the robot is enabled, as that thread does on a robot.
 """
 
 from __future__ import annotations
 
-import weakref
-from typing import Any
-
+import hal
 import wpilib
-import wpilib.drive
 from hal.simulation import getDriverStationDsAttached, getDriverStationEnabled
-from wpilib import MotorSafety
+from wpiutil.sync import createEvent, destroyEvent
 
 _PACKETS_BETWEEN_CHECKS = 4
 
-# WPILib's drives come with their safety on; everything else is switched on by name.
-BORN_SAFE = (wpilib.drive.DifferentialDrive, wpilib.drive.MecanumDrive)
+# WPILib's handles of events: this and an index, of which the lowest free one is given out next.
+_FIRST_EVENT = 0x0100_0000
+_EVENTS_AT_IMPORT = 64
 
-switch_in_wpilib = MotorSafety.setSafetyEnabled
+# How often to look whether the thread has made its event. It has within the first few; never, if it was there before.
+_LOOKS = 5_000
 
 
-class MotorSafetyWatch:
-    """The motors whose safety is on, and the count of packets since they were last checked."""
+class _AnyMotor(wpilib.MotorSafety):
+    """The first motor starts the thread."""
+
+    def stopMotor(self) -> None:
+        """There is nothing to stop."""
+
+    def getDescription(self) -> str:
+        return "none"
+
+
+class MotorSafetyCheck:
+    """The count of packets since motors were last checked, and the event that WPILib's thread must not hear."""
 
     def __init__(self) -> None:
-        self._guarded: dict[int, weakref.ref[MotorSafety]] = {}
         self._packets = 0
-
-    def set_enabled(self, motor: MotorSafety, enabled: bool) -> None:
-        key = id(motor)
-        if enabled:
-            self._guarded[key] = weakref.ref(motor, lambda _: self._guarded.pop(key, None))
-        else:
-            self._guarded.pop(key, None)
-        switch_in_wpilib(motor, False)
-
-    def is_enabled(self, motor: MotorSafety) -> bool:
-        return id(motor) in self._guarded
-
-    def is_alive(self, motor: MotorSafety) -> bool:
-        """Whether the motor was fed within its expiration time (or need not be)."""
-        if not self.is_enabled(motor):
-            return True
-        return bool(self._as_guarded(motor, motor_is_alive))
+        # Of a thread that a motor made at import has started, the event is one of these.
+        for index in range(_EVENTS_AT_IMPORT):
+            hal.removeNewDataEventHandle(_FIRST_EVENT + index)
+        self._event = _start_its_thread()
 
     def on_packet(self) -> None:
         """Stop, with WPILib's own message, each motor that was not fed in time."""
-        if not self._guarded:
-            return
-        if not (getDriverStationEnabled() and getDriverStationDsAttached()):
-            self._packets = 0
-            return
         self._packets += 1
-        if self._packets < _PACKETS_BETWEEN_CHECKS:
+        if self._packets % _PACKETS_BETWEEN_CHECKS:
             return
-        self._packets = 0
-        for reference in list(self._guarded.values()):
-            motor = reference()
-            if motor is not None:
-                self._as_guarded(motor, motor_check)
-
-    @staticmethod
-    def _as_guarded(motor: MotorSafety, question: Any) -> Any:
-        switch_in_wpilib(motor, True)
-        try:
-            return question(motor)
-        finally:
-            switch_in_wpilib(motor, False)
+        # Again and again, since the thread subscribes to packets when it gets to it.
+        hal.removeNewDataEventHandle(self._event)
+        if getDriverStationEnabled() and getDriverStationDsAttached():
+            wpilib.MotorSafety.checkMotors()
+        else:
+            self._packets = 0
 
 
-motor_is_alive = MotorSafety.isAlive
-motor_check = MotorSafety.check
+def _start_its_thread() -> int:
+    """Start WPILib's thread, and answer its event: the one that is free before and taken afterwards."""
+    before = _next_event()
+    motor = _AnyMotor()
+    for _ in range(_LOOKS):
+        if _next_event() != before:
+            break
+    del motor
+    return before
+
+
+def _next_event() -> int:
+    event = createEvent(False, False)
+    destroyEvent(event)
+    return event

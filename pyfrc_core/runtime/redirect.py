@@ -23,7 +23,6 @@ import wpilib.simulation
 
 from . import cooperative
 from .clock import to_us
-from .motor_safety import BORN_SAFE, MotorSafetyWatch
 from .notifier import Notifier
 
 if TYPE_CHECKING:
@@ -41,7 +40,6 @@ class Redirection:
 
     def __init__(self) -> None:
         self.run: RobotRun | None = None
-        self.motor_safety = MotorSafetyWatch()
         self._originals: list[tuple[Any, str, Any]] = []
 
     @property
@@ -85,7 +83,6 @@ class Redirection:
             *self._waiting_in_wpilib(),
             *self._stepping_in_tests(),
             *self._timed_robot(),
-            *self._motor_safety(),
         ]
 
     def _time_functions(self) -> list[tuple[Any, str, Any]]:
@@ -240,29 +237,6 @@ class Redirection:
             (TimedRobot, "addPeriodic", add_periodic),
             (TimedRobot, "startCompetition", start_competition),
             (TimedRobot, "getLoopStartTime", loop_start_time),
-        ]
-
-    def _motor_safety(self) -> list[tuple[Any, str, Any]]:
-        watch = self.motor_safety
-
-        def born_safe(drive: Any) -> tuple[Any, str, Any]:
-            real_init = drive.__init__
-
-            def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
-                real_init(self, *args, **kwargs)
-                watch.set_enabled(self, True)
-
-            return drive, "__init__", __init__
-
-        return [
-            (
-                wpilib.MotorSafety,
-                "setSafetyEnabled",
-                lambda motor, enabled: watch.set_enabled(motor, enabled),
-            ),
-            (wpilib.MotorSafety, "isSafetyEnabled", lambda motor: watch.is_enabled(motor)),
-            (wpilib.MotorSafety, "isAlive", lambda motor: watch.is_alive(motor)),
-            *(born_safe(drive) for drive in BORN_SAFE),
         ]
 
 

@@ -19,6 +19,7 @@ from ..hal import devices_exist, modes, timing
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .endings import TestEnded
+from .motor_safety import MotorSafetyCheck
 from .notifier import Alarms
 from .redirect import redirection
 from .threads import RobotThread, RobotThreads
@@ -53,7 +54,8 @@ class RobotRun:
         modes.reset_driver_station()
         timing.deliver_packet()
         wpilib.DriverStation.refreshData()
-        self.clock.before_packet.append(lambda now: redirection.motor_safety.on_packet())
+        motor_safety = MotorSafetyCheck()
+        self.clock.before_packet.append(lambda now: motor_safety.on_packet())
         cooperative.begin_waiting_threads()
 
     def construct(self, robot_class: type[Any]) -> Any:
