@@ -29,10 +29,12 @@ class Project:
 
     :param main_file: the file with the robot class, absolute
     :param class_name: the robot class's name, where the user has said it
+    :param settings_file: the pyproject.toml that names the main file, where one does
     """
 
     main_file: Path
     class_name: str | None = None
+    settings_file: Path | None = None
 
     @property
     def root(self) -> Path:
@@ -46,6 +48,8 @@ class Project:
     @cached_property
     def pyproject(self) -> Path:
         """The project's pyproject.toml: beside the code, or one above it as its tests may be."""
+        if self.settings_file is not None:
+            return self.settings_file
         beside, above = self.root / "pyproject.toml", self.root.parent / "pyproject.toml"
         return above if above.is_file() and not beside.is_file() else beside
 
@@ -190,15 +194,15 @@ def find_project(start: Path | None = None, main: Path | None = None, class_name
 
 
 def _project_in(directory: Path, class_name: str | None) -> Project | None:
+    pyproject = directory / "pyproject.toml"
+    main = load_settings(pyproject).main
+    if main is not None:
+        file = directory / main
+        if not file.is_file():
+            raise ProjectError(f"main = {main!r} under [tool.pyfrc], but there is no such file", where=pyproject.name)
+        return Project(file.resolve(), class_name, pyproject)
     if (directory / MAIN_FILE).is_file():
         return Project(directory / MAIN_FILE, class_name)
-    if (directory / "pyproject.toml").is_file():
-        main = load_settings(directory / "pyproject.toml").main
-        if main is not None:
-            file = directory / main
-            if not file.is_file():
-                raise ProjectError(f"[tool.pyfrc] names main = {main!r}, but there is no such file", where=directory)
-            return Project(file.resolve(), class_name)
     return None
 
 

@@ -14,6 +14,11 @@ _PYFRC = tuple(
 )
 
 
+def is_pyfrc(filename: str) -> bool:
+    """Whether this file is one of pyfrc's own."""
+    return filename.startswith(_PYFRC)
+
+
 class RobotFiles:
     """The source files of one robot project.
 
@@ -23,13 +28,14 @@ class RobotFiles:
     def __init__(self, root: Path) -> None:
         self.root = str(root) + os.sep
         self._tests = str(root / "tests") + os.sep
+        self._tests_beside = str(root.parent / "tests") + os.sep
         self._known: dict[str, bool] = {}
 
     def is_robot_code(self, filename: str) -> bool:
         """Whether this file is part of the robot program (its tests are not)."""
         known = self._known.get(filename)
         if known is None:
-            known = self.is_project_file(filename) and not filename.startswith(self._tests)
+            known = self.is_project_file(filename) and not filename.startswith((self._tests, self._tests_beside))
             self._known[filename] = known
         return known
 
@@ -37,13 +43,15 @@ class RobotFiles:
         """Whether this file belongs to the project at all: the robot program or its tests."""
         if any(part in filename for part in _NOT_OURS) or filename.startswith(_PYFRC):
             return False
-        return filename.startswith(self.root)
+        return filename.startswith((self.root, self._tests_beside))
 
     def called_from_robot_code(self, frame: FrameType) -> bool:
         return self.is_robot_code(frame.f_code.co_filename)
 
     def relative(self, filename: str) -> str:
         """The name to show to the user: relative to the project."""
+        if filename.startswith(self._tests_beside):
+            return str(Path("..", "tests", filename.removeprefix(self._tests_beside)))
         return filename.removeprefix(self.root)
 
     def innermost_line(self, traceback: TracebackType | None) -> str | None:

@@ -85,7 +85,7 @@ def test_a_program_that_the_settings_name_wrongly_is_told(make_project: MakeProj
     project = make_project({"pyproject.toml": '[tool.pyfrc]\nmain = "practise.py"\n'})
     result = project.run("test")
     assert result.code == 2
-    assert "main = 'practise.py', but there is no such file" in result.first_error
+    assert "main = 'practise.py' under [tool.pyfrc], but there is no such file" in result.first_error
 
 
 def test_a_robot_class_of_another_file_is_found(make_project: MakeProject) -> None:

@@ -33,9 +33,18 @@ def validated(schema: type[T], data: object, file: Path, prefix: str = "") -> T:
         # As JSON, since strict checking of Python data would ask for instances where files have tables.
         return pydantic.TypeAdapter(schema).validate_json(json.dumps(data, default=str))
     except pydantic.ValidationError as invalid:
-        first = invalid.errors(include_url=False)[0]
-        path = [part for part in first["loc"] if not (isinstance(part, str) and part.startswith("union"))]
+        errors = invalid.errors(include_url=False)
+        first = errors[0]
+        path = _settings_path(first)
+        # Of a key that may be one of several types, each says what is wrong with it.
+        same = [str(error["msg"]) for error in errors if _settings_path(error) == path]
+        first["msg"] = ", or ".join(dict.fromkeys(same))
         raise _explain(schema, first, path, file, prefix) from None
+
+
+def _settings_path(error: Any) -> list[Any]:
+    """Where the error is, without pydantic's own names for the types that it tried there."""
+    return [part for part in error["loc"] if isinstance(part, int) or re.fullmatch(r"\w+", part)]
 
 
 def _explain(schema: type[Any], error: Any, path: list[Any], file: Path, prefix: str) -> SettingsError:

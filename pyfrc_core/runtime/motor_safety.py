@@ -2,8 +2,8 @@
 
 WPILib checks from a C++ thread that every driver-station packet wakes, in wall time: at our speed it would find a motor
 "not updated often enough" whenever the machine happens to be busy between two of its instructions, and waking it costs
-about as much as the robot's whole loop. So that thread is made deaf to packets, and its check, WPILib's own, is made here:
-on every fourth packet while the robot is enabled, as that thread does on a robot.
+about as much as the robot's whole loop. So that thread is made deaf to packets, and its check, WPILib's own, is made
+here: on every fourth packet while the robot is enabled, as that thread does on a robot.
 """
 
 from __future__ import annotations

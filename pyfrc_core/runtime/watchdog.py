@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import _thread
 import ctypes
-import faulthandler
 import os
 import signal
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -145,5 +143,4 @@ class Watchdog:
         if self._last_words is None:
             return
         self._last_words(self._explain(ident, busy=True))
-        faulthandler.dump_traceback(sys.__stderr__ or 2)
         _exit(EXIT_HANGS)

@@ -22,7 +22,7 @@ import pytest
 
 from .messages import decode, replay
 from .processes import FORK_IS_SAFE, ForkedTest, SpawnedTest, TestProcess, wait_for_any
-from .pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin
+from .pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from .spare import left_behind
 
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
@@ -65,23 +65,30 @@ class IsolatedTests:
         items = session.items
         waiting: list[pytest.Item] = []
         gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory
+        previous: pytest.Item | None = None
         for position, item in enumerate(items):
             nextitem = items[position + 1] if position + 1 < len(items) else None
             if not self._uses_robot(item):
                 self._finish(session, waiting, down_to=0)
+                _tear_down_shared(session, previous, item)
+                previous = item
                 item.config.hook.pytest_runtest_protocol(item=item, nextitem=nextitem)
                 _stop_if_asked(session)
                 continue
             self._finish(session, waiting, down_to=jobs - 1)
-            if _would_tear_down_fixtures(session, item):
+            if _would_tear_down_fixtures(session, item) or (waiting and _other_parameters(waiting[-1], item)):
                 self._finish(session, waiting, down_to=0)
-            _set_up_shared(session, item)
+            _tear_down_shared(session, previous, item)
+            previous = item
+            forked = self._can_fork()
+            if forked:  # a new interpreter sets up everything itself
+                _set_up_shared(session, item)
             waiting.append(item)
             if len(waiting) == 1:
                 self._announce(item)
-            self._running[item] = self._launch(item)
+            self._running[item] = (ForkedTest if forked else SpawnedTest)(item, self._plugin)
         self._finish(session, waiting, down_to=0)
-        _tear_down_shared(session, items[-1] if items else None)
+        _tear_down_shared(session, previous, None)
 
     def _finish(self, session: pytest.Session, waiting: list[pytest.Item], down_to: int) -> None:
         """Report tests, in their order, until no more than `down_to` are running."""
@@ -95,7 +102,7 @@ class IsolatedTests:
             item = waiting.pop(0)
             self._announce(item)
             del self._running[item]
-            _report(item, process)
+            _report(item, process, seed_section(self._plugin.options))
             process.close()
             item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
             _stop_if_asked(session)
@@ -106,9 +113,6 @@ class IsolatedTests:
         if self._announced is not item:
             self._announced = item
             item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-
-    def _launch(self, item: pytest.Item) -> TestProcess:
-        return ForkedTest(item, self._plugin) if self._can_fork() else SpawnedTest(item, self._plugin)
 
     def _can_fork(self) -> bool:
         isolation = self._plugin.options.isolation
@@ -143,7 +147,7 @@ def _stop_if_asked(session: pytest.Session) -> None:
         raise session.Interrupted(session.shouldstop)
 
 
-def _report(item: pytest.Item, process: TestProcess) -> None:
+def _report(item: pytest.Item, process: TestProcess, seed: tuple[str, str]) -> None:
     """Replay here what the test's process told, and what it can no longer tell."""
     done, phases = False, []
     for message in decode(process.output()):
@@ -157,10 +161,12 @@ def _report(item: pytest.Item, process: TestProcess) -> None:
     for phase in ("setup", "call", "teardown"):
         if phase not in phases:
             text = crash if phase == "call" else None
-            item.ihook.pytest_runtest_logreport(report=_made_up(item, phase, text, process.captured()))
+            item.ihook.pytest_runtest_logreport(report=_made_up(item, phase, text, process.captured(), seed))
 
 
-def _made_up(item: pytest.Item, phase: Any, failure: str | None, captured: str) -> pytest.TestReport:
+def _made_up(
+    item: pytest.Item, phase: Any, failure: str | None, captured: str, seed: tuple[str, str]
+) -> pytest.TestReport:
     return pytest.TestReport(
         nodeid=item.nodeid,
         location=item.location,
@@ -168,7 +174,7 @@ def _made_up(item: pytest.Item, phase: Any, failure: str | None, captured: str) 
         outcome="failed" if failure else "passed",
         longrepr=failure,
         when=phase,
-        sections=[("Captured output of the process", captured)] if failure and captured else [],
+        sections=[*([("Captured output of the process", captured)] if captured else []), seed] if failure else [],
     )
 
 
@@ -187,25 +193,43 @@ def _would_tear_down_fixtures(session: pytest.Session, item: pytest.Item) -> boo
 
 def _set_up_shared(session: pytest.Session, item: pytest.Item) -> None:
     """Set up what `item` shares with others. What fails here fails again, and is reported, in the test's process."""
+    state: Any = session._setupstate
+    names = getattr(item, "fixturenames", ())
     with _captured(item), contextlib.suppress(Exception, pytest.fail.Exception, pytest.skip.Exception):
-        session._setupstate.teardown_exact(item)
-        assert item.parent is not None
-        session._setupstate.setup(item.parent)  # type: ignore[arg-type]
-        if "tmp_path_factory" in getattr(item, "fixturenames", ()):
-            # One numbered directory for the whole run, not one for each process.
-            item._request.getfixturevalue("tmp_path_factory").getbasetemp()  # type: ignore[attr-defined]
-        definitions = getattr(item, "_fixtureinfo", None)
-        for name in getattr(item, "fixturenames", ()):
-            known = definitions.name2fixturedefs.get(name) if definitions is not None else None
-            if known and known[-1].scope != "function":
-                item._request.getfixturevalue(name)  # type: ignore[attr-defined]
+        state.setup(item.parent)
+        # A fixture may only be asked for while its test is being set up: for this long, it looks as if it were.
+        state.stack[item] = ([], None)
+        try:
+            request = item._request  # type: ignore[attr-defined]
+            if "tmp_path_factory" in names:
+                # One numbered directory for the whole run, not one for each process.
+                request.getfixturevalue("tmp_path_factory").getbasetemp()
+            known = item._fixtureinfo.name2fixturedefs  # type: ignore[attr-defined]
+            for name in names:
+                if name in known and known[name][-1].scope != "function":
+                    request.getfixturevalue(name)
+        finally:
+            del state.stack[item]
 
 
-def _tear_down_shared(session: pytest.Session, last: pytest.Item | None) -> None:
+def _other_parameters(before: pytest.Item, item: pytest.Item) -> bool:
+    """Whether a fixture that both share is to be made anew for `item`, with another parameter."""
+    old, new = _shared_parameters(before), _shared_parameters(item)
+    return any(old[name] != new[name] for name in old.keys() & new.keys())
+
+
+def _shared_parameters(item: pytest.Item) -> dict[str, int]:
+    callspec: Any = getattr(item, "callspec", None)
+    if callspec is None:
+        return {}
+    return {name: index for name, index in callspec.indices.items() if callspec._arg2scope[name].value != "function"}
+
+
+def _tear_down_shared(session: pytest.Session, last: pytest.Item | None, nextitem: pytest.Item | None) -> None:
     """What outlived the last test ends with it; a failure in that is that test's."""
     if last is None:
         return
-    call = pytest.CallInfo.from_call(lambda: session._setupstate.teardown_exact(None), when="teardown")
+    call = pytest.CallInfo.from_call(lambda: session._setupstate.teardown_exact(nextitem), when="teardown")
     if call.excinfo is not None:
         report = last.ihook.pytest_runtest_makereport(item=last, call=call)
         last.ihook.pytest_runtest_logreport(report=report)

@@ -42,11 +42,14 @@ class Teller:
     def __init__(self, send: Callable[[bytes], None]) -> None:
         self._send = send
         self._config: pytest.Config | None = None
+        self._listening = False
 
     def run(self, item: pytest.Item) -> None:
         """The whole of pytest's protocol for `item`, without a report on this side."""
         self._config = item.config
+        # On registering, pytest tells the warnings recorded so far again: those the other side knows.
         item.config.pluginmanager.register(self, "pyfrc.teller")
+        self._listening = True
         try:
             # The next item is the one's parent: what the test shares with others is not torn down here.
             item.ihook.pytest_runtest_protocol(item=item, nextitem=item.parent)
@@ -72,6 +75,8 @@ class Teller:
     def pytest_warning_recorded(
         self, warning_message: warnings.WarningMessage, when: str, nodeid: str, location: Any
     ) -> None:
+        if not self._listening:
+            return
         plain = {
             "message": str(warning_message.message),
             "category": warning_message.category,

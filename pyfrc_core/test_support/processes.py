@@ -95,7 +95,7 @@ class TestProcess(ABC):
             what = f"the robot's process ended itself with exit code {self._status}, in the middle of the test"
         line = self._line_of_crash(words)
         # Below the user's code, the stack is pyfrc's and pytest's: of no interest.
-        words = "\n".join(takewhile(lambda text: "pyfrc_core" not in text, words.splitlines()))
+        words = "\n".join(takewhile(lambda text: not re.search(r"pyfrc_core|_pytest", text), words.splitlines()))
         return f"{line}: {what}\n\n{words}".strip() if line else f"{what}\n\n{words}".strip()
 
     def _line_of_crash(self, words: str) -> str | None:

@@ -18,18 +18,19 @@ from ..hal import HalData
 from ..project import Project
 from ..runtime.redirect import redirection
 from ..runtime.robot import RobotRun
+from ..runtime.threads import RobotThread
 from ..runtime.trace import Trace
 from ..runtime.watchdog import Watchdog
 from .controller import TestController
 from .fake_time import FakeTime
 from .options import TestOptions
-from .reporting import headline, put_first
+from .reporting import NamesItsPlace, headline, leave_out_pyfrc, put_first
 
 #: The fixtures that have to do with the robot: a test that asks for one runs in a process of its own.
 ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "robot", "wpilib"})
 
 
-class ThreadStillRunningError(Exception):
+class ThreadStillRunningError(NamesItsPlace):
     """A thread of the robot went on when its test was over, although it was told to stop."""
 
 
@@ -131,8 +132,12 @@ class PyFrcPlugin:
             yield run
             run.end()
         if run.still_running:
-            names = ", ".join(f"{thread.name}" for record in run.still_running if (thread := record.thread))
-            raise ThreadStillRunningError(f"still running after the test was over: {names}")
+            raise ThreadStillRunningError("\n".join(self._still_running(record) for record in run.still_running))
+
+    def _still_running(self, record: RobotThread) -> str:
+        line = None if record.ident is None else self.project.files.line_of_thread(record.ident)
+        name = record.thread.name if record.thread is not None else "?"
+        return f"{line or self.project.main_file.name}: the thread {name!r} is still running after the test was over"
 
     def _traced(self, run: RobotRun, item: pytest.Item) -> ExitStack:
         """Record what the robot does, if the user wants that."""
@@ -171,14 +176,20 @@ class PyFrcPlugin:
     def pytest_runtest_makereport(
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+        if call.excinfo is not None and not item.config.option.fulltrace:
+            leave_out_pyfrc(call.excinfo.value, self.project.files)
         report = yield
         if report.failed and call.excinfo is not None:
             text = headline(call.excinfo.value, self.project.files)
             if text is not None:
                 put_first(report, text)
-            seed = self.options.seed
-            report.sections.append(("pyfrc", f"random seed: {seed} (--seed {seed} repeats it)"))
+            report.sections.append(seed_section(self.options))
         return report
+
+
+def seed_section(options: TestOptions) -> tuple[str, str]:
+    """What a failure's report says of its random seed."""
+    return "pyfrc", f"random seed: {options.seed} (--seed {options.seed} repeats it)"
 
 
 def _forget(run: RobotRun, item: pytest.Item) -> None:

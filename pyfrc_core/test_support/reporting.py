@@ -4,17 +4,32 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..errors import PyfrcError
-from ..robot_files import RobotFiles
+from ..errors import RobotCodeError, UsageError
+from ..robot_files import RobotFiles, is_pyfrc
 from ..runtime.endings import TestFroze
 
 if TYPE_CHECKING:
     import pytest
 
 
+class NamesItsPlace(Exception):
+    """An error whose message begins with the user's file and line."""
+
+
+def leave_out_pyfrc(error: BaseException, files: RobotFiles) -> None:
+    """Take pyfrc's own part out of the traceback of what the user's code raised, or made pyfrc raise."""
+    entry = error.__traceback__
+    if files.innermost_line(entry) is None:
+        return
+    while entry is not None:
+        while entry.tb_next is not None and is_pyfrc(entry.tb_next.tb_frame.f_code.co_filename):
+            entry.tb_next = entry.tb_next.tb_next
+        entry = entry.tb_next
+
+
 def headline(error: BaseException, files: RobotFiles) -> str | None:
     """``robot.py:12: ZeroDivisionError: division by zero``, if the user's code took part in it."""
-    if isinstance(error, PyfrcError) or (isinstance(error, TestFroze) and str(error)):
+    if isinstance(error, (RobotCodeError, UsageError, NamesItsPlace)) or (isinstance(error, TestFroze) and str(error)):
         return str(error)  # these name the place themselves
     line = files.innermost_line(error.__traceback__)
     return f"{line}: {type(error).__name__}: {error}".rstrip(": ") if line else None
