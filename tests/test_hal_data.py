@@ -344,7 +344,7 @@ def test_joysticks_show_what_wpilib_simulators_set(tree: HalData) -> None:
         ("alliance_station", "red4", ValueError, "'red3'"),
         ("alliance_station", None, TypeError, "one of"),
         ("event.name", 3, TypeError, "a text"),
-        ("user_program_state", "flying", ValueError, "teleop"),
+        ("user_program_state", "teleop", KeyError, "cannot be written"),
         ("control", 3, TypeError, "expected a dict"),
         ("custom", 3, TypeError, "expected a dict"),
         ("pwm[0].valu", 1, KeyError, "did you mean 'value'.*zero_latch"),
@@ -394,11 +394,11 @@ def test_listeners_hear_each_set_once(tree: HalData) -> None:
     heard.clear()
     tree["control"].register("enabled", hear)
     hs.setDriverStationEnabled(True)
-    tree.register("user_program_state", hear)
-    tree["user_program_state"] = "teleop"
+    tree.register("error_data", hear)
+    tree["error_data"] = "teleop"
     tree["joysticks"][0].register("axes", hear)
     tree["joysticks"][0]["axes"][1] = 0.5
-    assert [key for key, _ in heard] == ["enabled", "user_program_state", "axes"]
+    assert [key for key, _ in heard] == ["enabled", "error_data", "axes"]
     with pytest.raises(KeyError):
         pwm.register("speed", hear)
 
