@@ -344,7 +344,7 @@ def test_joysticks_show_what_wpilib_simulators_set(tree: HalData) -> None:
         ("alliance_station", "red4", ValueError, "'red3'"),
         ("alliance_station", None, TypeError, "one of"),
         ("event.name", 3, TypeError, "a text"),
-        ("user_program_state", "teleop", KeyError, "cannot be written"),
+        ("user_program_state", "teleop", ValueError, "cannot be written"),
         ("control", 3, TypeError, "expected a dict"),
         ("custom", 3, TypeError, "expected a dict"),
         ("pwm[0].valu", 1, KeyError, "did you mean 'value'.*zero_latch"),
