@@ -3,4 +3,4 @@
 PYTEST_DONT_REWRITE
 """
 
-from ._version import __version__ as __version__
+from pyfrc_core._version import __version__ as __version__

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from pyfrc._version import __version__
+from pyfrc_core._version import __version__
 
 #: Each command, its module, and its line in the help: known here so that the help needs to import none of them.
 COMMANDS = {

@@ -21,6 +21,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
+from pathlib import Path
 from types import TracebackType
 
 from .clock import WAKE_UP, Clock
@@ -61,6 +62,16 @@ def _taken_lock() -> _thread.LockType:
     lock = _allocate_lock()
     lock.acquire()
     return lock
+
+
+def _wants_to_run(record: RobotThread) -> bool:
+    """Whether the thread only waits for a processor, where the system tells: then the machine is busy, no more."""
+    native = record.thread.native_id if record.thread is not None else None
+    try:
+        state = Path(f"/proc/self/task/{native}/stat").read_text("ascii").rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state == "R"
 
 
 def _below_threading(traceback: TracebackType | None) -> TracebackType | None:
@@ -229,7 +240,7 @@ class RobotThreads:
         while not record.done.acquire(timeout=_LOOK_SECONDS):
             looks += 1
             if looks == _LOOKS:
-                if _process_time() - cpu < _IDLE_CPU_SECONDS:
+                if _process_time() - cpu < _IDLE_CPU_SECONDS and not _wants_to_run(record):
                     record.detached = True
                     return
                 looks, cpu = 0, _process_time()

@@ -43,7 +43,7 @@ def _robot_program(start: Path) -> Path | None:
 
 def _register(config: pytest.Config, main: Path) -> None:
     from ..project import Project
-    from .isolation import IsolatedTests
+    from .isolation.loop import IsolatedTests
     from .pytest_plugin import PyFrcPlugin
 
     project = Project(main.resolve())

@@ -12,11 +12,11 @@ import pytest
 from .. import tests as ready_made
 from ..errors import PyfrcError
 from ..project import Project
-from .isolation import IsolatedTests
+from .isolation.loop import IsolatedTests
+from .isolation.processes import FORK_IS_SAFE
+from .isolation.spare import Spare
 from .options import TestOptions
-from .processes import FORK_IS_SAFE
 from .pytest_plugin import PyFrcPlugin
-from .spare import Spare
 
 
 class NoTestsError(PyfrcError):

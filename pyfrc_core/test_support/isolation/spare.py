@@ -12,9 +12,9 @@ import sys
 import threading
 from collections.abc import Callable
 
-from ..hal import devices_exist
-from ..measure.coverage import save_here
-from ..runtime.cooperative import scope
+from ...hal import devices_exist
+from ...measure.coverage import save_here
+from ...runtime.cooperative import scope
 from .processes import forking_quietly
 
 

@@ -20,9 +20,9 @@ from typing import Any
 
 import pytest
 
+from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from .messages import decode, replay
 from .processes import FORK_IS_SAFE, ForkedTest, SpawnedTest, TestProcess, wait_for_any
-from .pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from .spare import left_behind
 
 #: A test file that has anything of these in it may touch the HAL even without a fixture.

@@ -21,10 +21,10 @@ from typing import IO, Any
 
 import pytest
 
-from ..measure.coverage import save_here
-from ..runtime.watchdog import EXIT_HANGS
+from ...measure.coverage import save_here
+from ...runtime.watchdog import EXIT_HANGS
+from ..pytest_plugin import PyFrcPlugin
 from .messages import Teller
-from .pytest_plugin import PyFrcPlugin
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
 FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
@@ -211,7 +211,7 @@ class SpawnedTest(TestProcess):
             "path": sys.path,
         }
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "pyfrc_core.test_support.spawned"],
+            [sys.executable, "-m", "pyfrc_core.test_support.isolation.spawned"],
             stdin=subprocess.PIPE,
             stdout=self._captured[0],
             stderr=self._captured[1],

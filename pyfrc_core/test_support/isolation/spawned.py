@@ -1,6 +1,6 @@
 """The other end of `processes.SpawnedTest`: collect the tests again in this new interpreter, run one, tell of it.
 
-Run as ``python -m pyfrc_core.test_support.spawned``, with its job pickled on standard input.
+Run as ``python -m pyfrc_core.test_support.isolation.spawned``, with its job pickled on standard input.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from ..measure.coverage import measure_here, save_here
+from ...measure.coverage import measure_here, save_here
 
 
 class OnlyOneTest:
@@ -53,8 +53,8 @@ def main() -> None:
     sys.path[:] = job["path"]
     os.chdir(job["directory"])
     measure_here()
-    from ..project import Project
-    from .pytest_plugin import PyFrcPlugin
+    from ...project import Project
+    from ..pytest_plugin import PyFrcPlugin
 
     project = Project(Path(job["main_file"]), job["class_name"])
     plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=job["options"])
