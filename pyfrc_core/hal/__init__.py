@@ -3,6 +3,8 @@
 The only room that names simulated devices. Importing it changes nothing in the HAL.
 """
 
+from functools import cache
+
 from .containers import LiveDict, LiveList
 from .data import HalData
 from .kinds import Choice
@@ -13,4 +15,7 @@ __all__ = ["Choice", "HalData", "LiveDict", "LiveList", "devices_exist", "format
 
 def devices_exist() -> bool:
     """Whether this process has made any device in the HAL that still exists."""
-    return HalData().anything_made()
+    return _tree().anything_made()
+
+
+_tree = cache(HalData)  # it takes longer to make than to ask

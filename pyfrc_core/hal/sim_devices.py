@@ -197,6 +197,11 @@ class RobotDict(LiveDict):
         self._free: dict[str, Any] = {}
         self._bridged: dict[str, tuple[SimDevice, str]] = {}
 
+    @property
+    def waits_for_devices(self) -> bool:
+        """Whether there is a value or a listener that a device, once it is made, may be meant to have."""
+        return bool(self._free or self._watches)
+
     def sync(self, signature: Signature | None = None) -> None:
         """Find new devices and hand them what was written for them."""
         signature = self._devices.signature() if signature is None else signature

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ import ntcore
 import wpilib
 
 from ..errors import RobotCodeError
-from ..hal import devices_exist, modes, timing
+from ..hal import HalData, devices_exist, modes, timing
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .endings import TestEnded
@@ -69,6 +70,14 @@ class RobotRun:
             # Its constructor has set an alarm that nobody will wait for, and the HAL would wait for somebody to.
             wpilib.TimedRobot.endCompetition(self.robot)
         return self.robot
+
+    @cached_property
+    def hal_data(self) -> HalData:
+        """The robot's inputs and outputs; one tree for everybody who has to do with this run."""
+        tree = HalData()
+        # What was written for a gyro before the robot made it, reaches it then.
+        self.clock.before_packet.append(lambda now: tree.sync())
+        return tree
 
     @property
     def alive(self) -> bool:

@@ -92,7 +92,7 @@ class PyFrcPlugin:
     @pytest.fixture
     def hal_data(self, _robot_run: RobotRun) -> HalData:
         """Provides access to a dict with all the device data about the robot."""
-        return HalData()
+        return _robot_run.hal_data
 
     @pytest.fixture
     def robot(self, _robot_run: RobotRun) -> Any:
@@ -147,7 +147,7 @@ class PyFrcPlugin:
             name = re.sub(r"[^\w.\[\]-]+", "_", item.nodeid)
             file = (self.options.trace_directory / f"{name}.jsonl").open("w", encoding="utf-8")
             closing.enter_context(file)
-            trace = Trace(HalData(), file)
+            trace = Trace(run.hal_data, file)
             run.observe(trace.look)
             closing.callback(trace.finish)
         return closing
