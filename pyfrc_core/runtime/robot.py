@@ -41,6 +41,8 @@ class RobotRun:
         self.robot: Any = None
         #: Threads that did not stop when the run ended.
         self.still_running: list[RobotThread] = []
+        #: Whether the robot's code is being run; while it is not, it cannot be what takes long.
+        self.in_motion = False
         self._own_loop: RobotThread | None = None
         self._started = self._ended = False
         self._closing = contextlib.ExitStack()
@@ -63,7 +65,8 @@ class RobotRun:
         """Make the robot. Its `robotInit` runs with `start`."""
         __tracebackhide__ = True
         try:
-            self.robot = robot_class()
+            with self._failing():
+                self.robot = robot_class()
         except TypeError as error:
             raise _missing_super_init(robot_class, error) or error from None
         if isinstance(self.robot, wpilib.TimedRobot):
@@ -127,9 +130,12 @@ class RobotRun:
         self.timed_loop.stopped = True
         try:
             if self._started and self.threads.failure is None:
-                self.robot.endCompetition()
+                with self._failing():
+                    self.robot.endCompetition()
         finally:
+            self.in_motion = True
             self.still_running = self.threads.end()
+            self.in_motion = False
 
     def close(self) -> None:
         """Give the HAL back."""
@@ -151,6 +157,7 @@ class RobotRun:
     def _failing(self) -> Any:
         """Raise what went wrong, once, on whoever drives: not the `TestEnded` that unwound the robot for it."""
         __tracebackhide__ = True
+        before, self.in_motion = self.in_motion, True
         try:
             yield
         except TestEnded:
@@ -160,6 +167,8 @@ class RobotRun:
         except Exception as failure:
             self.threads.failure = failure
             raise
+        finally:
+            self.in_motion = before
 
 
 def _missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:

@@ -77,7 +77,7 @@ class Watchdog:
         warned = False
         while not self._over:
             _wait(min(0.25, self._hang_seconds / 4))
-            if clock.now_us != seen or self._over:
+            if clock.now_us != seen or not self._run.in_motion or self._over:
                 seen, cpu, wall, warned = clock.now_us, _cpu(), _wall(), False
                 continue
             busy = _cpu() - cpu >= self._hang_seconds
@@ -102,13 +102,14 @@ class Watchdog:
         line = self._files.line_of_thread(ident) if self._files is not None else None
         place = f"{line}: " if line else ""
         where = "a thread of the robot" if ident != self._run.threads.driver else "the robot code"
+        stands = f"robot time has stood at {self._run.clock.now:.2f} s"
         if busy:
-            what = f"{where} hangs here: {self._hang_seconds:g} s of computing, and robot time has not moved"
+            what = f"{where} hangs here: {stands} through {self._hang_seconds:g} s of computing"
             advice = "Is it an endless loop? A loop that waits for something must wait(), sleep or return."
         else:
-            what = f"{where} is blocked here: it has waited {BLOCKED_SECONDS:g} s for something outside the robot"
+            what = f"{where} is blocked here: {stands} for {BLOCKED_SECONDS:g} s, waiting for the world outside"
             advice = "Read from sockets, files and the keyboard in a thread of their own, or with a time-out."
-        return f"{place}{what} from {self._run.clock.now:.2f} s on.\n{advice}"
+        return f"{place}{what}.\n{advice}"
 
     def _interrupt(self, ident: int) -> None:
         if ident == threading.main_thread().ident and _SIGNAL is not None:
