@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import click
@@ -18,5 +19,5 @@ def command(directory: Path) -> None:
 
     for file in create_project(directory, Path(__file__).parent):
         click.echo(f"wrote {directory / file}")
-    place = "" if directory == Path() else f"cd {directory} && "
+    place = "" if directory == Path() else f"cd {shlex.quote(str(directory))} && "
     click.echo(f"\nTest it with: {place}pyfrc test")

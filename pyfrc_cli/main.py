@@ -57,9 +57,17 @@ def run() -> None:
     from pyfrc_core.errors import PyfrcError
 
     try:
-        cli.main(prog_name="pyfrc")
-    except PyfrcError as error:
+        sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False))
+    except click.exceptions.Abort:
+        click.secho("interrupted", err=True)
+        sys.exit(2)
+    except click.ClickException as error:
+        error.show()
+        if isinstance(error, click.NoSuchOption) and error.ctx is not None and error.ctx.info_name == "test":
+            click.echo("Options of pytest stand behind --, as in: pyfrc test -- -k drive", err=True)
+        sys.exit(error.exit_code)
+    except (PyfrcError, OSError) as error:
         if verbose:
             raise
         click.secho(f"error: {error}", fg="red", err=True)
-        sys.exit(error.exit_code)
+        sys.exit(getattr(error, "exit_code", 1))

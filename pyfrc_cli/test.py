@@ -83,6 +83,8 @@ def command(
     Exit codes: 0 all passed, 1 a test failed or the robot's code did,
     2 wrong usage, 5 no test was selected.
     """
+    if no_isolation and isolation not in (None, "none"):
+        raise click.UsageError(f"--no-isolation and --isolation {isolation} cannot both be.")
     project = chosen_project(directory, main, robot_class)
     from pyfrc_core.measure.coverage import CoverageOptions, measuring
 

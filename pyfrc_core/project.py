@@ -104,14 +104,12 @@ class Project:
             raise RobotCodeError(f"SyntaxError: {error.msg}{text}", where=place) from error
         except BaseException as error:
             del sys.modules[name]
-            if isinstance(error, KeyboardInterrupt):
-                raise
             place = self.files.innermost_line(error.__traceback__) or where
-            raise RobotCodeError(
-                f"{type(error).__name__}: {error}",
-                where=place,
-                remedy="This happens while the file is imported.",
-            ) from error
+            remedy = "This happens while the file is imported."
+            if isinstance(error, SystemExit):
+                remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
+            message = f"{type(error).__name__}: {error}".rstrip(": ")
+            raise RobotCodeError(message, where=place, remedy=remedy) from error
         return module
 
     def _choose_class(self, module: ModuleType) -> type[Any]:
@@ -176,7 +174,8 @@ def find_project(start: Path | None = None, main: Path | None = None, class_name
     if main is not None:
         file = (start / main if start is not None and not main.is_absolute() else main).absolute()
         if not file.is_file():
-            raise ProjectError(f"there is no file {main}", remedy="--main names the file with your robot class.")
+            what = f"{main} is a directory" if file.is_dir() else f"there is no file {main}"
+            raise ProjectError(what, remedy="--main names the file with your robot class.")
         return Project(file.resolve(), class_name)
     if start is not None:
         if not start.is_dir():
@@ -207,8 +206,10 @@ def _project_in(directory: Path, class_name: str | None) -> Project | None:
 
 
 def _nothing_found(directory: Path, how: str) -> ProjectError:
+    nearly = next((file.name for file in directory.glob("*.py") if file.name.lower() == MAIN_FILE), None)
     return ProjectError(
-        f"no robot project found: there is no {MAIN_FILE} {how} {directory}",
+        f"no robot project found: there is no {MAIN_FILE} {how} {directory}"
+        + (f" (but a {nearly}: rename it)" if nearly else ""),
         remedy="Go to your project's directory, name it with --project DIR, name the file with --main FILE, "
         "or make a new project with: pyfrc init",
     )

@@ -65,7 +65,7 @@ def busy_processes(count: int) -> Iterator[None]:
 def hashes(directory: Path) -> Iterator[tuple[str, str]]:
     """(test, hash of its trace) for each trace in the directory."""
     for trace in sorted(directory.iterdir()):
-        test = trace.stem.partition("_test.py_")[2]
+        test = trace.stem.partition("_test.py.")[2]
         last = json.loads(trace.read_text("utf-8").splitlines()[-1])
         yield test, last["sha256"]
 

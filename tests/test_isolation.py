@@ -250,8 +250,9 @@ def everything(make_shared_project: MakeProject) -> RobotProject:
 @pytest.fixture(scope="module")
 def report(everything: RobotProject) -> Result:
     """All of it, one test after another."""
-    result = everything.run("test", "-j", "1", "--", "-v", "-rA", "--durations=3", "--junitxml=report.xml")
     noted = everything.path / "tests" / "events.log"
+    noted.unlink(missing_ok=True)  # another test may have run the project first
+    result = everything.run("test", "-j", "1", "--", "-v", "-rA", "--durations=3", "--junitxml=report.xml")
     noted.rename(noted.with_name("first-events.log"))
     return result
 

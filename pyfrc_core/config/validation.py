@@ -53,7 +53,7 @@ def _explain(schema: type[Any], error: Any, path: list[Any], file: Path, prefix:
     if error["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
         known = [field.name for field in dataclasses.fields(_schema_at(schema, path[:-1]))]
         return SettingsError(f"unknown key {key!r}", where=where, remedy=nearest(str(path[-1]), known))
-    message = str(error["msg"])
+    message = str(error["msg"]).replace("Value error, ", "").replace("an object", "a table")
     message = message[:1].lower() + message[1:]
     return SettingsError(f"{key} = {error['input']!r}: {message}", where=where)
 

@@ -16,7 +16,7 @@ from wpilib.simulation import DriverStationSim
 
 from .containers import LiveDict, LiveList, Slot, ValueList, kept
 from .fields import HAS_SOURCE, Field
-from .kinds import BOOL, FLOAT, INT32, Kind, choice, number, text, whole
+from .kinds import BOOL, FLOAT, INT32, Kind, WrongValue, choice, number, text, whole
 from .paths import join
 
 JOYSTICKS = 6
@@ -217,6 +217,8 @@ class Joystick(LiveDict):
 
     def _set_button(self, index: int, value: bool) -> None:
         if index == 0:
+            if value:
+                raise WrongValue("buttons count from 1, as in WPILib", where=f"joysticks[{self._port}].buttons[0]")
             return
         hs.setJoystickButton(self._port, index, value)
         if self.counts()[1] < index:

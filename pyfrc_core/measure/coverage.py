@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..errors import UsageError
 from ..project import Project
 
 if TYPE_CHECKING:
@@ -74,7 +75,11 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
         yield result
         return
     from coverage import Coverage
+    from coverage.exceptions import CoverageException
 
+    for file, is_taken in ((options.html, Path.is_file), (options.xml, Path.is_dir)):
+        if file is not None and is_taken(file):
+            raise UsageError(f"the report cannot be written to {file}: something else is there already")
     # What each process measured lies here until it is combined; nothing of it is left in the project.
     with tempfile.TemporaryDirectory(prefix="pyfrc-coverage-") as directory:
         settings: dict[str, Any] = {
@@ -84,15 +89,19 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
             "config_file": str(project.pyproject) if project.pyproject.is_file() else False,
         }
         os.environ[_SETTINGS] = json.dumps(settings)
-        measure_here()
         try:
-            yield result
-        finally:
-            save_here()
-            del os.environ[_SETTINGS]
-        combined = Coverage(**settings)
-        combined.combine([directory])
-        result.status = _report(combined, options)
+            measure_here()
+            try:
+                yield result
+            finally:
+                save_here()
+                del os.environ[_SETTINGS]
+            combined = Coverage(**settings)
+            combined.combine([directory])
+            result.status = _report(combined, options)
+        except (CoverageException, ValueError) as error:
+            where = project.pyproject.name if "config" in str(error).lower() else None
+            raise UsageError(f"coverage: {error}", where=where) from error
 
 
 def _report(combined: Coverage, options: CoverageOptions) -> int:
@@ -100,12 +109,13 @@ def _report(combined: Coverage, options: CoverageOptions) -> int:
 
     print()
     try:
-        total = combined.report(show_missing=True, file=sys.stdout)
+        # A file that cannot be parsed is told and left out: it need not be one that the robot uses.
+        total = combined.report(show_missing=True, ignore_errors=True, file=sys.stdout)
         if options.html is not None:
-            combined.html_report(directory=str(options.html))
+            combined.html_report(directory=str(options.html), ignore_errors=True)
             print(f"coverage as web pages: {options.html / 'index.html'}")
         if options.xml is not None:
-            combined.xml_report(outfile=str(options.xml))
+            combined.xml_report(outfile=str(options.xml), ignore_errors=True)
             print(f"coverage as XML: {options.xml}")
     except NoDataError:
         print("coverage: no line of the project was run", file=sys.stderr)

@@ -90,7 +90,9 @@ class Clock:
         self._move_to(end)
         if target_us > self.limit_us:
             limit = self.limit_us / 1_000_000
-            raise TestRanTooLong(f"the robot ran for more than {limit:g} s of robot time, the limit")
+            raise TestRanTooLong(
+                f"the robot ran for more than {limit:g} s of robot time, the limit: does the test never end its run?"
+            )
 
     def run_while(self, waiting: Callable[[], bool], deadline_us: int | None = None) -> None:
         """Do what is due, one thing at a time, until `waiting` answers False or the deadline is reached.

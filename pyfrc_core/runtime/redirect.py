@@ -14,6 +14,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import hal
@@ -40,6 +41,7 @@ class Redirection:
 
     def __init__(self) -> None:
         self.run: RobotRun | None = None
+        self._root = Path()
         self._originals: list[tuple[Any, str, Any]] = []
 
     @property
@@ -48,6 +50,7 @@ class Redirection:
 
     def install(self, files: RobotFiles) -> None:
         """Replace the names, for the robot project with these files. Doing it again only changes the project."""
+        self._root = Path(files.root)
         cooperative.scope.is_robot_code = files.is_robot_code
         if self.installed:
             return
@@ -83,6 +86,7 @@ class Redirection:
             *self._waiting_in_wpilib(),
             *self._stepping_in_tests(),
             *self._timed_robot(),
+            *self._directories(),
         ]
 
     def _time_functions(self) -> list[tuple[Any, str, Any]]:
@@ -237,6 +241,13 @@ class Redirection:
             (TimedRobot, "addPeriodic", add_periodic),
             (TimedRobot, "startCompetition", start_competition),
             (TimedRobot, "getLoopStartTime", loop_start_time),
+        ]
+
+    def _directories(self) -> list[tuple[Any, str, Any]]:
+        """WPILib takes the directory of whichever program was started for the robot's."""
+        return [
+            (wpilib, "getOperatingDirectory", lambda: str(self._root)),
+            (wpilib, "getDeployDirectory", lambda: str(self._root / "deploy")),
         ]
 
 

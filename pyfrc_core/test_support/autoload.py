@@ -17,12 +17,12 @@ _LIBRARIES = ("wpilib", "commands2", "magicbot")
 
 def pytest_configure(config: pytest.Config) -> None:
     if config.pluginmanager.hasplugin("pyfrc.robot"):
-        return  # `pyfrc test` has brought its own
+        return None  # `pyfrc test` has brought its own
     for start in _where_tests_are(config):
-        main = _robot_program(start)
-        if main is not None:
-            _register(config, main)
-            return
+        for directory in (start, *start.parents):
+            if _holds_robot(directory):
+                return _register(config, directory)
+    return None
 
 
 def _where_tests_are(config: pytest.Config) -> list[Path]:
@@ -32,21 +32,26 @@ def _where_tests_are(config: pytest.Config) -> list[Path]:
     return [path if path.is_dir() else path.parent for path in named if path.exists()] + [here]
 
 
-def _robot_program(start: Path) -> Path | None:
-    for directory in (start, *start.parents):
-        main = directory / "robot.py"
-        if main.is_file():
-            text = main.read_text("utf-8", "replace")
-            return main if any(library in text for library in _LIBRARIES) else None
-    return None
+def _holds_robot(directory: Path) -> bool:
+    """Whether this is a robot project: its robot.py is one of a robot, or its settings name another."""
+    main, settings = directory / "robot.py", directory / "pyproject.toml"
+    if main.is_file() and any(library in main.read_text("utf-8", "replace") for library in _LIBRARIES):
+        return True
+    return settings.is_file() and "[tool.pyfrc" in settings.read_text("utf-8", "replace")
 
 
-def _register(config: pytest.Config, main: Path) -> None:
-    from ..project import Project
+def _register(config: pytest.Config, directory: Path) -> None:
+    import pytest
+
+    from ..errors import PyfrcError
+    from ..project import find_project
     from .isolation.loop import IsolatedTests
     from .pytest_plugin import PyFrcPlugin
 
-    project = Project(main.resolve())
-    plugin = PyFrcPlugin(None, project.main_file, project.root, project=project)
+    try:
+        project = find_project(directory)
+        plugin = PyFrcPlugin(None, project.main_file, project.root, project=project)
+    except PyfrcError as error:
+        raise pytest.UsageError(str(error)) from None
     config.pluginmanager.register(plugin, "pyfrc.robot")
     config.pluginmanager.register(IsolatedTests(plugin), "pyfrc.isolation")

@@ -143,7 +143,9 @@ class TestController:
         """
         __tracebackhide__ = True
         if assert_alive:
-            assert self.robot_is_alive, "the robot program is not running"
+            assert self.robot_is_alive, "the robot program is not running: step inside `with control.run_robot():`"
+        if seconds < 0:
+            raise ValueError(f"time cannot go back: step_timing(seconds={seconds!r})")
         if autonomous:
             self.set_autonomous(enabled)
         else:

@@ -7,6 +7,7 @@ import re
 import sys
 from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack
+from hashlib import sha256
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -14,6 +15,7 @@ from typing import Any
 import pytest
 
 from .. import tests as ready_made
+from ..errors import PyfrcError
 from ..hal import HalData
 from ..project import Project
 from ..runtime.redirect import redirection
@@ -24,7 +26,7 @@ from ..runtime.watchdog import Watchdog
 from .controller import TestController
 from .fake_time import FakeTime
 from .options import TestOptions
-from .reporting import NamesItsPlace, headline, leave_out_pyfrc, put_first
+from .reporting import NamesItsPlace, headline, leave_out_pyfrc, names_its_place, put_first
 
 #: The fixtures that have to do with the robot: a test that asks for one runs in a process of its own.
 ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "robot", "wpilib"})
@@ -143,9 +145,7 @@ class PyFrcPlugin:
         """Record what the robot does, if the user wants that."""
         closing = ExitStack()
         if self.options.trace_directory is not None:
-            self.options.trace_directory.mkdir(parents=True, exist_ok=True)
-            name = re.sub(r"[^\w.\[\]-]+", "_", item.nodeid)
-            file = (self.options.trace_directory / f"{name}.jsonl").open("w", encoding="utf-8")
+            file = (self.options.trace_directory / _trace_name(item.nodeid)).open("w", encoding="utf-8")
             closing.enter_context(file)
             trace = Trace(run.hal_data, file)
             run.observe(trace.look)
@@ -163,7 +163,11 @@ class PyFrcPlugin:
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """`test_autonomous(gamedata)` runs once for each message that the field may send."""
         if "gamedata" in metafunc.fixturenames:
-            metafunc.parametrize("gamedata", self.project.sim_config.messages or [""])
+            try:
+                messages = self.project.sim_config.messages
+            except PyfrcError as wrong:
+                raise pytest.Collector.CollectError(str(wrong)) from None
+            metafunc.parametrize("gamedata", messages or [""])
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
@@ -176,15 +180,25 @@ class PyFrcPlugin:
     def pytest_runtest_makereport(
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-        if call.excinfo is not None and not item.config.option.fulltrace:
+        short = not item.config.option.fulltrace
+        if call.excinfo is not None and short:
             leave_out_pyfrc(call.excinfo.value, self.project.files)
         report = yield
         if report.failed and call.excinfo is not None:
             text = headline(call.excinfo.value, self.project.files)
             if text is not None:
-                put_first(report, text)
+                put_first(report, text, only=short and names_its_place(call.excinfo.value))
             report.sections.append(seed_section(self.options))
         return report
+
+
+def _trace_name(nodeid: str) -> str:
+    """A file name that tells the test, and that no other test has."""
+    file, _, test = nodeid.partition("::")
+    test = test.replace("::", ".")
+    plain = re.sub(r"[^\w.\[\]-]+", "_", test)
+    unique = "" if plain == test else "-" + sha256(test.encode()).hexdigest()[:8]
+    return f"{file.replace('/', '_')}.{plain}{unique}.jsonl"
 
 
 def seed_section(options: TestOptions) -> tuple[str, str]:
@@ -198,7 +212,7 @@ def _forget(run: RobotRun, item: pytest.Item) -> None:
 
     run.close()
     # What else holds on to the robot: the test's arguments, and the traceback of its failure.
-    getattr(item, "funcargs", {}).clear()
+    (getattr(item, "funcargs", None) or {}).clear()
     for name in ("last_exc", "last_value", "last_traceback"):
         vars(sys).pop(name, None)
     commands2 = sys.modules.get("commands2")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import sys
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from ..errors import RobotCodeError, UsageError
@@ -10,6 +13,9 @@ from ..runtime.endings import TestFroze
 
 if TYPE_CHECKING:
     import pytest
+
+
+_STACK_ENTRY = re.compile(r'  File "([^"]+)", line \d+, in [^\n]*\n(?:    [^\n]*\n)?\n?')
 
 
 class NamesItsPlace(Exception):
@@ -21,6 +27,9 @@ def leave_out_pyfrc(error: BaseException, files: RobotFiles) -> None:
     entry = error.__traceback__
     if files.innermost_line(entry) is None:
         return
+    if error.args and isinstance(error.args[0], str) and "\n  File " in error.args[0]:
+        # WPILib tells where a device was made before, with the whole stack of it.
+        error.args = (_STACK_ENTRY.sub(lambda found: _ours(found, files), error.args[0]).strip(), *error.args[1:])
     while entry is not None:
         while entry.tb_next is not None and is_pyfrc(entry.tb_next.tb_frame.f_code.co_filename):
             entry.tb_next = entry.tb_next.tb_next
@@ -29,21 +38,49 @@ def leave_out_pyfrc(error: BaseException, files: RobotFiles) -> None:
 
 def headline(error: BaseException, files: RobotFiles) -> str | None:
     """``robot.py:12: ZeroDivisionError: division by zero``, if the user's code took part in it."""
-    if isinstance(error, (RobotCodeError, UsageError, NamesItsPlace)) or (isinstance(error, TestFroze) and str(error)):
-        return str(error)  # these name the place themselves
-    line = files.innermost_line(error.__traceback__)
+    if names_its_place(error) or (isinstance(error, TestFroze) and str(error)):
+        return str(error)
+    line = files.innermost_line(error.__traceback__) or _line_of_method(error, files)
     return f"{line}: {type(error).__name__}: {error}".rstrip(": ") if line else None
 
 
-def put_first(report: pytest.TestReport, text: str) -> None:
-    """Show `text` before everything else that pytest shows of a failure, and in its summary."""
+def names_its_place(error: BaseException) -> bool:
+    """Whether the message says it all: what is wrong, where, and what to do."""
+    return isinstance(error, (RobotCodeError, UsageError, NamesItsPlace))
+
+
+def _ours(entry: re.Match[str], files: RobotFiles) -> str:
+    return entry[0] if files.is_project_file(entry[1]) else ""
+
+
+def _line_of_method(error: BaseException, files: RobotFiles) -> str | None:
+    """The line of a method that WPILib could not even call, as when its `self` was forgotten."""
+    found = re.match(r"(\w+)\.(\w+)\(\) (?:takes|missing|got)", str(error))
+    if not isinstance(error, TypeError) or found is None:
+        return None
+    for module in list(sys.modules.values()):
+        owner = vars(module).get(found[1]) if isinstance(module, ModuleType) else None
+        code = getattr(getattr(owner, found[2], None), "__code__", None)
+        if code is not None and files.is_robot_code(code.co_filename):
+            return f"{files.relative(code.co_filename)}:{code.co_firstlineno}"
+    return None
+
+
+def put_first(report: pytest.TestReport, text: str, only: bool = False) -> None:
+    """Show `text` before everything else that pytest shows of a failure, and in its summary.
+
+    :param only: leave out everything else
+    """
     from _pytest._code.code import ExceptionChainRepr, ReprEntryNative
 
     longrepr = report.longrepr
     if isinstance(longrepr, ExceptionChainRepr):
         entry: Any = ReprEntryNative([*(f"{line}\n" for line in text.splitlines()), "\n"])
+        if only:
+            longrepr.chain = longrepr.chain[-1:]
         traceback = longrepr.chain[0][0]  # what is shown first
-        traceback.reprentries = [entry, *traceback.reprentries]
+        traceback.reprentries = [entry] if only else [entry, *traceback.reprentries]
+        traceback.extraline = None if only else traceback.extraline
         for _, crash, _ in longrepr.chain[-1:]:
             if crash is not None:
                 crash.message = text.splitlines()[0]

@@ -48,6 +48,8 @@ def run_tests(
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     args = _arguments(project, builtin, pytest_args)
+    if options.trace_directory is not None:
+        options.trace_directory.mkdir(parents=True, exist_ok=True)
 
     def session(imports_late: bool = False) -> int:
         plugin = PyFrcPlugin(

@@ -116,14 +116,19 @@ class IsolatedTests:
 
     def _can_fork(self) -> bool:
         isolation = self._plugin.options.isolation
-        if isolation != "auto":
-            return isolation == "fork"
-        if not FORK_IS_SAFE:
+        if isolation == "spawn" or (isolation == "auto" and not FORK_IS_SAFE):
             return False
         if not self._plugin.imports_late:
             with contextlib.suppress(Exception):  # told by each test that needs it
                 self._plugin.robot_class()
-        return not left_behind(self._python_threads)
+        if not left_behind(self._python_threads):
+            return True
+        if isolation == "fork":
+            raise pytest.UsageError(
+                "the robot's tests cannot be forked: importing the robot, or a test file, has made devices or threads, "
+                "which a fork would lack. Leave out --isolation fork."
+            )
+        return False
 
     def _uses_robot(self, item: pytest.Item) -> bool:
         if ROBOT_FIXTURES.intersection(getattr(item, "fixturenames", ())):
