@@ -47,6 +47,14 @@ class RobotCodeError(PyfrcError):
     """The robot's own code failed while it was loaded; `where` is the user's own line."""
 
 
+def text_of(error: BaseException) -> str:
+    """``ZeroDivisionError: division by zero``; also for an error whose text cannot be had."""
+    try:
+        return f"{type(error).__name__}: {error}".rstrip(": ")
+    except Exception as another:
+        return f"{type(error).__name__} (whose text raises {type(another).__name__})"
+
+
 def nearest(word: str, known: list[str]) -> str:
     """A hint such as ``did you mean 'teleop'?``, or the list of what there is."""
     from difflib import get_close_matches

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from .config.settings import Settings, load_settings
-from .errors import ProjectError, RobotCodeError
+from .errors import ProjectError, RobotCodeError, text_of
 from .robot_files import RobotFiles
 
 if TYPE_CHECKING:
@@ -108,8 +108,7 @@ class Project:
             remedy = "This happens while the file is imported."
             if isinstance(error, SystemExit):
                 remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
-            message = f"{type(error).__name__}: {error}".rstrip(": ")
-            raise RobotCodeError(message, where=place, remedy=remedy) from error
+            raise RobotCodeError(text_of(error), where=place, remedy=remedy) from error
         return module
 
     def _choose_class(self, module: ModuleType) -> type[Any]:

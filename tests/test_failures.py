@@ -601,3 +601,121 @@ def test_a_seed_repeats_what_robot_and_tests_draw(make_project: MakeProject) -> 
     assert len(drawn) == 2
     assert re.findall(r"^drew .+$", again.stdout, re.MULTILINE) == drawn
     assert not set(re.findall(r"^drew .+$", eight.stdout, re.MULTILINE)) & set(drawn)
+
+
+HANGS = """
+    import re, threading
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            threading.Thread(target=self.work, daemon=True).start()
+
+        def work(self):
+            try:
+                wpilib.wait(1000)
+            finally:
+                while True:  # never ends
+                    pass  # its work
+
+        def autonomousPeriodic():  # no self
+            pass
+
+        def teleopPeriodic(self):
+            re.match(r"(a+)+$", "a" * 60 + "b")
+"""
+
+
+def test_hangs_that_no_python_code_can_end_are_named_too(make_project: MakeProject) -> None:
+    """A call into C that never gives Python back; a thread that hangs while it is being stopped."""
+    project = make_project(
+        {
+            "robot.py": HANGS,
+            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.5\n",
+            "tests/test_it.py": """
+            def test_keeps_python(control, robot):
+                control.set_operator_control()
+                control.run_test(lambda tm: tm < 1)
+
+            def test_hangs_at_the_end(control, robot):
+                control.run_test(lambda tm: tm < 1)
+
+            def test_without_self(control, robot):
+                control.set_autonomous()
+                control.run_test(lambda tm: tm < 1)
+            """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 1, result.output
+    blocks = result.blocks()
+    first = first_line(blocks["test_keeps_python"])
+    assert first.startswith(f"{project.place('robot.py', 're.match')}: the robot code hangs here")
+    number = number_in(first_line(blocks["test_hangs_at_the_end"]), "robot.py")
+    assert project.line("robot.py", "# never ends") <= number <= project.line("robot.py", "# its work")
+    without_self = first_line(blocks["test_without_self"])
+    assert without_self.startswith(f"{project.place('robot.py', '# no self')}: TypeError: MyRobot.autonomousPeriodic()")
+
+
+def test_two_devices_on_one_channel_are_told_without_other_peoples_code(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.left = wpilib.PWMSparkMax(0)
+                    self.right = wpilib.PWMSparkMax(0)
+            """,
+            "tests/test_it.py": "def test_it(control, robot):\n    control.run_test(lambda tm: tm < 1)\n",
+        }
+    )
+    result = project.run("test")
+    (block,) = result.blocks().values()
+    assert first_line(block).startswith(f"{project.place('robot.py', 'self.right')}: RuntimeError")
+    assert f"line {project.line('robot.py', 'self.left')}, in robotInit" in block
+    assert "pluggy" not in block
+    assert not re.search(r"pyfrc_core[/\\]", block)
+
+
+@pytest.mark.parametrize("name", ["mian", "main"])
+def test_plain_pytest_tells_wrong_settings_in_a_sentence(make_project: MakeProject, name: str) -> None:
+    project = make_project({"robot.py": ROBOT_OF_NOTHING, "pyproject.toml": f'[tool.pyfrc]\n{name} = "nothing.py"\n'})
+    result = project.pytest()
+    assert result.code == 4
+    assert "INTERNALERROR" not in result.output
+    assert name in result.output
+
+
+def test_plain_pytest_tells_a_robot_that_cannot_be_imported_in_a_line(make_project: MakeProject) -> None:
+    project = make_project(
+        {"robot.py": "import wpilib\n\nimport not_installed\n", "tests/pyfrc_test.py": "from pyfrc.tests import *\n"}
+    )
+    result = project.pytest()
+    assert result.code == 1
+    for block in result.blocks().values():
+        assert first_line(block).startswith("robot.py:3: ModuleNotFoundError")
+        assert not re.search(r"pyfrc_core[/\\]", block)
+
+
+def test_a_file_that_cannot_be_parsed_does_not_cost_the_coverage_report(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT_OF_NOTHING,
+            "old_robot.py": 'print "hello"\n',
+            "tests/pyfrc_test.py": "from pyfrc.tests import *\n",
+        }
+    )
+    result = project.run("test", "--coverage", "--", "-q")
+    assert result.code == 0, result.output
+    assert re.search(r"^robot\.py .* 100%$", result.stdout, re.MULTILINE)
+    assert "Traceback" not in result.output
+
+
+ROBOT_OF_NOTHING = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""

@@ -641,3 +641,249 @@ def test_a_thread_blocked_on_the_outside_world_does_not_stop_the_clock(make_proj
                 self.loops += 1
         """,
     )
+
+
+def test_waits_that_python_computes_the_rest_of_end_on_time(make_project) -> None:
+    """What is left of a time-out is computed in floating point; it must come to nothing at last."""
+    passes(
+        make_project,
+        """
+        def test_it(control, robot):
+            control.run_test(lambda tm: tm < 2)
+            assert robot.ends["queue"] == [round(0.1 * n, 6) for n in range(1, 20)]
+            assert robot.ends["condition"] == [round(0.07 * n, 6) for n in range(1, 29)]
+            assert robot.ends["semaphore"] == [round(0.3 * n, 6) for n in range(1, 7)]
+            assert robot.ends["barrier"] == [0.1]
+            assert robot.ends["yielding"] == ["done"]
+        """,
+        """
+        import queue, threading, time
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.ends = {}
+                nothing = queue.Queue()
+                condition = threading.Condition()
+                semaphore = threading.Semaphore(0)
+                barrier = threading.Barrier(2)
+
+                def get():
+                    try:
+                        nothing.get(timeout=0.1)
+                    except queue.Empty:
+                        pass
+
+                def wait_for():
+                    with condition:
+                        assert not condition.wait_for(lambda: False, 0.07)
+
+                self.repeat("queue", get)
+                self.repeat("condition", wait_for)
+                self.repeat("semaphore", lambda: semaphore.acquire(timeout=0.3))
+
+                def meet():
+                    try:
+                        barrier.wait(0.1)
+                    except threading.BrokenBarrierError:
+                        self.ends["barrier"] = [round(time.monotonic(), 6)]
+
+                threading.Thread(target=meet, daemon=True).start()
+                threading.Thread(target=self.yielding, daemon=True).start()
+
+            def repeat(self, name, wait):
+                ends = self.ends[name] = []
+
+                def body():
+                    while True:
+                        wait()
+                        ends.append(round(time.monotonic(), 6))
+
+                threading.Thread(target=body, daemon=True).start()
+
+            def yielding(self):
+                while time.monotonic() < 0.001:
+                    time.sleep(0)
+                self.ends["yielding"] = ["done"]
+        """,
+    )
+
+
+CALLBACKS = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def __init__(self):
+            super().__init__()
+            self.calls = []
+            self.busy = False
+            self.addPeriodic(lambda: self.call("f", 0.012), 0.005)
+            self.addPeriodic(lambda: self.call("q", 0), 0.01)
+
+        def robotPeriodic(self):
+            self.call("r", 0)
+
+        def call(self, name, seconds):
+            assert not self.busy, "one callback inside another"
+            self.busy = True
+            self.calls.append((name, round(wpilib.Timer.getFPGATimestamp(), 3)))
+            wpilib.wait(seconds)
+            self.busy = False
+"""
+
+
+def test_callbacks_of_one_loop_never_run_inside_each_other(make_project) -> None:
+    """However long they take; and whoever drives the loop, the schedule is the same."""
+    tests = """
+        def test_it(control, robot):
+            control.run_test(lambda tm: tm < 0.2)
+            assert len(robot.calls) > 15
+            print(robot.calls, file=open("calls.txt", "w"))
+    """
+    project = make_project({"robot.py": CALLBACKS, "tests/test_it.py": tests})
+    own_loop = "\n        def startCompetition(self):\n            super().startCompetition()\n"
+    schedules = []
+    for robot in (CALLBACKS, CALLBACKS + own_loop):
+        project.write({"robot.py": robot})
+        result = project.run("test", "--", "-q")
+        assert result.code == 0, result.output
+        schedules.append((project.path / "calls.txt").read_text())
+    assert schedules[0] == schedules[1]
+
+
+def test_the_robots_own_end_is_called_once_at_its_end(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_it(control, robot):
+            assert robot.ended == 0
+            control.run_test(lambda tm: tm < 1)
+            assert robot.ended == 1
+        """,
+        """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            ended = 0
+
+            def robotInit(self):
+                self.motor = wpilib.PWMSparkMax(0)
+
+            def endCompetition(self):
+                self.motor.stopMotor()
+                self.ended += 1
+        """,
+    )
+
+
+def test_robot_code_that_catches_everything_cannot_keep_the_test_from_ending(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import pytest
+
+        def test_ends(control, robot, fake_time):
+            control.set_operator_control()
+            control.run_test(lambda tm: tm < 2)
+            assert fake_time.get() == 2
+
+        def test_another_threads_failure_is_told(control, robot):
+            robot.fail_at = 1.0
+            control.set_operator_control()
+            with pytest.raises(ValueError, match="from the thread"):
+                control.run_test(lambda tm: tm < 2)
+        """,
+        """
+        import threading, time
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            fail_at = 1000
+
+            def robotInit(self):
+                threading.Thread(target=self.work, daemon=True).start()
+
+            def work(self):
+                time.sleep(self.fail_at)
+                raise ValueError("from the thread")
+
+            def teleopPeriodic(self):
+                try:
+                    time.sleep(0.1)
+                except:
+                    pass
+        """,
+    )
+
+
+def test_what_the_robot_leaves_can_be_waited_for_after_its_end(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_it(control, robot):
+            with control.run_robot():
+                control.step_timing(seconds=0.5, autonomous=False, enabled=True)
+            robot.thread.join(5)
+            assert not robot.thread.is_alive()
+            assert robot.event.wait(1)
+            assert robot.lock.acquire(timeout=1)
+            robot.pool.shutdown()
+        """,
+        """
+        import concurrent.futures, threading, time
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.lock, self.event = threading.Lock(), threading.Event()
+                self.event.set()
+                self.thread = threading.Thread(target=lambda: time.sleep(1000))
+                self.thread.start()
+                self.pool = concurrent.futures.ThreadPoolExecutor(1)
+                for _ in range(50):
+                    self.pool.submit(time.sleep, 1)
+        """,
+    )
+
+
+def test_the_robots_directory_is_the_projects(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_it(robot, robot_path):
+            assert robot.directories == [robot_path, robot_path + "/deploy"]
+        """,
+        """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__()
+                self.directories = [wpilib.getOperatingDirectory(), wpilib.getDeployDirectory()]
+        """,
+    )
+
+
+def test_a_process_that_the_robot_starts_ends_with_its_test(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_it(control, robot):
+            control.run_test(lambda tm: tm < 1)
+            assert robot.process.is_alive()
+        """,
+        """
+        import multiprocessing, time
+        import wpilib
+
+        def look_for_targets():
+            while True:
+                time.sleep(1000)
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                context = multiprocessing.get_context("fork")
+                self.process = context.Process(target=look_for_targets, daemon=True)
+                self.process.start()
+        """,
+    )

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from heapq import heappop, heappush
 
 from ..hal.timing import deliver_packet, step_us, stop_and_zero
-from .endings import TestRanTooLong
+from .endings import TestEnded, TestRanTooLong
 
 #: The driver station sends a packet every 20 ms.
 PACKET_US = 20_000
@@ -47,6 +47,8 @@ class Clock:
         self.limit_us = to_us(DEFAULT_TIME_LIMIT)
         self._queue: list[tuple[int, int, int, Action]] = []
         self._order = 0
+        #: Set when the run is over or has failed: nobody can wait any longer, not even code that catches `TestEnded`.
+        self.halted = False
         self._next_packet = PACKET_US
         self.at(PACKET_US, PACKET, self._packet)
 
@@ -81,12 +83,15 @@ class Clock:
         outer one asked for.
 
         :raises TestRanTooLong: when the time limit comes first
+        :raises TestEnded: when the run was halted
         """
         __tracebackhide__ = True
         queue = self._queue
         end = min(target_us, self.limit_us)
         while queue[0][0] <= end:  # there always is a next packet
             self._run_next()
+            if self.halted:
+                raise TestEnded
         self._move_to(end)
         if target_us > self.limit_us:
             limit = self.limit_us / 1_000_000
@@ -108,6 +113,8 @@ class Clock:
             if next_due > self.limit_us:
                 return self.run_until(next_due)
             self._run_next()
+            if self.halted:
+                raise TestEnded
         return None
 
     def _run_next(self) -> None:

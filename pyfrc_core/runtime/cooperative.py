@@ -70,13 +70,13 @@ class CooperativeLock:
         threads = scope.taking_part()
         if threads is None:
             return self._lock.acquire(True, timeout)
-        timeout_us = None if timeout < 0 else to_us(timeout)
+        timeout_us = None if timeout < 0 else max(1, to_us(timeout))  # a wait that takes no time could go on for ever
         return threads.wait(self._waiters, partial(self._lock.acquire, False), timeout_us)
 
     def release(self) -> None:
         self._lock.release()
         if self._waiters and scope.threads is not None:
-            scope.threads.notify(self._waiters)
+            scope.threads.notify(self._waiters[:1])  # only one of them can have it
 
     def __enter__(self) -> bool:
         return self.acquire()

@@ -112,12 +112,13 @@ class Redirection:
                 return _real_sleep(seconds)
             if seconds < 0:
                 raise ValueError("sleep length must be non-negative")
-            return threads.sleep_until(threads.clock.now_us + to_us(seconds))
+            # A loop of sleep(0) lets other threads, and so time, go on; on a computer too that takes its microseconds.
+            return threads.sleep_until(threads.clock.now_us + max(1, to_us(seconds)))
 
         def waits_in_threading() -> float:
             # The deadlines of conditions and queues: kept by whoever waits, so told by thread, not by file.
             threads = cooperative.scope.taking_part()
-            return real_monotonic() if threads is None else threads.clock.now
+            return real_monotonic() if threads is None else _Instant(threads.clock.now)
 
         real_monotonic = time.monotonic
         return [
@@ -249,6 +250,19 @@ class Redirection:
             (wpilib, "getOperatingDirectory", lambda: str(self._root)),
             (wpilib, "getDeployDirectory", lambda: str(self._root / "deploy")),
         ]
+
+
+class _Instant(float):
+    """A time whose sums and differences are whole microseconds.
+
+    Python's own waits compute what is left of a time-out again and again, until nothing is: not even 1e-17 s.
+    """
+
+    def __add__(self, other: float) -> _Instant:
+        return _Instant(round(float(self) + other, 6))
+
+    def __sub__(self, other: float) -> _Instant:
+        return _Instant(round(float(self) - other, 6))
 
 
 def _driver_station_attached() -> bool:

@@ -19,7 +19,7 @@ from ..errors import RobotCodeError
 from ..hal import HalData, devices_exist, modes, timing
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
-from .endings import TestEnded
+from .endings import TestEnded, TestFroze
 from .motor_safety import MotorSafetyCheck
 from .notifier import Alarms
 from .redirect import redirection
@@ -71,7 +71,7 @@ class RobotRun:
             raise _missing_super_init(robot_class, error) or error from None
         if isinstance(self.robot, wpilib.TimedRobot):
             # Its constructor has set an alarm that nobody will wait for, and the HAL would wait for somebody to.
-            wpilib.TimedRobot.endCompetition(self.robot)
+            endCompetition(self.robot)
         return self.robot
 
     @cached_property
@@ -130,11 +130,20 @@ class RobotRun:
         self.timed_loop.stopped = True
         try:
             if self._started and self.threads.failure is None:
-                with self._failing():
+                with contextlib.suppress(TestEnded), self._failing():
                     self.robot.endCompetition()
         finally:
-            self.in_motion = True
+            self._end_threads()
+
+    def _end_threads(self) -> None:
+        __tracebackhide__ = True
+        self.in_motion = True
+        try:
             self.still_running = self.threads.end()
+        except TestFroze:
+            if self.threads.failure is None:  # what failed first is what is to be told
+                raise
+        finally:
             self.in_motion = False
 
     def close(self) -> None:
@@ -165,7 +174,7 @@ class RobotRun:
                 raise
             raise self.threads.failure from None
         except Exception as failure:
-            self.threads.failure = failure
+            self.threads.fail(failure)
             raise
         finally:
             self.in_motion = before
@@ -181,6 +190,12 @@ def _missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeEr
         where=f"{Path(code.co_filename).name}:{code.co_firstlineno}",
         remedy="Make that its first line.",
     )
+
+
+def endCompetition(self: wpilib.TimedRobot) -> None:
+    """Call WPILib's own method, never the robot's: called from a function of this name, the bindings take it for a call
+    of `super()`."""
+    wpilib.TimedRobot.endCompetition(self)
 
 
 def _has_loop_of_its_own(robot: Any) -> bool:

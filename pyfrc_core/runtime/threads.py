@@ -25,7 +25,7 @@ from pathlib import Path
 from types import TracebackType
 
 from .clock import WAKE_UP, Clock
-from .endings import TestEnded
+from .endings import TestEnded, TestFroze
 
 # Bound before the redirection of these names for robot code: this module needs the real ones.
 _allocate_lock = _thread.allocate_lock
@@ -33,7 +33,7 @@ _real_join = threading.Thread.join
 _process_time = time.process_time
 
 #: How often a thread is told that the run is over, before it counts as one that will not stop.
-_TELL_TO_STOP = 20
+_TELL_TO_STOP = 1000
 # A thread that has the turn and lets this much wall time pass, in so many looks, on (nearly) no processor time, is
 # blocked in the outside world. It decides only when to stop waiting for it, not how a test ends.
 _LOOK_SECONDS, _LOOKS, _IDLE_CPU_SECONDS = 0.05, 8, 0.004
@@ -93,6 +93,7 @@ class RobotThreads:
         self._threads: dict[int, RobotThread] = {}
         self._all: list[RobotThread] = []
         self.ending = False
+        self._over = False
         #: What went wrong while robot code on the driver waited; for whoever runs the robot to raise.
         self.failure: BaseException | None = None
 
@@ -105,7 +106,7 @@ class RobotThreads:
     def takes_part(self) -> bool:
         """Whether the calling thread lives in robot time (the driver does, while it is in charge)."""
         ident = _thread.get_ident()
-        return ident == self.driver or ident in self._threads
+        return (ident == self.driver and not self._over) or ident in self._threads
 
     def start(self, thread: threading.Thread | None = None) -> RobotThread:
         """Prepare a thread whose first turn comes as soon as time moves; its body goes through `run_body`."""
@@ -154,7 +155,9 @@ class RobotThreads:
         deadline = None if timeout_us is None else clock.now_us + timeout_us
         me = self.current()
         if me is None:
-            answer = ready()
+            if ready():
+                return True
+            answer = False
 
             def waiting() -> bool:
                 nonlocal answer
@@ -189,13 +192,18 @@ class RobotThreads:
         code to catch: it is kept for whoever runs the robot, and this code is unwound.
         """
         __tracebackhide__ = True
-        if self.ending or self.failure is not None:
+        if self.ending or self.clock.halted:
             raise TestEnded
         try:
             yield
         except Exception as failure:
-            self.failure = failure
+            self.fail(failure)
             raise TestEnded from None
+
+    def fail(self, failure: BaseException) -> None:
+        """Keep what went wrong first, and let nobody wait any longer."""
+        self.failure = self.failure or failure
+        self.clock.halted = True
 
     # -- the turn -----------------------------------------------------------------------------------------------
 
@@ -262,6 +270,7 @@ class RobotThreads:
         A daemon thread that waits for the world outside does no harm where it is, and is not one of them.
         """
         self.ending = True
+        hangs: TestFroze | None = None
         for record in list(self._all):
             if record.detached and record.done.acquire(blocking=False):
                 record.detached = False
@@ -269,6 +278,13 @@ class RobotThreads:
             for _ in range(_TELL_TO_STOP):
                 if record.finished or record.detached:
                     break
-                with contextlib.suppress(Exception):  # what a thread says while it is being stopped
+                try:
                     self._give_turn(record)
+                except TestFroze as froze:
+                    hangs = froze
+                except Exception:
+                    break  # what a thread says while it is being stopped
+        self._over = True
+        if hangs is not None:
+            raise hangs
         return [record for record in self._all if not (record.finished or record.left_alone)]

@@ -8,6 +8,8 @@ time. A robot that overrides `startCompetition` and calls `super().startCompetit
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import hal
@@ -18,6 +20,9 @@ if TYPE_CHECKING:
     import wpilib
 
     from .threads import RobotThreads
+
+
+_DUE = attrgetter("due_us")
 
 
 class Periodic:
@@ -46,6 +51,7 @@ class TimedLoop:
         self._created_us = created_us
         self._callbacks: list[Periodic] = []
         self._in_place = False
+        self._turns = 0
         self.stopped = False
         #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
         self.loop_start_us = 0
@@ -60,7 +66,7 @@ class TimedLoop:
         callback = Periodic(call, first, period_us)
         self._callbacks.append(callback)
         if self._in_place:
-            self._schedule(callback)
+            self._schedule()
 
     def begin(self, robot: wpilib.TimedRobot) -> None:
         """What WPILib does before its first loop: the robot's own initialisation, then the loop's schedule."""
@@ -74,29 +80,37 @@ class TimedLoop:
     def run_in_place(self) -> None:
         """From now on the clock calls what is due."""
         self._in_place = True
-        for callback in self._callbacks:
-            self._schedule(callback)
+        self._schedule()
 
-    def _schedule(self, callback: Periodic) -> None:
-        clock, call = self._clock, callback.call
+    def _schedule(self) -> None:
+        """Have the next turn begin when the next callback is due, instead of whenever that was before."""
+        self._turns += 1
+        self._clock.at(self._next().due_us, ROBOT_LOOP, partial(self._turn_in_place, self._turns))
 
-        def run() -> None:
-            __tracebackhide__ = True
-            if self.stopped:
-                return
-            self.loop_start_us = now = clock.now_us
-            call()
-            callback.move_on(now)
-            clock.at(callback.due_us, ROBOT_LOOP, run)
-
-        clock.at(callback.due_us, ROBOT_LOOP, run)
+    def _turn_in_place(self, turn: int) -> None:
+        __tracebackhide__ = True
+        if turn == self._turns and not self.stopped:
+            self._turn()
+            self._schedule()
 
     def run_blocking(self, threads: RobotThreads) -> None:
         """Call what is due on the calling thread, which waits in between, until the run ends."""
         __tracebackhide__ = True
         while not self.stopped:
-            callback = min(self._callbacks, key=lambda candidate: candidate.due_us)
-            threads.sleep_until(callback.due_us)
-            self.loop_start_us = now = self._clock.now_us
+            threads.sleep_until(self._next().due_us)
+            self._turn()
+
+    def _turn(self) -> None:
+        """Call everything that is due, one after the other, whatever time each of them takes."""
+        __tracebackhide__ = True
+        woken_us = self._clock.now_us
+        while True:
+            callback = self._next()
+            if callback.due_us > woken_us or self.stopped:
+                return
+            self.loop_start_us = self._clock.now_us
             callback.call()
-            callback.move_on(now)
+            callback.move_on(woken_us)
+
+    def _next(self) -> Periodic:
+        return min(self._callbacks, key=_DUE)

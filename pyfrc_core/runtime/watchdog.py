@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import _thread
 import ctypes
+import faulthandler
 import os
 import signal
 import threading
@@ -29,6 +30,10 @@ HANG_SECONDS = 10.0
 #: Wall seconds blocked without any processor time, after which it does too.
 BLOCKED_SECONDS = 60.0
 
+#: How many times `hang_seconds`, in wall time, no Python code at all may run. Even a busy machine lets a thread run
+#: once in a minute.
+STUCK_FACTOR = 6
+
 #: The exit code of a process whose robot code could not be stopped otherwise.
 EXIT_HANGS = 86
 
@@ -44,6 +49,8 @@ class Watchdog:
     :param hang_seconds: processor seconds without progress
     :param last_words: called with the explanation before the process is ended, when the code cannot be stopped;
         without it the process is never ended
+    :param stuck_file: the descriptor of a file for the stack of code that keeps Python's lock, so that not even this
+        class gets to run; the process ends then
     """
 
     def __init__(
@@ -52,11 +59,13 @@ class Watchdog:
         files: RobotFiles | None,
         hang_seconds: float = HANG_SECONDS,
         last_words: Callable[[str], None] | None = None,
+        stuck_file: int | None = None,
     ) -> None:
         self._run = run
         self._files = files
         self._hang_seconds = hang_seconds
         self._last_words = last_words
+        self._stuck_file = stuck_file
         self._over = False
         self._message = ""
 
@@ -70,12 +79,17 @@ class Watchdog:
                 yield
             finally:
                 self._over = True
+                if self._stuck_file is not None:
+                    faulthandler.cancel_dump_traceback_later()
 
     def _watch(self) -> None:
         clock = self._run.clock
         seen, cpu, wall = clock.now_us, _cpu(), _wall()
         warned = False
         while not self._over:
+            if self._stuck_file is not None:
+                # From C, and so without Python's lock; put off again each time this thread does get to run.
+                faulthandler.dump_traceback_later(STUCK_FACTOR * self._hang_seconds, exit=True, file=self._stuck_file)
             _wait(min(0.25, self._hang_seconds / 4))
             if clock.now_us != seen or not self._run.in_motion or self._over:
                 seen, cpu, wall, warned = clock.now_us, _cpu(), _wall(), False
@@ -130,8 +144,10 @@ class Watchdog:
 
         def interrupted(signum: int, frame: FrameType | None) -> None:
             __tracebackhide__ = True
-            if not self._over:
+            if self._message and not self._over:
                 raise TestFroze(self._message)
+            if callable(before):
+                before(signum, frame)
 
         before = signal.signal(_SIGNAL, interrupted)
         try:

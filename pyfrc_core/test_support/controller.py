@@ -85,6 +85,7 @@ class TestController:
             __tracebackhide__ = True
             answers = [on_step(now) for on_step in steps]  # each of them is to see every packet
             if not all(answers):
+                run.clock.halted = True
                 raise TestEnded
             if not run.alive and run.started:
                 raise RuntimeError(f"the robot program ended by itself: startCompetition() returned at {now:.2f} s")

@@ -62,6 +62,8 @@ class PyFrcPlugin:
         self.options = options or TestOptions.combined(self.project.settings.test)
         #: Whether this process serves one test and ends with it, so that there is nobody to tidy up for.
         self.own_process = False
+        #: The file descriptor to which a call that never gives Python back is reported.
+        self.when_python_is_stuck: int | None = None
         #: Called with the explanation when robot code cannot be stopped otherwise than with its process.
         self.last_words: Callable[[str], None] | None = None
         #: Whether each test's own process imports the robot's modules, since they cannot be forked.
@@ -125,7 +127,9 @@ class PyFrcPlugin:
         __tracebackhide__ = True
         self.robot_class()  # the robot's modules are imported before robot time begins
         run = RobotRun()
-        watchdog = Watchdog(run, self.project.files, self.options.hang_seconds, self.last_words)
+        watchdog = Watchdog(
+            run, self.project.files, self.options.hang_seconds, self.last_words, self.when_python_is_stuck
+        )
         with watchdog.watching(), ExitStack() as closing:
             run.open()
             if not self.own_process:

@@ -7,7 +7,7 @@ import sys
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from ..errors import RobotCodeError, UsageError
+from ..errors import RobotCodeError, UsageError, text_of
 from ..robot_files import RobotFiles, is_pyfrc
 from ..runtime.endings import TestFroze
 
@@ -41,7 +41,7 @@ def headline(error: BaseException, files: RobotFiles) -> str | None:
     if names_its_place(error) or (isinstance(error, TestFroze) and str(error)):
         return str(error)
     line = files.innermost_line(error.__traceback__) or _line_of_method(error, files)
-    return f"{line}: {type(error).__name__}: {error}".rstrip(": ") if line else None
+    return f"{line}: {text_of(error)}" if line else None
 
 
 def names_its_place(error: BaseException) -> bool:
@@ -55,8 +55,8 @@ def _ours(entry: re.Match[str], files: RobotFiles) -> str:
 
 def _line_of_method(error: BaseException, files: RobotFiles) -> str | None:
     """The line of a method that WPILib could not even call, as when its `self` was forgotten."""
-    found = re.match(r"(\w+)\.(\w+)\(\) (?:takes|missing|got)", str(error))
-    if not isinstance(error, TypeError) or found is None:
+    found = re.match(r"TypeError: (\w+)\.(\w+)\(\) (?:takes|missing|got)", text_of(error))
+    if found is None:
         return None
     for module in list(sys.modules.values()):
         owner = vars(module).get(found[1]) if isinstance(module, ModuleType) else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Sequence
 from functools import partial
@@ -64,9 +65,12 @@ def run_tests(
     spare = None
     if FORK_IS_SAFE and options.isolation in ("auto", "fork"):
         spare = Spare(partial(session, imports_late=True))
+    # What cancels a run (an IDE, a CI system) ends it as Ctrl-C does: with the processes it has started.
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return session()
     finally:
+        signal.signal(signal.SIGTERM, before)
         if spare is not None:
             spare.dismiss()
 

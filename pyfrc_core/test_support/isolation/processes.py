@@ -22,6 +22,7 @@ from typing import IO, Any
 import pytest
 
 from ...measure.coverage import save_here
+from ...robot_files import is_pyfrc
 from ...runtime.watchdog import EXIT_HANGS
 from ..pytest_plugin import PyFrcPlugin
 from .messages import Teller
@@ -88,7 +89,9 @@ class TestProcess(ABC):
         words = self._last_words.read().decode(errors="replace").strip()
         if self._status == EXIT_HANGS and words:
             return words
-        if self._status < 0:
+        if words.startswith("Timeout"):
+            what = "the robot code hangs here, in a call that lets nothing else of Python run"
+        elif self._status < 0:
             name = _signal_name(-self._status)
             what = f"the robot's process was ended by signal {-self._status} ({name})"
         else:
@@ -99,9 +102,13 @@ class TestProcess(ABC):
         return f"{line}: {what}\n\n{words}".strip() if line else f"{what}\n\n{words}".strip()
 
     def _line_of_crash(self, words: str) -> str | None:
-        for filename, number in _FAULT_LINE.findall(words):
-            if self._files.is_project_file(filename):
-                return f"{self._files.relative(filename)}:{number}"
+        for stack in re.split(r"^(?=\w*\s?[Tt]hread )", words, flags=re.MULTILINE):
+            lines = _FAULT_LINE.findall(stack)
+            if not lines or is_pyfrc(lines[0][0]):
+                continue  # a thread that only waits for its turn
+            for filename, number in lines:
+                if self._files.is_project_file(filename):
+                    return f"{self._files.relative(filename)}:{number}"
         return None
 
 
@@ -263,6 +270,7 @@ def _become_the_test(
         leave_word_on_crash(plugin, last_words)
         Teller(send).run(item)
         save_here()
+        _end_processes_of_the_robot()
         status = 0
     except BaseException:
         import traceback
@@ -272,12 +280,19 @@ def _become_the_test(
         _exit(status)
 
 
+def _end_processes_of_the_robot() -> None:
+    multiprocessing = sys.modules.get("multiprocessing")
+    for process in multiprocessing.active_children() if multiprocessing is not None else ():
+        process.terminate()
+
+
 _exit = os._exit
 
 
 def leave_word_on_crash(plugin: PyFrcPlugin, descriptor: int) -> None:
     """Have what ends this process too early say where: a fault in C code, `os._exit`, code that cannot be stopped."""
     plugin.own_process = True
+    plugin.when_python_is_stuck = descriptor
     faulthandler.enable(descriptor, all_threads=False)
     plugin.last_words = lambda text: _write_all(descriptor, text.encode())
 

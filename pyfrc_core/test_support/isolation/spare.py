@@ -8,6 +8,7 @@ test's process imports the robot itself: slower by that import, not by a new int
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import threading
 from collections.abc import Callable
@@ -53,8 +54,10 @@ class Spare:
         """It is not needed, or has done its work."""
         if not self._over:
             self._over = True
-            os.close(self._go)
+            # Not by closing the pipe: a process that robot code has left behind may hold it open, too.
+            os.kill(self._pid, signal.SIGKILL)
             os.waitpid(self._pid, 0)
+            os.close(self._go)
 
     def take_over(self) -> int:
         """Let the spare do the work instead of this process; answers its exit code."""
