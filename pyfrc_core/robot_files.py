@@ -54,10 +54,10 @@ class RobotFiles:
             return str(Path("..", "tests", filename.removeprefix(self._tests_beside)))
         return filename.removeprefix(self.root)
 
-    def innermost_line(self, traceback: TracebackType | None) -> str | None:
+    def innermost_line(self, traceback: TracebackType | None, tests: bool = True) -> str | None:
         """``robot.py:12`` for the user's line nearest to where an exception was raised, if one took part.
 
-        The robot's own line comes before a test's: the test only called it.
+        The robot's own line comes before a test's: the test only called it. Without `tests`, only the robot's counts.
         """
         robot_line = test_line = None
         while traceback is not None:
@@ -68,7 +68,7 @@ class RobotFiles:
             elif self.is_project_file(filename):
                 test_line = place
             traceback = traceback.tb_next
-        return robot_line or test_line
+        return robot_line or (test_line if tests else None)
 
     def line_of_thread(self, ident: int) -> str | None:
         """``robot.py:12`` for the user's line that a running thread is at, if it is in the user's code."""

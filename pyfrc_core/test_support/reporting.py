@@ -40,7 +40,10 @@ def headline(error: BaseException, files: RobotFiles) -> str | None:
     """``robot.py:12: ZeroDivisionError: division by zero``, if the user's code took part in it."""
     if names_its_place(error) or (isinstance(error, TestFroze) and str(error)):
         return str(error)
-    line = files.innermost_line(error.__traceback__) or _line_of_method(error, files)
+    traceback = error.__traceback__
+    line = (
+        files.innermost_line(traceback, tests=False) or _line_of_method(error, files) or files.innermost_line(traceback)
+    )
     return f"{line}: {text_of(error)}" if line else None
 
 
