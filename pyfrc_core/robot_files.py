@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from types import FrameType, TracebackType
+from types import TracebackType
 
 # A virtual environment inside the project holds other people's code.
 _NOT_OURS = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
@@ -44,9 +44,6 @@ class RobotFiles:
         if any(part in filename for part in _NOT_OURS) or filename.startswith(_PYFRC):
             return False
         return filename.startswith((self.root, self._tests_beside))
-
-    def called_from_robot_code(self, frame: FrameType) -> bool:
-        return self.is_robot_code(frame.f_code.co_filename)
 
     def relative(self, filename: str) -> str:
         """The name to show to the user: relative to the project."""

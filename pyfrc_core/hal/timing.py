@@ -6,7 +6,6 @@ and robot code call (`wpilib.simulation.stepTiming` and its kin), so they always
 
 from __future__ import annotations
 
-import hal
 from hal.simulation import (
     notifyDriverStationNewData,
     pauseTiming,
@@ -35,8 +34,3 @@ def stop_and_zero() -> None:
 def run_freely() -> None:
     """HAL time follows the wall clock again."""
     resumeTiming()
-
-
-def now_us() -> int:
-    """HAL time in microseconds, as the robot sees it."""
-    return int(hal.getFPGATime()[0])

@@ -157,6 +157,7 @@ class RobotRun:
             self.clock.initialize()
             self.timed_loop = TimedLoop(self.clock, 0)
             self.robot = None
+            timing.run_freely()
 
     def _compete(self) -> None:
         __tracebackhide__ = True
