@@ -8,7 +8,6 @@ time. A robot that overrides `startCompetition` and calls `super().startCompetit
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
 
 
 _DUE = attrgetter("due_us")
+_NEVER = 1 << 62
 
 
 class Periodic:
@@ -51,7 +51,7 @@ class TimedLoop:
         self._created_us = created_us
         self._callbacks: list[Periodic] = []
         self._in_place = False
-        self._turns = 0
+        self._alarm_us = _NEVER
         self.stopped = False
         #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
         self.loop_start_us = 0
@@ -65,8 +65,8 @@ class TimedLoop:
         first = self._created_us + to_us(offset) + (periods_gone + 1) * period_us
         callback = Periodic(call, first, period_us)
         self._callbacks.append(callback)
-        if self._in_place:
-            self._schedule()
+        if self._in_place and callback.due_us < self._alarm_us < _NEVER:
+            self._set_alarm(callback)
 
     def begin(self, robot: wpilib.TimedRobot) -> None:
         """What WPILib does before its first loop: the robot's own initialisation, then the loop's schedule."""
@@ -80,37 +80,40 @@ class TimedLoop:
     def run_in_place(self) -> None:
         """From now on the clock calls what is due."""
         self._in_place = True
-        self._schedule()
+        self._set_alarm(self._next())
 
-    def _schedule(self) -> None:
-        """Have the next turn begin when the next callback is due, instead of whenever that was before."""
-        self._turns += 1
-        self._clock.at(self._next().due_us, ROBOT_LOOP, partial(self._turn_in_place, self._turns))
+    def _set_alarm(self, callback: Periodic) -> None:
+        """Have the next turn begin when this callback is due, instead of whenever that was before."""
+        self._alarm_us = callback.due_us
+        self._clock.at(callback.due_us, ROBOT_LOOP, self._on_alarm)
 
-    def _turn_in_place(self, turn: int) -> None:
+    def _on_alarm(self) -> None:
         __tracebackhide__ = True
-        if turn == self._turns and not self.stopped:
-            self._turn()
-            self._schedule()
+        if self._alarm_us <= self._clock.now_us and not self.stopped:
+            self._alarm_us = _NEVER  # no other turn begins within this one, however long it takes
+            self._set_alarm(self._turn())
 
     def run_blocking(self, threads: RobotThreads) -> None:
         """Call what is due on the calling thread, which waits in between, until the run ends."""
         __tracebackhide__ = True
+        callback = self._next()
         while not self.stopped:
-            threads.sleep_until(self._next().due_us)
-            self._turn()
+            threads.sleep_until(callback.due_us)
+            callback = self._turn()
 
-    def _turn(self) -> None:
-        """Call everything that is due, one after the other, whatever time each of them takes."""
+    def _turn(self) -> Periodic:
+        """Call everything that is due, one after the other, whatever time each takes; answers what is due next."""
         __tracebackhide__ = True
-        woken_us = self._clock.now_us
-        while True:
-            callback = self._next()
-            if callback.due_us > woken_us or self.stopped:
-                return
-            self.loop_start_us = self._clock.now_us
+        clock = self._clock
+        woken_us = clock.now_us
+        callback = self._next()
+        while callback.due_us <= woken_us and not self.stopped:
+            self.loop_start_us = clock.now_us
             callback.call()
             callback.move_on(woken_us)
+            callback = self._next()
+        return callback
 
     def _next(self) -> Periodic:
-        return min(self._callbacks, key=_DUE)
+        callbacks = self._callbacks
+        return callbacks[0] if len(callbacks) == 1 else min(callbacks, key=_DUE)
