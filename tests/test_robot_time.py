@@ -887,3 +887,31 @@ def test_a_process_that_the_robot_starts_ends_with_its_test(make_project) -> Non
                 self.process.start()
         """,
     )
+
+
+def test_fuzzing_finds_what_only_two_buttons_at_once_do_and_repeats_it(make_project) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.stick = wpilib.Joystick(0)
+                    self.switch = wpilib.DigitalInput(3)
+
+                def teleopPeriodic(self):
+                    if self.stick.getRawButton(2) and self.stick.getRawButton(3) and not self.switch.get():
+                        raise RuntimeError("nobody thought of this")
+            """,
+            "tests/fuzz_test.py": "from pyfrc.tests.fuzz_test import *\n",
+        }
+    )
+    traces = set()
+    for run in "first", "second":
+        result = project.run("test", "--seed", "3", "--trace", run)
+        assert result.code == 1, result.output
+        assert "robot.py:10: RuntimeError: nobody thought of this" in result.output
+        (trace,) = (project.path / run).iterdir()
+        traces.add(trace.read_text())
+    assert len(traces) == 1

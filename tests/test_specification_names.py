@@ -17,6 +17,7 @@ SPECIFICATION: list[tuple[str, str, str | None]] = [
     ("pyfrc.tests.basic", "test_disabled", "control, fake_time, robot"),
     ("pyfrc.tests.basic", "test_operator_control", "control, fake_time, robot"),
     ("pyfrc.tests.basic", "test_practice", "control, fake_time, robot"),
+    ("pyfrc.tests.fuzz_test", "test_fuzz", "hal_data, control, fake_time, robot"),
     ("pyfrc.tests.docstring_test", "ignore_object", "o, robot_path"),
     ("pyfrc.tests.docstring_test", "test_docstrings", "robot, robot_path"),
     ("pyfrc.test_support.pytest_plugin", "PyFrcPlugin", "robot_class, robot_file, robot_path"),

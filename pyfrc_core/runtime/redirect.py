@@ -8,6 +8,7 @@ other libraries keep the real ones.
 
 from __future__ import annotations
 
+import os
 import queue
 import sys
 import threading
@@ -54,6 +55,8 @@ class Redirection:
         cooperative.scope.is_robot_code = files.is_robot_code
         if self.installed:
             return
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._leave)
         for owner, name, replacement in self._replacements():
             self._originals.append((owner, name, vars(owner).get(name, getattr(owner, name))))
             setattr(owner, name, replacement)
@@ -63,6 +66,11 @@ class Redirection:
             owner, name, original = self._originals.pop()
             setattr(owner, name, original)
         cooperative.scope.is_robot_code = lambda filename: False
+
+    def _leave(self) -> None:
+        """A process that robot code has forked lives in real time: the clock, and the HAL's threads, are not there."""
+        self.run = None
+        cooperative.scope.threads = Notifier.threads = None
 
     @contextmanager
     def active(self, run: RobotRun) -> Iterator[None]:

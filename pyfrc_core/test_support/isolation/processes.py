@@ -265,6 +265,7 @@ def _become_the_test(
 ) -> None:
     """What the forked process does. Never returns."""
     status = 1
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     try:
         _capture_anew(item.config, captured)
         leave_word_on_crash(plugin, last_words)
@@ -283,7 +284,7 @@ def _become_the_test(
 def _end_processes_of_the_robot() -> None:
     multiprocessing = sys.modules.get("multiprocessing")
     for process in multiprocessing.active_children() if multiprocessing is not None else ():
-        process.terminate()
+        process.kill()
 
 
 _exit = os._exit
