@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .clock import to_us
+from .threads import real_allocate_lock, real_thread_join
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -28,9 +29,7 @@ _BETWEEN = tuple(str(_LIBRARY / name) for name in ("threading.py", "queue.py", "
 # Where a thread of the robot begins, when nothing of the robot's own is on its stack (a pool's worker).
 _ROBOT_THREADS = str(Path(__file__).with_name("threads.py"))
 
-real_allocate_lock = _thread.allocate_lock
 real_thread_start = threading.Thread.start
-real_thread_join = threading.Thread.join
 
 
 class _Scope:

@@ -28,8 +28,8 @@ from .clock import WAKE_UP, Clock
 from .endings import TestEnded, TestFroze
 
 # Bound before the redirection of these names for robot code: this module needs the real ones.
-_allocate_lock = _thread.allocate_lock
-_real_join = threading.Thread.join
+real_allocate_lock = _thread.allocate_lock
+real_thread_join = threading.Thread.join
 _process_time = time.process_time
 
 #: How often a thread is told that the run is over, before it counts as one that will not stop.
@@ -59,7 +59,7 @@ class RobotThread:
 
 
 def _taken_lock() -> _thread.LockType:
-    lock = _allocate_lock()
+    lock = real_allocate_lock()
     lock.acquire()
     return lock
 
@@ -257,7 +257,7 @@ class RobotThreads:
         __tracebackhide__ = True
         self._all.remove(record)
         if record.thread is not None:
-            _real_join(record.thread)  # it only has its last few instructions left; is_alive() must not waver
+            real_thread_join(record.thread)  # it only has its last few instructions left; is_alive() must not waver
         self.notify(record.joiners)
         if record.error is not None:
             raise record.error

@@ -25,9 +25,7 @@ if TYPE_CHECKING:
     from ..robot_files import RobotFiles
     from .robot import RobotRun
 
-#: Processor seconds without a microsecond of robot time, after which robot code counts as hanging.
-HANG_SECONDS = 10.0
-#: Wall seconds blocked without any processor time, after which it does too.
+#: Wall seconds blocked without any processor time, after which robot code counts as hanging, too.
 BLOCKED_SECONDS = 60.0
 
 #: How many times `hang_seconds`, in wall time, no Python code at all may run. Even a busy machine lets a thread run
@@ -46,7 +44,7 @@ _exit = os._exit
 class Watchdog:
     """Watches one robot run from a thread of its own.
 
-    :param hang_seconds: processor seconds without progress
+    :param hang_seconds: processor seconds without a microsecond of robot time, after which code counts as hanging
     :param last_words: called with the explanation before the process is ended, when the code cannot be stopped;
         without it the process is never ended
     :param stuck_file: the descriptor of a file for the stack of code that keeps Python's lock, so that not even this
@@ -57,7 +55,7 @@ class Watchdog:
         self,
         run: RobotRun,
         files: RobotFiles | None,
-        hang_seconds: float = HANG_SECONDS,
+        hang_seconds: float,
         last_words: Callable[[str], None] | None = None,
         stuck_file: int | None = None,
     ) -> None:

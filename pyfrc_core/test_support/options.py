@@ -31,7 +31,7 @@ class TestOptions:
     jobs: int = 1
     isolation: Isolation = "auto"
     trace_directory: Path | None = None
-    hang_seconds: float = 10.0
+    hang_seconds: float = TestSettings.hang_seconds
 
     @classmethod
     def combined(

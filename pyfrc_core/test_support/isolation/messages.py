@@ -41,12 +41,10 @@ class Teller:
 
     def __init__(self, send: Callable[[bytes], None]) -> None:
         self._send = send
-        self._config: pytest.Config | None = None
         self._listening = False
 
     def run(self, item: pytest.Item) -> None:
         """The whole of pytest's protocol for `item`, without a report on this side."""
-        self._config = item.config
         # On registering, pytest tells the warnings recorded so far again: those the other side knows.
         item.config.pluginmanager.register(self, "pyfrc.teller")
         self._listening = True
