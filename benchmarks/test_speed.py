@@ -2,33 +2,17 @@
 
 Run it with ``python benchmarks/test_speed.py``; README.md beside it says what is measured, and how. For all its name
 this holds no tests: it prints figures, and says of each target whether it was met.
-
-It needs nothing but Python's standard library and a pip that reaches a package index. The two sides get virtual
-environments of their own, in a cache directory.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
-import platform
-import statistics
-import subprocess
-import sys
-import tempfile
-import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
 
-CHECKOUT = Path(__file__).resolve().parents[1]
+from comparison import ROBOTPY_VERSION, Case, Environment, compare, run, timed
+
 LOOP_SPEED = Path(__file__).resolve().with_name("loop_speed.py")
-
-ROBOTPY_VERSION = "2026.2.2"
-TODAYS = ("pyfrc==2026.0.3", f"robotpy=={ROBOTPY_VERSION}", "pytest")
 
 ROBOT = """\
 import wpilib
@@ -47,103 +31,6 @@ PYPROJECT = f'[tool.robotpy]\nrobotpy_version = "{ROBOTPY_VERSION}"\n'
 #: How many tests `test --builtin` has on either side: a run that passed fewer did not do the same.
 BUILTIN_TESTS = 4
 
-#: What would make the children behave otherwise than a user's: a fixed hash seed, a path, options, coverage.
-CLEANED_FROM_ENVIRONMENT = ("PYTHON", "PYTEST", "PY_COLORS", "COVERAGE", "COV_", "FORCE_COLOR", "VIRTUAL_ENV")
-
-
-class BenchmarkError(Exception):
-    """A side could not be set up, or failed at what was to be timed: there is no figure to give."""
-
-
-# -- child processes ---------------------------------------------------------------------------------------------------
-
-
-def run(command: list[str], directory: Path, ends_with: int = 0) -> str:
-    """Run a child and answer what it printed, standard output only.
-
-    :param ends_with: the exit code that means success
-    :raises BenchmarkError: with all that it printed, when it ends otherwise
-    """
-    environment = {key: text for key, text in os.environ.items() if not key.startswith(CLEANED_FROM_ENVIRONMENT)}
-    done = subprocess.run(
-        command, cwd=directory, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
-    )
-    if done.returncode != ends_with:
-        what = f"{' '.join(command)}\nended with exit code {done.returncode}"
-        raise BenchmarkError(f"{what}\n{done.stdout}{done.stderr}".rstrip())
-    return done.stdout
-
-
-def timed(command: list[str], directory: Path, expected: str, ends_with: int = 0) -> float:
-    """The seconds that a child takes, from its start to its end.
-
-    :param expected: what it prints when it has done its work
-    """
-    begin = time.perf_counter()
-    output = run(command, directory, ends_with)
-    seconds = time.perf_counter() - begin
-    if expected not in output:
-        raise BenchmarkError(f"{' '.join(command)}\ndid not print {expected!r}, but:\n{output}".rstrip())
-    return seconds
-
-
-def tell(text: str) -> None:
-    """Tell of progress, apart from the figures."""
-    print(text, file=sys.stderr, flush=True)
-
-
-# -- the two sides -----------------------------------------------------------------------------------------------------
-
-
-class Environment:
-    """A virtual environment in the cache directory, made by this interpreter."""
-
-    def __init__(self, cache: Path, name: str) -> None:
-        version = ".".join(map(str, sys.version_info[:3]))
-        self.directory = cache / f"{name}-{version}"
-        self._scripts = self.directory / ("Scripts" if os.name == "nt" else "bin")
-
-    @property
-    def python(self) -> str:
-        return self.script("python")
-
-    def script(self, name: str) -> str:
-        """The path of a command that is installed here."""
-        return str(self._scripts / (f"{name}.exe" if os.name == "nt" else name))
-
-    def provide(self, *requirements: str, always: bool = False) -> None:
-        """Have `requirements` installed.
-
-        :param always: install them even when that has been done before
-        """
-        stamp = self.directory / "installed.json"
-        wanted = json.dumps(requirements)
-        present = stamp.is_file() and stamp.read_text("utf-8") == wanted
-        if present and not always:
-            return
-        tell(f"installing {' '.join(requirements)}")
-        if not present:
-            run([sys.executable, "-m", "venv", "--clear", str(self.directory)], self.directory.parent)
-        pip = [self.python, "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
-        run([*pip, *requirements], self.directory)  # pip installs a directory anew, whatever its version
-        stamp.write_text(wanted, "utf-8")
-
-    def versions(self, *packages: str) -> dict[str, str]:
-        """What is installed of these packages."""
-        code = "import sys, importlib.metadata as m; print(*map(m.version, sys.argv[1:]))"
-        printed = run([self.python, "-c", code, *packages], self.directory)
-        return dict(zip(packages, printed.split(), strict=True))
-
-
-def provide_environments(cache: Path) -> tuple[Environment, Environment]:
-    """Ours and today's, ready to be used."""
-    cache.mkdir(parents=True, exist_ok=True)
-    (cache / ".gitignore").write_text("*\n", "utf-8")
-    ours, todays = Environment(cache, "ours"), Environment(cache, "todays")
-    todays.provide(*TODAYS)
-    ours.provide(str(CHECKOUT), always=True)
-    return ours, todays
-
 
 def write_robot(directory: Path) -> Path:
     """The robot project that is run: the same on both sides, in a directory of its own on each."""
@@ -151,58 +38,6 @@ def write_robot(directory: Path) -> Path:
     (directory / "robot.py").write_text(ROBOT, "utf-8")
     (directory / "pyproject.toml").write_text(PYPROJECT, "utf-8")
     return directory
-
-
-# -- the cases ---------------------------------------------------------------------------------------------------------
-
-
-@dataclass
-class Case:
-    """One comparison, and what came of it.
-
-    :param ours: takes one sample of our side
-    :param other: takes one sample of what we are compared with
-    :param target: the wording of the target
-    :param is_met: decides it, by our median and the ratio of medians
-    """
-
-    number: int
-    name: str
-    unit: str
-    ours: Callable[[], float]
-    other: Callable[[], float]
-    target: str
-    is_met: Callable[[float, float], bool]
-    our_samples: list[float] = field(default_factory=list)
-    other_samples: list[float] = field(default_factory=list)
-
-    def sample(self, rounds: int) -> None:
-        """One run of each to warm up, then both in turn: what slows the machine down meets both."""
-        tell(f"case {self.number}: {self.name}")
-        self.ours()
-        self.other()
-        for _ in range(rounds):
-            self.our_samples.append(self.ours())
-            self.other_samples.append(self.other())
-
-    def result(self) -> dict[str, Any]:
-        """The samples and what follows from them, for `--json` and for the table."""
-        ours, other = statistics.median(self.our_samples), statistics.median(self.other_samples)
-        ratios = [mine / others for mine, others in zip(self.our_samples, self.other_samples, strict=True)]
-        return {
-            "case": self.number,
-            "name": self.name,
-            "unit": self.unit,
-            "our_samples": self.our_samples,
-            "other_samples": self.other_samples,
-            "our_median": ours,
-            "other_median": other,
-            "ratio": ours / other,
-            "ratio_min": min(ratios),
-            "ratio_max": max(ratios),
-            "target": self.target,
-            "met": self.is_met(ours, ours / other),
-        }
 
 
 def make_cases(ours: Environment, todays: Environment, directory: Path) -> list[Case]:
@@ -231,62 +66,5 @@ def make_cases(ours: Environment, todays: Environment, directory: Path) -> list[
     ]
 
 
-def print_table(machine: dict[str, Any], results: list[dict[str, Any]], rounds: int) -> None:
-    """The figures, for people."""
-    host = f"{machine['cores']} cores (load {machine['load']}), Python {machine['python']}, {machine['platform']}"
-    print(f"{host}; {rounds} rounds, medians")
-    for side in ("ours", "todays"):
-        print(f"{side}: " + ", ".join(f"{name} {version}" for name, version in machine[side].items()))
-    print(f"\n{'case':<37}{'ours':>12}{'other':>12}{'ratio':>8}   min..max of rounds")
-    for each in results:
-        digits = 0 if each["unit"] == "s/s" else 3
-        mine, others = (f"{each[key]:.{digits}f} {each['unit']}" for key in ("our_median", "other_median"))
-        span = f"{each['ratio_min']:.3f}..{each['ratio_max']:.3f}"
-        print(f"{each['case']}  {each['name']:<34}{mine:>12}{others:>12}{each['ratio']:>8.3f}   {span}")
-    print()
-    for each in results:
-        print(f"case {each['case']}: {'met' if each['met'] else 'MISSED'} ({each['target']})")
-
-
-def parse_arguments() -> argparse.Namespace:
-    """The command line."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--only", type=int, choices=range(1, 5), action="append", help="this case; may be repeated")
-    parser.add_argument("--rounds", type=int, default=5, metavar="N", help="samples of each side (default: 5)")
-    parser.add_argument("--cache", type=Path, default=Path(__file__).with_name(".cache"), help="for the environments")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write all samples there")
-    arguments = parser.parse_args()
-    if arguments.rounds < 1:
-        parser.error("--rounds must be 1 or more")
-    return arguments
-
-
-def main() -> None:
-    """Measure, print; the exit code tells of errors only, not of targets missed."""
-    arguments = parse_arguments()
-    ours, todays = provide_environments(arguments.cache.resolve())
-    machine = {
-        "cores": os.cpu_count(),
-        "python": platform.python_version(),
-        "platform": platform.system(),
-        # Of what else goes on here, before anything is measured; Windows does not know it.
-        "load": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None,
-        "ours": ours.versions("pyfrc", "wpilib", "pytest"),
-        "todays": todays.versions("pyfrc", "robotpy", "wpilib", "pytest"),
-    }
-    with tempfile.TemporaryDirectory(prefix="pyfrc-speed-") as directory:
-        cases = make_cases(ours, todays, Path(directory).resolve())
-        chosen = [case for case in cases if not arguments.only or case.number in arguments.only]
-        for case in chosen:
-            case.sample(arguments.rounds)
-    results = [case.result() for case in chosen]
-    print_table(machine, results, arguments.rounds)
-    if arguments.json:
-        arguments.json.write_text(json.dumps({"machine": machine, "cases": results}, indent=2) + "\n", "utf-8")
-
-
 if __name__ == "__main__":
-    try:
-        main()
-    except BenchmarkError as error:
-        sys.exit(f"error: {error}")
+    compare((__doc__ or "").partition("\n")[0], 4, make_cases)

@@ -14,7 +14,10 @@ from pyfrc_core._version import __version__
 #: Each command, its module, and its line in the help: known here so that the help needs to import none of them.
 COMMANDS = {
     "init": ("pyfrc_cli.init", "Make a new robot project from a template."),
+    "replay": ("pyfrc_cli.replay", "Run the robot as a recorded input script says."),
     "test": ("pyfrc_cli.test", "Run the robot project's tests."),
+    "create-physics": ("pyfrc_cli.create_physics", "Write a physics.py and sim/config.json that fit the robot."),
+    "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
 }
 
 

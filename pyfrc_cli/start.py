@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import sys
 
-_RUN_ROBOTS = {"test"}
+_RUN_ROBOTS = {"create-physics", "replay", "test"}
 
 
 def main() -> None:

@@ -58,6 +58,12 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
     type=click.Path(path_type=Path),
     help="Write what the robot did in each test, as JSON lines with a hash at the end.",
 )
+@click.option(
+    "--record",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Write what the robot was told in each test, for: pyfrc replay",
+)
 @click.argument("pytest_args", nargs=-1, type=click.UNPROCESSED)
 def command(
     directory: Path | None,
@@ -73,6 +79,7 @@ def command(
     coverage_xml: Path | None,
     fail_under: float | None,
     trace: Path | None,
+    record: Path | None,
     pytest_args: tuple[str, ...],
 ) -> None:
     """Run the robot project's tests, found in its directory tests/ or in ../tests.
@@ -106,6 +113,7 @@ def command(
             jobs=jobs,
             isolation="none" if no_isolation else isolation,
             trace_directory=trace,
+            record_directory=record,
         )
         status = run_tests(project, options, builtin=builtin, pytest_args=pytest_args)
     sys.exit(status or measured.status)

@@ -59,7 +59,8 @@ def nearest(word: str, known: list[str]) -> str:
     """A hint such as ``did you mean 'teleop'?``, or the list of what there is."""
     from difflib import get_close_matches
 
-    match = get_close_matches(word, known, n=1, cutoff=0.6)
+    by_lower_case = {each.lower(): each for each in known}
+    match = get_close_matches(word.lower(), by_lower_case, n=1, cutoff=0.6)
     if match:
-        return f"did you mean {match[0]!r}?"
+        return f"did you mean {by_lower_case[match[0]]!r}?"
     return "there is: " + ", ".join(sorted(known)) if known else "there is nothing here"

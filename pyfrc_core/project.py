@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import sys
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
+from warnings import warn_explicit
 
+from .config.findings import SettingsWarning, settings_error
 from .config.settings import Settings, load_settings
 from .errors import ProjectError, RobotCodeError, text_of
 from .robot_files import RobotFiles
 
 if TYPE_CHECKING:
     from .config.sim import SimConfig
+    from .config.sim_file import LoadedSimConfig
 
 MAIN_FILE = "robot.py"
 
@@ -58,10 +62,35 @@ class Project:
         return load_settings(self.pyproject)
 
     @cached_property
-    def sim_config(self) -> SimConfig:
-        from .config.sim import load_sim_config
+    def loaded_sim_config(self) -> LoadedSimConfig:
+        """``sim/config.json`` with its places; read once, when what has no effect in it is told as a warning."""
+        from .config.sim_file import load_sim_config
 
-        return load_sim_config(self.root)
+        loaded = load_sim_config(self.root)
+        for finding in loaded.warnings:
+            try:
+                warn_explicit(SettingsWarning(finding.text), SettingsWarning, finding.file, finding.line or 1)
+            except SettingsWarning:  # where warnings are errors
+                raise settings_error([finding]) from None
+        return loaded
+
+    @property
+    def sim_config(self) -> SimConfig:
+        """The values of ``sim/config.json`` in effect."""
+        return self.loaded_sim_config.config
+
+    @property
+    def game_specific_messages(self) -> tuple[str, ...]:
+        """The messages that the field may send in autonomous; none in most seasons."""
+        # Most projects have no such file: asked first, since reading it takes pydantic.
+        if not os.path.lexists(self.root / "sim" / "config.json"):
+            return ()
+        return self.sim_config.game_specific_messages
+
+    @property
+    def physics_file(self) -> Path:
+        """Where the project's physics module is, if it has one."""
+        return self.root / "physics.py"
 
     @property
     def test_directories(self) -> tuple[Path, Path]:
@@ -81,16 +110,20 @@ class Project:
         :raises RobotCodeError: when the user's code fails, naming the user's line
         :raises ProjectError: when there is not exactly one robot class to choose
         """
-        return self._choose_class(self._import())
+        return self._choose_class(self.import_file(self.main_file))
 
-    def _import(self) -> ModuleType:
-        name, where = self.main_file.stem, self.main_file.name
+    def import_file(self, file: Path) -> ModuleType:
+        """Import one of the program's files, as the module of its name.
+
+        :raises RobotCodeError: when it fails, naming the user's line
+        """
+        name, where = file.stem, file.name
         loaded = sys.modules.get(name)
-        if loaded is not None and getattr(loaded, "__file__", None) == str(self.main_file):
+        if loaded is not None and getattr(loaded, "__file__", None) == str(file):
             return loaded  # a test file has imported it already
         if sys.path[:1] != [str(self.root)]:
             sys.path.insert(0, str(self.root))
-        specification = importlib.util.spec_from_file_location(name, self.main_file)
+        specification = importlib.util.spec_from_file_location(name, file)
         if specification is None or specification.loader is None:
             raise ProjectError("this is not a Python file", where=where)
         module = importlib.util.module_from_spec(specification)

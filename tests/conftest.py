@@ -10,8 +10,12 @@ from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
+from typing import TYPE_CHECKING
 
 import pytest
+
+if TYPE_CHECKING:
+    from pyfrc_core.config.sim_file import LoadedSimConfig
 
 # What would make a run here differ from the user's: the outer pytest's settings, measurements, colours.
 _NOT_PASSED_ON = ("COVERAGE_", "PYTEST_", "COV_CORE_")
@@ -146,6 +150,29 @@ def make_project(tmp_path: Path) -> MakeProject:
 def make_shared_project(tmp_path_factory: pytest.TempPathFactory) -> MakeProject:
     """Makes a robot project of files, for a fixture that several tests share."""
     return lambda files: _new_project(tmp_path_factory.mktemp("shared"), files)
+
+
+LoadConfig = Callable[[str], "LoadedSimConfig"]
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A project's directory, with one for its sim/config.json."""
+    directory = tmp_path_factory.mktemp("project")
+    (directory / "sim").mkdir()
+    return directory
+
+
+@pytest.fixture(scope="module")
+def load(root: Path) -> LoadConfig:
+    """Loads a text as sim/config.json."""
+    from pyfrc_core.config.sim_file import load_sim_config
+
+    def load(text: str) -> LoadedSimConfig:
+        (root / "sim/config.json").write_text(text, encoding="utf-8")
+        return load_sim_config(root)
+
+    return load
 
 
 @pytest.hookimpl(wrapper=True)

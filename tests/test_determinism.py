@@ -24,6 +24,9 @@ BUSY = 8
 #: The ready-made tests, with a match that is shorter than the real one, for the sake of the suite's time.
 SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 5\nteleop = 15\n"
 
+#: Those that drive the robot through its modes; the fuzz test has a determinism test of its own.
+READY_MADE = "from pyfrc.tests import test_autonomous, test_disabled, test_operator_control, test_practice\n"
+
 #: Where another run of this test, by another version of Python, left its hashes to compare with.
 HASHES_OF_OTHERS = "PYFRC_TRACE_HASHES"
 
@@ -82,7 +85,7 @@ def test_tested_twenty_times_it_does_the_same(name: str, project: Path, tmp_path
     shutil.rmtree(project / "tests")
     (project / "tests").mkdir()
     for number in range(TESTED_IN_EACH):
-        (project / "tests" / f"run{number}_test.py").write_text("from pyfrc.tests import *\n")
+        (project / "tests" / f"run{number}_test.py").write_text(READY_MADE)
     with (project / "pyproject.toml").open("a") as pyproject:
         pyproject.write(SETTINGS)
 

@@ -27,6 +27,16 @@ def files(document: str) -> dict[str, str]:
     return named
 
 
+def json_files(document: str) -> dict[str, str]:
+    """Its JSON examples, by the file name in the line above: JSON has no comments."""
+    text = (ROOT / document).read_text("utf-8")
+    return dict(re.findall(r"^`([^`]+[.]json)`:\n\n```json\n(.*?)^```$", text, re.MULTILINE | re.DOTALL))
+
+
+def commands(document: str) -> list[str]:
+    return [line.removeprefix("$ ") for block in blocks(document, "console") for line in block.splitlines()]
+
+
 @pytest.fixture
 def new_project(make_project):
     project = make_project({})
@@ -46,11 +56,33 @@ def test_the_examples_in_the_testing_guide_pass(new_project) -> None:
         assert any(test.startswith(f"{file}::") for test in result.outcomes()), file
 
 
-@pytest.mark.parametrize(
-    "command",
-    [line.removeprefix("$ ") for block in blocks("docs/testing.md", "console") for line in block.splitlines()],
-)
-def test_the_commands_in_the_testing_guide_work(command: str, new_project) -> None:
+PHYSICS = files("docs/physics.md")
+PHYSICS_PROJECTS = sorted({file.rpartition("/")[0] for file in PHYSICS if f"/{file}".endswith("/physics.py")})
+
+
+@pytest.mark.parametrize("directory", PHYSICS_PROJECTS)
+def test_the_examples_in_the_physics_guide_pass(directory: str, new_project) -> None:
+    new_project.write(PHYSICS | json_files("docs/physics.md"))
+    result = new_project.run("test", "--", "-v", cwd=new_project.path / directory)
+    assert result.code == 0, result.output
+    here = f"{directory}/tests/".removeprefix("/")
+    for file in PHYSICS:
+        if file.startswith(here):
+            assert any(test.startswith(f"{file.removeprefix(directory + '/')}::") for test in result.outcomes()), file
+
+
+def test_the_examples_in_the_replay_guide_work(new_project) -> None:
+    (script,) = re.findall(r"^`(tests/.+[.]jsonl)`:$", (ROOT / "docs/replay.md").read_text("utf-8"), re.MULTILINE)
+    new_project.write(files("docs/replay.md") | {script: blocks("docs/replay.md", "json")[0]})
+    result = new_project.run("test", "--", "-v")
+    assert result.outcomes()["tests/test_replay.py::test_the_script"] == "PASSED", result.output
+    for command in commands("docs/replay.md"):
+        result = new_project.run(*shlex.split(command)[1:])
+        assert result.code == 0, result.output
+
+
+@pytest.mark.parametrize("command", commands("docs/testing.md") + commands("docs/physics.md"))
+def test_the_commands_in_the_guides_work(command: str, new_project) -> None:
     program, *arguments = shlex.split(command)
     assert program == "pyfrc"
     result = new_project.run(*arguments)
@@ -71,7 +103,10 @@ def test_the_readmes_commands_exist_in_the_makefile() -> None:
         assert re.search(rf"^{target}:", makefile, re.MULTILINE)
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/testing.md", "docs/architecture.md", "benchmarks/README.md"])
+@pytest.mark.parametrize(
+    "document",
+    ["README.md", "benchmarks/README.md", *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md"))],
+)
 def test_links_lead_somewhere(document: str) -> None:
     text = (ROOT / document).read_text("utf-8")
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", text):

@@ -29,7 +29,17 @@ def test_the_wheel_carries_the_packages_their_types_and_the_templates(tmp_path: 
     assert not [name for name in names if name.startswith(("tests/", "templates/"))]
 
 
-@pytest.mark.parametrize("command", [["--help"], ["test", "--help"], ["init", "--help"], ["--version"]])
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["--help"],
+        ["test", "--help"],
+        ["init", "--help"],
+        ["config", "--help"],
+        ["create-physics", "--help"],
+        ["--version"],
+    ],
+)
 def test_help_waits_for_none_of_the_big_libraries(command: list[str]) -> None:
     code = f"""
 import sys

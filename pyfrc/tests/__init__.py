@@ -1,5 +1,5 @@
 """Ready-made tests for any robot: put ``from pyfrc.tests import *`` in a file in your tests directory."""
 
-from pyfrc_core.tests import test_autonomous, test_disabled, test_operator_control, test_practice
+from pyfrc_core.tests import test_autonomous, test_disabled, test_fuzz, test_operator_control, test_practice
 
-__all__ = ["test_autonomous", "test_disabled", "test_operator_control", "test_practice"]
+__all__ = ["test_autonomous", "test_disabled", "test_fuzz", "test_operator_control", "test_practice"]

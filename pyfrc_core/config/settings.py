@@ -1,14 +1,21 @@
-"""``[tool.pyfrc]`` in a robot project's pyproject.toml: what it may hold, and the defaults."""
+"""``[tool.pyfrc]`` in a robot project's pyproject.toml: what it may hold, and the defaults.
+
+Plain dataclasses, so that a project that leaves everything at its default never waits for pydantic to be
+imported; pydantic does the checking of those that do not.
+"""
 
 from __future__ import annotations
 
+import json
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from ..errors import SettingsError
-from .validation import STRICT, validated
+from .findings import Path as KeyPath
+from .findings import mistakes, settings_error
+from .toml_text import TomlText
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -30,6 +37,9 @@ class _Positive:
 
         return core_schema.no_info_after_validator_function(check, handler(source))
 
+
+#: For pydantic: keys that a dataclass does not know are errors, and so is ``"15"`` for a number.
+STRICT: Any = {"extra": "forbid", "strict": True}
 
 Seconds = Annotated[float, _Positive]
 
@@ -86,10 +96,29 @@ def load_settings(pyproject: Path) -> Settings:
     if not pyproject.is_file():
         return Settings()
     try:
-        document = tomllib.loads(pyproject.read_text("utf-8-sig"))
+        text = pyproject.read_text("utf-8-sig")
+        document = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as malformed:
         raise SettingsError(f"not valid TOML: {malformed}", where=pyproject.name) from None
-    table = document.get("tool", {}).get("pyfrc")
+    tools = document.get("tool")
+    table = tools.get("pyfrc") if isinstance(tools, dict) else None
     if not table:
         return Settings()
-    return validated(Settings, table, pyproject, "tool.pyfrc")
+    return _validated(table, TomlText(pyproject, text))
+
+
+def _validated(table: object, text: TomlText) -> Settings:
+    import pydantic
+
+    try:
+        # As JSON, since strict checking of Python data would ask for instances where files have tables.
+        return pydantic.TypeAdapter(Settings).validate_json(json.dumps(table, default=str))
+    except pydantic.ValidationError as invalid:
+        raise settings_error(mistakes(invalid, table, text, ("tool", "pyfrc"), _KEYS)) from None
+
+
+#: The keys of ``[tool.pyfrc]`` and of the tables in it.
+_KEYS: dict[KeyPath, list[str]] = {
+    path: [key.name for key in fields(table)]
+    for path, table in {(): Settings, ("match",): MatchSettings, ("test",): TestSettings}.items()
+}

@@ -125,6 +125,13 @@ class HalData(LiveDict):
         self._has_parts(place, tuple(parents), last)
         place[last] = value
 
+    def can_write(self, path: str) -> bool:
+        """Whether the value at a path can be written, by itself or in its parts."""
+        *parents, last = parse_path(path)
+        place = self._walk(tuple(parents))
+        slot = place._slots.get(str(last)) if isinstance(place, LiveDict) else None
+        return slot is None or slot.set is not None or isinstance(place[last], LiveList)
+
     def _walk(self, segments: tuple[Segment, ...]) -> Any:
         place: Any = self
         for depth, segment in enumerate(segments):

@@ -109,6 +109,8 @@ class Joystick(LiveDict):
         super().__init__(join("joysticks", port), self._all)
         self._port = port
         self._axes, self._buttons, self._povs = hal.JoystickAxes(), hal.JoystickButtons(), hal.JoystickPOVs()
+        self._raw: Any = None
+        self._controls: tuple[list[float], list[bool], list[int]] = [], [], []
         # Both are views of the buffers above, which each read fills anew.
         self._axis_values, self._pov_values = self._axes.axes, self._povs.povs
         path = self._path
@@ -194,6 +196,21 @@ class Joystick(LiveDict):
     def _load_axes(self) -> list[float]:
         hs.getJoystickAxes(self._port, self._axes)
         return self._axis_values.tolist()  # type: ignore[return-value]
+
+    def controls(self) -> tuple[list[float], list[bool], list[int], tuple[int, int, int]]:
+        """Axes, buttons and POVs as far as the robot sees them, and what it sends back: outputs and rumbles.
+
+        The same objects again while nothing has changed: recorders ask at each packet, and sticks mostly rest.
+        """
+        port = self._port
+        hs.getJoystickAxes(port, self._axes)
+        hs.getJoystickPOVs(port, self._povs)
+        raw = (self._axis_values.tobytes(), self._pov_values.tobytes(), self._bits(), self.counts())
+        if raw != self._raw:
+            axes, buttons, povs = self.counts()
+            self._raw = raw
+            self._controls = self._load_axes()[:axes], self._load_buttons()[: buttons + 1], self._load_povs()[:povs]
+        return *self._controls, hs.getJoystickOutputs(port)
 
     def _set_axis(self, index: int, value: float) -> None:
         hs.setJoystickAxis(self._port, index, value)

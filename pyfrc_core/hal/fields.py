@@ -91,12 +91,12 @@ class DeviceKind:
     def devices(self) -> LiveList:
         return LiveList(self.name, [self.device(join(self.name, i), i) for i in range(self.count)])
 
-    def initialized(self) -> list[Callable[[], bool]]:
-        """For each device that the HAL has, the function that tells whether the robot has made it."""
+    def initialized(self) -> list[Slot]:
+        """For each device that the HAL has, whether the robot has made it."""
         if self.make is None:
             return []
         tells = next(field for field in self.fields if field.name == "initialized")
-        return [tells.slot(self.make(i)).get for i in range(min(self.count, self.real))]
+        return [tells.slot(self.make(i)) for i in range(min(self.count, self.real))]
 
 
 def group(path: str, device: Any, fields: tuple[Field, ...]) -> LiveDict:

@@ -7,7 +7,9 @@ from typing import Literal, TypeAlias
 from hal import AllianceStationID
 from hal.simulation import (
     getDriverStationAutonomous,
+    getDriverStationDsAttached,
     getDriverStationEnabled,
+    getDriverStationEStop,
     getDriverStationTest,
     resetDriverStationData,
     setDriverStationAllianceStationId,
@@ -17,11 +19,15 @@ from hal.simulation import (
     setDriverStationMatchTime,
     setDriverStationTest,
     setGameSpecificMessage,
+    setJoystickAxis,
     setJoystickAxisCount,
     setJoystickButtonCount,
+    setJoystickButtonsValue,
     setJoystickPOV,
     setJoystickPOVCount,
 )
+
+from ..errors import UsageError
 
 #: The four names that `TestController.get_mode` answers with.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
@@ -39,11 +45,26 @@ def reset_driver_station() -> None:
     setDriverStationDsAttached(True)
     setDriverStationAllianceStationId(AllianceStationID.kRed1)
     for stick in range(JOYSTICKS):
-        setJoystickAxisCount(stick, AXES)
-        setJoystickButtonCount(stick, BUTTONS)
-        setJoystickPOVCount(stick, POVS)
-        for pov in range(POVS):
-            setJoystickPOV(stick, pov, NOT_PRESSED)
+        plug_in(stick)
+
+
+def plug_in(stick: int) -> None:
+    """A joystick is there, and nobody touches it."""
+    setJoystickAxisCount(stick, AXES)
+    setJoystickButtonCount(stick, BUTTONS)
+    setJoystickPOVCount(stick, POVS)
+    for axis in range(AXES):
+        setJoystickAxis(stick, axis, 0.0)
+    setJoystickButtonsValue(stick, 0)
+    for pov in range(POVS):
+        setJoystickPOV(stick, pov, NOT_PRESSED)
+
+
+def unplug(stick: int) -> None:
+    """A joystick is gone: it has no axes, buttons and POVs."""
+    setJoystickAxisCount(stick, 0)
+    setJoystickButtonCount(stick, 0)
+    setJoystickPOVCount(stick, 0)
 
 
 def set_mode(*, autonomous: bool = False, test: bool = False, enabled: bool) -> None:
@@ -60,6 +81,44 @@ def get_mode() -> Mode:
     if getDriverStationAutonomous():
         return "autonomous"
     return "test" if getDriverStationTest() else "teleop"
+
+
+#: How scripts name the modes: those the robot can be in, and those it can be about to be enabled in.
+_NAMED = {
+    "disabled": (False, False, False),
+    "autonomous": (True, False, True),
+    "teleop": (False, False, True),
+    "test": (False, True, True),
+    "disabled autonomous": (True, False, False),
+    "disabled test": (False, True, False),
+}
+MODES = tuple(_NAMED)
+
+
+def set_mode_named(name: str) -> None:
+    """Ask for one of `MODES`.
+
+    :raises UsageError: when there is no such mode
+    """
+    if name not in _NAMED:
+        raise UsageError(f"there is no mode {name!r}: there is {', '.join(MODES)}")
+    autonomous, test, enabled = _NAMED[name]
+    set_mode(autonomous=autonomous, test=test, enabled=enabled)
+
+
+def mode_name() -> str:
+    """Which of `MODES` was last asked for."""
+    mode = get_mode()
+    if mode != "disabled":
+        return mode
+    if getDriverStationAutonomous():
+        return "disabled autonomous"
+    return "disabled test" if getDriverStationTest() else "disabled"
+
+
+def is_enabled() -> bool:
+    """Whether the robot may move: enabled by a driver station that is there, and not stopped in an emergency."""
+    return bool(getDriverStationEnabled()) and bool(getDriverStationDsAttached()) and not getDriverStationEStop()
 
 
 def set_match_time(seconds_left: float) -> None:

@@ -167,10 +167,10 @@ class Modules:
         """The solenoids of every REV hub that the robot has made."""
         return [self._hub_solenoids(number) for number in self.ph_compressor]
 
-    def initialized(self) -> list[Callable[[], bool]]:
-        """For each module there may be, the function that tells whether the robot has made it."""
+    def initialized(self) -> list[Slot]:
+        """For each module there may be, whether the robot has made it."""
         return [
-            make(number).getInitialized
+            INITIALIZED.slot(make(number))
             for make in (self._pcm_sim, self._hub_sim, self._power_sim)
             for number in range(MODULES)
         ]

@@ -1,8 +1,7 @@
 """What a robot's run is recorded from: each value that may change, as ``(path, value)`` pairs.
 
-The list of what to read is made anew only when something was made or unmade; finding that out is a call for
-every channel there may be, which costs less than reading them and cannot miss a reset as the HAL's notices
-would.
+The list of what to read is made anew only when something was made or unmade, and a joystick's values only when its
+bytes have changed: a trace is taken at each packet.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import hal.simulation
 
 from . import driver_station
-from .containers import LiveDict, plain
+from .containers import LiveDict, Slot, plain
 from .devices import KINDS
 from .paths import join
 
@@ -29,28 +28,29 @@ class Recording:
     def __init__(self, tree: HalData) -> None:
         self._tree = tree
         self._always = list(self._fixed())
-        self._kinds = [(kind, kind.initialized()) for kind in KINDS]
-        self._polled = [tells for _, channels in self._kinds for tells in channels]
-        self._polled += tree.modules.initialized()
-        self._polled.append(tree["accelerometer"]._slot("active").get)
-        self._sticks = [stick.counts for stick in tree["joysticks"]]
+        self._kinds = [(kind, [slot.get for slot in kind.initialized()]) for kind in KINDS]
+        slots = [slot for kind in KINDS for slot in kind.initialized()]
+        slots += [*tree.modules.initialized(), tree["accelerometer"]._slot("active")]
+        self._made = _Made(slots)
         self._state: Any = None
         self._leaves: list[Leaf] = []
 
     def anything_made(self) -> bool:
         """Whether any device exists, or any thread of WPILib's that waits for an alarm."""
-        made = any(tells() for tells in self._polled) or bool(self._tree["CAN"].signature())
+        made = any(self._made.told()) or bool(self._tree["CAN"].signature())
         return made or hal.simulation.getNumNotifiers() > 0
 
     def leaves(self) -> Iterator[tuple[str, Any]]:
         tree = self._tree
         devices = tree["CAN"].signature()
         tree["robot"].sync(devices)
-        state = ([tells() for tells in self._polled], [counts() for counts in self._sticks], devices)
+        state = (self._made.told(), devices)
         if state != self._state:
             self._leaves = [*self._always, *self._present()]
             self._state = state
         found = [(path, get()) for path, get in self._leaves]
+        for stick in tree["joysticks"]:
+            found += _stick(stick)
         for room in ("robot", "custom"):
             found += [(join(room, key), plain(value)) for key, value in tree[room].items()]
         return iter(found)
@@ -67,8 +67,6 @@ class Recording:
 
     def _present(self) -> Iterator[Leaf]:
         tree = self._tree
-        for stick in tree["joysticks"]:
-            yield from _stick(stick)
         if tree["accelerometer"]["active"]:
             yield from _of(tree["accelerometer"])
         for kind, channels in self._kinds:
@@ -85,6 +83,33 @@ class Recording:
                 yield from _of(module)
         for name in sorted(tree["CAN"]):
             yield from _of(tree["CAN"][name])
+
+
+class _Made:
+    """Which devices there are, without asking for each of the hundreds that may be.
+
+    The HAL notes when one is made; it forgets to, once a device's data have been reset, so those that are there are
+    asked all the same.
+    """
+
+    def __init__(self, slots: list[Slot]) -> None:
+        self._slots = slots
+        self._noted = True
+        self._watches: list[object] = []
+        self._told: list[bool] = []
+        self._there: list[Callable[[], Any]] = []
+
+    def told(self) -> list[bool]:
+        """For each device whether it is there: the same list while that is so."""
+        if self._noted or not all(tells() for tells in self._there):
+            self._noted = False
+            self._watches = [slot.watch(self._note) for slot in self._slots if slot.watch is not None]
+            self._told = [bool(slot.get()) for slot in self._slots]
+            self._there = [slot.get for slot, told in zip(self._slots, self._told, strict=True) if told]
+        return self._told
+
+    def _note(self) -> None:
+        self._noted = True
 
 
 def _of(place: LiveDict, *keys: str) -> Iterator[Leaf]:
@@ -105,15 +130,18 @@ def _plain(get: Callable[[], Any], convert: Callable[[Any], Any]) -> Callable[[]
     return lambda: convert(get())
 
 
-def _stick(stick: driver_station.Joystick) -> Iterator[Leaf]:
+def _stick(stick: driver_station.Joystick) -> list[tuple[str, Any]]:
     """One value for all axes, one for all buttons: lists that can be written back whole."""
-    axes, buttons, povs = stick.counts()
+    axes, buttons, povs, (outputs, left_rumble, right_rumble) = stick.controls()
+    if not (axes or len(buttons) > 1 or povs):
+        return []
     path = stick._path
+    found: list[tuple[str, Any]] = []
     if axes:
-        yield join(path, "axes"), lambda: stick._load_axes()[:axes]
-    if buttons:
-        yield join(path, "buttons"), lambda: stick._load_buttons()[: buttons + 1]
+        found.append((f"{path}.axes", axes))
+    if len(buttons) > 1:
+        found.append((f"{path}.buttons", buttons))
     if povs:
-        yield join(path, "povs"), lambda: stick._load_povs()[:povs]
-    if axes or buttons or povs:
-        yield from _of(stick, "outputs", "left_rumble", "right_rumble")
+        found.append((f"{path}.povs", povs))
+    found += (f"{path}.outputs", outputs), (f"{path}.left_rumble", left_rumble), (f"{path}.right_rumble", right_rumble)
+    return found

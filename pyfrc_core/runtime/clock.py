@@ -21,9 +21,10 @@ PACKET_US = 20_000
 
 DEFAULT_TIME_LIMIT = 500.0
 
-# What is due at the same microsecond happens in this order: the driver station speaks, then threads and notifiers
-# wake, then the robot's loop runs, then whoever watches (physics, recorders) looks at what it did.
-PACKET, WAKE_UP, ROBOT_LOOP, OBSERVE = range(4)
+# What is due at the same microsecond happens in this order: scripts write, the driver station speaks, then threads and
+# notifiers wake, then the robot's loop runs, then physics moves what it drives, then whoever watches looks at what came
+# of it.
+INPUT, PACKET, WAKE_UP, ROBOT_LOOP, PHYSICS, OBSERVE = range(6)
 
 Action = Callable[[], None]
 
@@ -38,10 +39,11 @@ class Clock:
     def __init__(self) -> None:
         #: Called before each packet with the robot time in seconds: the place to change inputs.
         self.before_packet: list[Callable[[float], None]] = []
+        self._recurring: list[tuple[int, int, Action]] = []
         self.initialize()
 
     def initialize(self) -> None:
-        """Stop HAL time at 0, forget what was due, and have packets come every 20 ms from now on."""
+        """Stop HAL time at 0 and forget what was due, but for packets, every 20 ms, and what `every` was told."""
         stop_and_zero()
         self.now_us = 0
         self.limit_us = to_us(DEFAULT_TIME_LIMIT)
@@ -51,6 +53,8 @@ class Clock:
         self.halted = False
         self._next_packet = PACKET_US
         self.at(PACKET_US, PACKET, self._packet)
+        for recurring in self._recurring:
+            self._begin(*recurring)
 
     @property
     def now(self) -> float:
@@ -65,7 +69,10 @@ class Clock:
 
     def every(self, period_us: int, rank: int, action: Action) -> None:
         """Have `action` called each period from now on, first when one period has passed."""
+        self._recurring.append((period_us, rank, action))
+        self._begin(period_us, rank, action)
 
+    def _begin(self, period_us: int, rank: int, action: Action) -> None:
         due = self.now_us + period_us
 
         def again() -> None:
@@ -75,6 +82,11 @@ class Clock:
             action()
 
         self.at(due, rank, again)
+
+    def forget(self) -> None:
+        """Let go of everything that is due, and of whoever wanted it."""
+        self._recurring.clear()
+        self.initialize()
 
     def run_until(self, target_us: int) -> None:
         """Let time pass until `target_us`, doing everything that falls due on the way, in order.

@@ -221,7 +221,25 @@ class Redirection:
             # Time stands still between steps already, and begins at 0 with the run.
             table += [left_to_the_run(owner, f"{verb}Timing") for verb in ("pause", "resume", "restart")]
             table.append(left_to_the_run(owner, "waitForProgramStart"))
-        return table
+        return table + self._packets_in_tests()
+
+    def _packets_in_tests(self) -> list[tuple[Any, str, Any]]:
+        """Packets that a test delivers out of turn, for whoever records what comes from outside."""
+
+        def told(owner: Any, name: str) -> tuple[Any, str, Any]:
+            real = getattr(owner, name)
+
+            def notify() -> None:
+                if self.run is not None and self.run.recorder is not None:
+                    self.run.recorder.on_packet_out_of_turn()
+                real()
+
+            return owner, name, notify
+
+        return [
+            told(wpilib.simulation.DriverStationSim, "notifyNewData"),
+            told(hal.simulation, "notifyDriverStationNewData"),
+        ]
 
     def _timed_robot(self) -> list[tuple[Any, str, Any]]:
         TimedRobot = wpilib.TimedRobot

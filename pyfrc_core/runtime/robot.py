@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import weakref
+from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import ntcore
 import wpilib
@@ -26,6 +28,9 @@ from .redirect import redirection
 from .threads import RobotThread, RobotThreads
 from .timed_loop import TimedLoop
 
+if TYPE_CHECKING:
+    from .scripts.recorder import Recorder
+
 
 class RobotRun:
     """A robot from its construction to its end, in robot time.
@@ -37,8 +42,15 @@ class RobotRun:
         self.clock = Clock()
         self.threads = RobotThreads(self.clock)
         self.alarms = Alarms(self.threads)
-        self.timed_loop = TimedLoop(self.clock, self.clock.now_us)
+        self.timed_loop = TimedLoop(self.clock, self.clock.now_us, self._on_initialized)
         self.robot: Any = None
+        #: Called when the robot has been constructed, and when its `robotInit` is over (see `initializes`).
+        self.when_constructed: list[Callable[[], object]] = []
+        self.when_initialized: list[Callable[[], object]] = []
+        #: Who records what is done from outside, if somebody does.
+        self.recorder: Recorder | None = None
+        #: What moves the robot's sensors, if the project has physics.
+        self.physics: object = None
         #: Threads that did not stop when the run ended.
         self.still_running: list[RobotThread] = []
         #: Whether the robot's code is being run; while it is not, it cannot be what takes long.
@@ -72,7 +84,35 @@ class RobotRun:
         if isinstance(self.robot, wpilib.TimedRobot):
             # Its constructor has set an alarm that nobody will wait for, and the HAL would wait for somebody to.
             endCompetition(self.robot)
+        elif self.initializes and self.when_initialized:
+            self._listen_for_initialization()
+        for listener in self.when_constructed:
+            listener()
         return self.robot
+
+    @property
+    def initializes(self) -> bool:
+        """Whether it can be told when `robotInit` is over: of robots with WPILib's loop, and of `MagicRobot`."""
+        return isinstance(self.robot, wpilib.TimedRobot) or (
+            hasattr(self.robot, "_simulationInit") and not isinstance(self.robot, wpilib.IterativeRobotBase)
+        )
+
+    def _on_initialized(self) -> None:
+        __tracebackhide__ = True
+        for listener in self.when_initialized:
+            listener()
+
+    def _listen_for_initialization(self) -> None:
+        """`MagicRobot` calls `_simulationInit`, in simulation, when its `robotInit` is over."""
+        robot = weakref.ref(self.robot)  # or the robot would hold on to itself
+
+        def initialized() -> None:
+            __tracebackhide__ = True
+            of = robot()
+            type(of)._simulationInit(of)  # type: ignore[union-attr]
+            self._on_initialized()
+
+        self.robot._simulationInit = initialized
 
     @cached_property
     def hal_data(self) -> HalData:
@@ -96,8 +136,8 @@ class RobotRun:
     def start(self) -> None:
         """Begin the robot program: `robotInit`, then whatever its loop does at time 0."""
         __tracebackhide__ = True
-        self._started = True
         with self._failing():
+            self._started = True
             if _has_loop_of_its_own(self.robot):
                 thread = threading.Thread(target=self._compete, name="robot", daemon=True)
                 cooperative.start_in_robot_time(thread)
@@ -106,6 +146,12 @@ class RobotRun:
             else:
                 self.timed_loop.begin(self.robot)
                 self.timed_loop.run_in_place()
+
+    def do(self, action: Callable[[], object]) -> None:
+        """Call code of the user's that takes part in the run."""
+        __tracebackhide__ = True
+        with self._failing():
+            action()
 
     def run_until(self, target_us: int) -> None:
         """Let the robot run until `target_us`, raising what its code raises."""
@@ -153,10 +199,12 @@ class RobotRun:
         finally:
             self._closing.close()
             ntcore.NetworkTableInstance.getDefault().stopLocal()
-            # What is still due, and the loop, hold on to the robot.
-            self.clock.initialize()
-            self.timed_loop = TimedLoop(self.clock, 0)
-            self.robot = None
+            # What is still due, the loop and the physics hold on to the robot.
+            self.clock.forget()
+            self.when_constructed.clear()
+            self.when_initialized.clear()
+            self.timed_loop = TimedLoop(self.clock, 0, self._on_initialized)
+            self.robot = self.physics = None
             timing.run_freely()
 
     def _compete(self) -> None:
@@ -168,6 +216,8 @@ class RobotRun:
         """Raise what went wrong, once, on whoever drives: not the `TestEnded` that unwound the robot for it."""
         __tracebackhide__ = True
         before, self.in_motion = self.in_motion, True
+        if self.recorder is not None:
+            self.recorder.end_outside()
         try:
             yield
         except TestEnded:
@@ -179,6 +229,8 @@ class RobotRun:
             raise
         finally:
             self.in_motion = before
+            if self.recorder is not None:
+                self.recorder.begin_outside()
 
 
 def _missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:

@@ -44,10 +44,12 @@ class TimedLoop:
     """The callbacks of one `TimedRobot`.
 
     :param created_us: when the robot was constructed; its periods count from there
+    :param on_initialized: called when the robot's own initialisation is over
     """
 
-    def __init__(self, clock: Clock, created_us: int) -> None:
+    def __init__(self, clock: Clock, created_us: int, on_initialized: Callable[[], None]) -> None:
         self._clock = clock
+        self._on_initialized = on_initialized
         self._created_us = created_us
         self._callbacks: list[Periodic] = []
         self._in_place = False
@@ -73,6 +75,7 @@ class TimedLoop:
         __tracebackhide__ = True
         robot.robotInit()
         robot._simulationInit()
+        self._on_initialized()
         hal.observeUserProgramStarting()
         self.add(robot._loopFunc, robot.getPeriod())
         self._callbacks.insert(0, self._callbacks.pop())  # WPILib schedules it before all others

@@ -38,7 +38,8 @@ class Trace:
         changed = {
             path: value
             for path, value in values.items()
-            if path not in before or (before[path] != value and repr(before[path]) != repr(value))
+            if path not in before
+            or (before[path] is not value and before[path] != value and repr(before[path]) != repr(value))
         }
         gone = [path for path in before if path not in values]
         if not changed and not gone:

@@ -5,14 +5,21 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import Any, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..config.settings import MatchSettings
 from ..hal import modes
 from ..runtime.clock import to_us
 from ..runtime.endings import TestEnded
+from ..runtime.scripts.player import Player
+from ..runtime.scripts.script import load_script
+from ..runtime.seeds import seed_generators
 from .fake_time import FakeTime
 from .practice_match import PracticeMatch
+
+if TYPE_CHECKING:
+    from ..project import Project
 
 OnStep: TypeAlias = Callable[[float], object]
 
@@ -29,10 +36,12 @@ class TestController:
 
     __test__ = False  # pytest: not a test class, for all its name
 
-    def __init__(self, fake_time_inst: FakeTime, match: MatchSettings | None = None) -> None:
+    def __init__(self, fake_time_inst: FakeTime, project: Project | None = None, seed: int = 0) -> None:
         self._time = fake_time_inst
         self._run = fake_time_inst.run
-        self._match_settings = match or MatchSettings()
+        self.project = project
+        #: What the random generators started from.
+        self.seed = seed
         self._practice_match: PracticeMatch | None = None
         #: What the field sends with autonomous mode, such as ``"LRL"``.
         self.game_specific_message: str | None = None
@@ -63,7 +72,7 @@ class TestController:
         """
         if self._run.started:
             raise RuntimeError("set_practice_match() must be called before run_test()")
-        self._practice_match = PracticeMatch(self, self._match_settings)
+        self._practice_match = PracticeMatch(self, self.project.settings.match if self.project else MatchSettings())
 
     # -- running, as documented ------------------------------------------------------------------------------
 
@@ -83,12 +92,16 @@ class TestController:
 
         def step(now: float) -> None:
             __tracebackhide__ = True
+            if run.recorder is not None:
+                run.recorder.begin_outside(stepping=True)
             answers = [on_step(now) for on_step in steps]  # each of them is to see every packet
             if not all(answers):
                 run.clock.halted = True
                 raise TestEnded
             if not run.alive and run.started:
                 raise RuntimeError(f"the robot program ended by itself: startCompetition() returned at {now:.2f} s")
+            if run.recorder is not None:
+                run.recorder.end_outside(stepping=True)
 
         run = self._run
         run.clock.before_packet.insert(0, step)
@@ -118,6 +131,24 @@ class TestController:
         if not steps:
             raise RuntimeError("run_test() needs a function to call on each step, or set_practice_match() before it")
         return instance, steps
+
+    # -- running, as recorded -----------------------------------------------------------------------------------
+
+    def replay(self, path: str | Path) -> None:
+        """Run the robot as an input script says, from its start to the script's end.
+
+        :param path: the script, such as one that ``pyfrc test --record`` has written
+        :raises ScriptError: when it is not one, or does not fit this robot; with its line
+        :raises RuntimeError: when the robot has run already in this test
+        """
+        __tracebackhide__ = True
+        self._begin("replay")
+        script = load_script(Path(path))
+        seed_generators(script.seed)
+        try:
+            Player(script, self._run).play()
+        finally:
+            self._run.end()
 
     # -- running, as today ------------------------------------------------------------------------------------
 

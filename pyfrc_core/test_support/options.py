@@ -22,6 +22,7 @@ class TestOptions:
     :param jobs: how many tests run at the same time
     :param isolation: what each test that uses the robot runs in
     :param trace_directory: where to write what the robot did in each test
+    :param record_directory: where to write what the robot was told in each test, as scripts that can be replayed
     :param hang_seconds: processor seconds without progress after which robot code counts as hanging
     """
 
@@ -31,6 +32,7 @@ class TestOptions:
     jobs: int = 1
     isolation: Isolation = "auto"
     trace_directory: Path | None = None
+    record_directory: Path | None = None
     hang_seconds: float = TestSettings.hang_seconds
 
     @classmethod
@@ -42,6 +44,7 @@ class TestOptions:
         jobs: int | Literal["auto"] | None = None,
         isolation: Isolation | None = None,
         trace_directory: Path | None = None,
+        record_directory: Path | None = None,
     ) -> TestOptions:
         """What the command line says, else what the project's settings say, else the defaults."""
         jobs = jobs or settings.jobs
@@ -50,6 +53,7 @@ class TestOptions:
             jobs=_usable_processors() if jobs == "auto" else jobs,
             isolation=isolation or settings.isolation,
             trace_directory=trace_directory,
+            record_directory=record_directory,
             hang_seconds=settings.hang_seconds,
         )
 

@@ -2,34 +2,40 @@
 
 from __future__ import annotations
 
-import random
 import re
 import sys
 from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack
+from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from .. import tests as ready_made
-from ..errors import PyfrcError
+from ..errors import ProjectError, PyfrcError
 from ..hal import HalData
 from ..project import Project
+from ..runtime.failures import NamesItsPlace, headline, leave_out_pyfrc, names_its_place
 from ..runtime.redirect import redirection
 from ..runtime.robot import RobotRun
+from ..runtime.scripts.files import recorded, traced
+from ..runtime.seeds import seed_generators
 from ..runtime.threads import RobotThread
-from ..runtime.trace import Trace
 from ..runtime.watchdog import Watchdog
 from .controller import TestController
 from .fake_time import FakeTime
 from .options import TestOptions
-from .reporting import NamesItsPlace, headline, leave_out_pyfrc, names_its_place, put_first
+from .reporting import put_first
+
+if TYPE_CHECKING:
+    from ..physics.core import PhysicsInterface
+    from ..physics.engine import Physics, PhysicsModule
 
 #: The fixtures that have to do with the robot: a test that asks for one runs in a process of its own.
-ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "robot", "wpilib"})
+ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller", "robot", "wpilib"})
 
 
 class ThreadStillRunningError(NamesItsPlace):
@@ -76,17 +82,26 @@ class PyFrcPlugin:
             sys.path.insert(0, self._robot_path)
 
     def robot_class(self) -> type[Any]:
-        """The robot class, imported when it is first asked for."""
+        """The robot class, imported when it is first asked for, and its physics with it."""
         if self._robot_class is None:
             self._robot_class = self.project.load()
+        self._physics_module  # noqa: B018
         return self._robot_class
+
+    @cached_property
+    def _physics_module(self) -> PhysicsModule | None:
+        if not self.project.physics_file.is_file():
+            return None
+        from ..physics.engine import load_physics
+
+        return load_physics(self.project)
 
     # -- fixtures ----------------------------------------------------------------------------------------------
 
     @pytest.fixture
     def control(self, fake_time: FakeTime, robot: Any) -> TestController:
         """A fixture that provides control over the robot."""
-        return TestController(fake_time, self.project.settings.match)
+        return TestController(fake_time, self.project, self.options.seed)
 
     @pytest.fixture
     def fake_time(self, _robot_run: RobotRun) -> FakeTime:
@@ -99,7 +114,14 @@ class PyFrcPlugin:
         return _robot_run.hal_data
 
     @pytest.fixture
-    def robot(self, _robot_run: RobotRun) -> Any:
+    def physics_controller(self, _physics: Physics | None, robot: Any) -> PhysicsInterface:
+        """What your ``physics.py`` moves the robot with: knows where on the field it is."""
+        if _physics is None:
+            raise ProjectError("there is no physics.py in this project", where=self.project.root)
+        return _physics.controller
+
+    @pytest.fixture
+    def robot(self, _robot_run: RobotRun, _physics: Physics | None) -> Any:
         """Your robot instance. Its `robotInit` runs when the test starts the robot."""
         __tracebackhide__ = True
         return _robot_run.construct(self.robot_class())
@@ -122,6 +144,13 @@ class PyFrcPlugin:
         return wpilib
 
     @pytest.fixture
+    def _physics(self, _robot_run: RobotRun) -> Physics | None:
+        """The project's physics, taking part in the run."""
+        __tracebackhide__ = True
+        module = self._physics_module
+        return None if module is None else module.attach(_robot_run, FakeTime(_robot_run))
+
+    @pytest.fixture
     def _robot_run(self, request: pytest.FixtureRequest) -> Iterator[RobotRun]:
         """One run of the robot: its time, its threads; ended when the test is."""
         __tracebackhide__ = True
@@ -134,7 +163,7 @@ class PyFrcPlugin:
             run.open()
             if not self.own_process:
                 closing.callback(_forget, run, request.node)
-            closing.enter_context(self._traced(run, request.node))
+            closing.enter_context(self._written_down(run, request.node))
             yield run
             run.end()
         if run.still_running:
@@ -145,15 +174,14 @@ class PyFrcPlugin:
         name = record.thread.name if record.thread is not None else "?"
         return f"{line or self.project.main_file.name}: the thread {name!r} is still running after the test was over"
 
-    def _traced(self, run: RobotRun, item: pytest.Item) -> ExitStack:
-        """Record what the robot does, if the user wants that."""
-        closing = ExitStack()
-        if self.options.trace_directory is not None:
-            file = (self.options.trace_directory / _trace_name(item.nodeid)).open("w", encoding="utf-8")
-            closing.enter_context(file)
-            trace = Trace(run.hal_data, file)
-            run.observe(trace.look)
-            closing.callback(trace.finish)
+    def _written_down(self, run: RobotRun, item: pytest.Item) -> ExitStack:
+        """Write down what the robot does and what it is told, if the user wants that."""
+        closing, name, options = ExitStack(), _file_name(item.nodeid), self.options
+        if options.trace_directory is not None:
+            closing.enter_context(traced(run, options.trace_directory / name))
+        if options.record_directory is not None:
+            file = options.record_directory / name
+            closing.enter_context(recorded(run, file, self.project.main_file.name, options.seed))
         return closing
 
     # -- hooks ------------------------------------------------------------------------------------------------
@@ -165,20 +193,21 @@ class PyFrcPlugin:
         return pytest.Module.from_parent(parent, path=module_path, nodeid="pyfrc.tests")
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
-        """`test_autonomous(gamedata)` runs once for each message that the field may send."""
-        if "gamedata" in metafunc.fixturenames:
-            try:
-                messages = self.project.sim_config.messages
-            except PyfrcError as wrong:
-                raise pytest.Collector.CollectError(str(wrong)) from None
-            metafunc.parametrize("gamedata", messages or [""])
+        """`test_autonomous(gamedata)` runs once for each message that the field may send.
+
+        What is wrong with the settings is told here, once: the tests' own processes would all tell it.
+        """
+        try:
+            if "gamedata" in metafunc.fixturenames:
+                metafunc.parametrize("gamedata", self.project.game_specific_messages or [""])
+            elif "_physics" in metafunc.fixturenames and self._physics_module is not None:
+                self.project.sim_config  # noqa: B018
+        except PyfrcError as wrong:
+            raise pytest.Collector.CollectError(str(wrong)) from None
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
-        random.seed(self.options.seed)
-        numpy = sys.modules.get("numpy")
-        if numpy is not None:
-            numpy.random.seed(self.options.seed % 2**32)
+        seed_generators(self.options.seed)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(
@@ -196,7 +225,7 @@ class PyFrcPlugin:
         return report
 
 
-def _trace_name(nodeid: str) -> str:
+def _file_name(nodeid: str) -> str:
     """A file name that tells the test, and that no other test has."""
     file, _, test = nodeid.partition("::")
     test = test.replace("::", ".")

@@ -1,68 +1,80 @@
 """Mashes the buttons and switches in random ways, to find the control situations that nobody thinks of.
 
-Its random numbers start from the run's seed, so a failure can be had again: the report names the seed.
+Its random numbers start from the run's seed. What a failing match was told is kept as an input script: ``pyfrc replay``
+has it fail again.
 """
 
 from __future__ import annotations
 
+import os
 import random
-from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
-from ..hal import HalData
+from ..fuzz.masher import MatchMasher
+from ..fuzz.match_plan import seconds_of
+from ..hal import HalData, modes
+from ..project import Project, find_project
+from ..runtime.clock import PACKET_US
+from ..runtime.scripts.script import InputScript, Step
+from ..runtime.scripts.targets import Targets
 from ..test_support.controller import TestController
 from ..test_support.fake_time import FakeTime
 
 __all__ = ["test_fuzz"]
 
-# How many of a robot's inputs change at each packet, on average: enough to chord buttons, few enough to hold them.
-_CHANGES_PER_PACKET = 0.5
-
-# What people and their gamepads produce: the ends, the middle, the edges of dead bands, and anything in between.
-_STICK_POSITIONS = (-1.0, -0.05, -0.02, 0.0, 0.02, 0.05, 1.0)
-_POV_ANGLES = (-1, 0, 45, 90, 135, 180, 225, 270, 315)
+#: Where scripts of failing matches are kept, in the project.
+_KEPT = Path(".pyfrc", "fuzz")
 
 
 def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, robot: Any) -> None:
     """Runs through a whole game randomly setting components."""
     __tracebackhide__ = True
-    control.set_practice_match()
-    control.run_test(_Masher(hal_data).on_step)
+    clock, project, seed = fake_time.run.clock, control.project or find_project(), control.seed
+    masher = MatchMasher(
+        random.Random(f"fuzz {seed}"),  # not the generator that the robot's own code draws from
+        fake_time.run,
+        seconds=seconds_of(project.settings.match),
+        settings=project.settings.match,
+        game_messages=project.game_specific_messages,
+    )
+    targets, steps = Targets(hal_data), list[Step]()
+
+    def write() -> None:
+        writes = masher.writes(clock.now_us)
+        if writes:
+            steps.append(Step(clock.now_us, writes))
+        for target, value in writes.items():
+            targets.write(target, value, clock.now_us)
+
+    def on_step(now: float) -> bool:
+        write()
+        targets.count_down(clock.now_us)
+        return not masher.over(clock.now_us)
+
+    write()
+    try:
+        control.run_test(on_step)
+    except Exception:
+        script = InputScript(tuple(steps), clock.now_us + PACKET_US, robot=project.main_file.name, seed=seed)
+        _tell(_keep(script, project), script, clock.now)
+        raise
 
 
-class _Masher:
-    """Changes inputs of what the robot has made, at random."""
+def _keep(script: InputScript, project: Project) -> Path:
+    """Write it where a next run with the same seed finds it, out of version control."""
+    file = project.root / _KEPT / f"seed-{script.seed}.jsonl"
+    script.save(file)
+    ignored = project.root / _KEPT.parts[0] / ".gitignore"
+    if not ignored.exists():
+        ignored.write_text("*\n", encoding="utf-8")
+    return file
 
-    def __init__(self, hal_data: HalData) -> None:
-        self._hal_data = hal_data
-        self._inputs: list[str] = []
 
-    def on_step(self, now: float) -> bool:
-        if round(now * 50) % 50 == 1:  # once a second: the robot may have made more
-            self._inputs = sorted(self._find_inputs())
-        while random.random() < _CHANGES_PER_PACKET / (1 + _CHANGES_PER_PACKET):
-            path = random.choice(self._inputs)
-            self._hal_data.write(path, self._new_value(path))
-        return True
-
-    def _find_inputs(self) -> Iterator[str]:
-        """The paths of the inputs that there are: all controls, and the sensors that the robot reads."""
-        for number, stick in enumerate(self._hal_data["joysticks"]):
-            yield from (f"joysticks[{number}].axes[{axis}]" for axis in range(stick["axis_count"]))
-            yield from (f"joysticks[{number}].buttons[{button}]" for button in range(1, stick["button_count"] + 1))
-            yield from (f"joysticks[{number}].povs[{pov}]" for pov in range(stick["pov_count"]))
-        for kind, value in (("dio", "value"), ("analog_in", "voltage"), ("encoder", "count")):
-            for number, device in enumerate(self._hal_data[kind]):
-                if device["initialized"] and device.get("is_input", True):
-                    yield f"{kind}[{number}].{value}"
-
-    def _new_value(self, path: str) -> float | int | bool:
-        if ".axes" in path:
-            return random.choice((*_STICK_POSITIONS, random.uniform(-1, 1)))
-        if ".povs" in path:
-            return random.choice(_POV_ANGLES)
-        if path.startswith("analog_in"):
-            return random.uniform(0, 5)  # volts
-        if path.startswith("encoder"):
-            return int(self._hal_data.read(path)) + random.randint(-200, 200)
-        return random.random() < 0.5
+def _tell(file: Path, script: InputScript, now: float) -> None:
+    shown = os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
+    print(
+        f"The robot failed at {now:.2f} s of a match with everything mashed, in {modes.mode_name()} mode.\n"
+        f"What it was told, {len(script.steps)} changes from seed {script.seed}, is kept. To have it fail again:\n\n"
+        f"    pyfrc replay {shown}\n"
+    )

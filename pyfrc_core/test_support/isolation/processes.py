@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import faulthandler
 import os
 import pickle
-import re
 import selectors
 import signal
 import subprocess
@@ -15,15 +13,13 @@ import tempfile
 import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
-from itertools import takewhile
 from pathlib import Path
 from typing import IO, Any
 
 import pytest
 
 from ...measure.coverage import save_here
-from ...robot_files import is_pyfrc
-from ...runtime.watchdog import EXIT_HANGS
+from ...runtime.own_process import LastWords, end_processes_of_the_robot, exit_now, explain_end, write_all
 from ..pytest_plugin import PyFrcPlugin
 from .messages import Teller
 
@@ -32,8 +28,6 @@ FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
 
 # How long to wait before looking whether a process is gone without a word. Decides nothing else.
 _LOOK_SECONDS = 0.05
-
-_FAULT_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 
 
 class TestProcess(ABC):
@@ -86,38 +80,8 @@ class TestProcess(ABC):
     def explain_crash(self) -> str:
         """Why the process ended without finishing its test: the user's line first, where it can be told."""
         self._last_words.seek(0)
-        words = self._last_words.read().decode(errors="replace").strip()
-        if self._status == EXIT_HANGS and words:
-            return words
-        if words.startswith("Timeout"):
-            what = "the robot code hangs here, in a call that lets nothing else of Python run"
-        elif self._status < 0:
-            name = _signal_name(-self._status)
-            what = f"the robot's process was ended by signal {-self._status} ({name})"
-        else:
-            what = f"the robot's process ended itself with exit code {self._status}, in the middle of the test"
-        line = self._line_of_crash(words)
-        # Below the user's code, the stack is pyfrc's and pytest's: of no interest.
-        words = "\n".join(takewhile(lambda text: not re.search(r"pyfrc_core|_pytest", text), words.splitlines()))
-        return f"{line}: {what}\n\n{words}".strip() if line else f"{what}\n\n{words}".strip()
-
-    def _line_of_crash(self, words: str) -> str | None:
-        for stack in re.split(r"^(?=\w*\s?[Tt]hread )", words, flags=re.MULTILINE):
-            lines = _FAULT_LINE.findall(stack)
-            if not lines or is_pyfrc(lines[0][0]):
-                continue  # a thread that only waits for its turn
-            for filename, number in lines:
-                if self._files.is_project_file(filename):
-                    return f"{self._files.relative(filename)}:{number}"
-        return None
-
-
-def _signal_name(number: int) -> str:
-    try:
-        name = signal.Signals(number).name
-    except ValueError:
-        return "unknown"
-    return f"{name}, segmentation fault" if name == "SIGSEGV" else name
+        words = self._last_words.read().decode(errors="replace")
+        return explain_end(words, self._status, self._files, "in the middle of the test")
 
 
 @contextlib.contextmanager
@@ -155,7 +119,7 @@ class ForkedTest(TestProcess):
             _become_the_test(
                 item,
                 plugin,
-                lambda data: _write_all(writing_end, data),
+                lambda data: write_all(writing_end, data),
                 self._last_words.fileno(),
                 (self._captured[0].fileno(), self._captured[1].fileno()),
             )
@@ -251,11 +215,6 @@ class SpawnedTest(TestProcess):
 # -- on the other side -----------------------------------------------------------------------------------------------
 
 
-def _write_all(descriptor: int, data: bytes) -> None:
-    while data:
-        data = data[os.write(descriptor, data) :]
-
-
 def _become_the_test(
     item: pytest.Item,
     plugin: PyFrcPlugin,
@@ -271,43 +230,23 @@ def _become_the_test(
         leave_word_on_crash(plugin, last_words)
         Teller(send).run(item)
         save_here()
-        _end_processes_of_the_robot()
+        end_processes_of_the_robot()
         status = 0
     except BaseException:
         import traceback
 
-        _write_all(last_words, traceback.format_exc().encode())
+        write_all(last_words, traceback.format_exc().encode())
     finally:
-        _exit(status)
-
-
-def _end_processes_of_the_robot() -> None:
-    multiprocessing = sys.modules.get("multiprocessing")
-    for process in multiprocessing.active_children() if multiprocessing is not None else ():
-        process.kill()
-
-
-_exit = os._exit
+        exit_now(status)
 
 
 def leave_word_on_crash(plugin: PyFrcPlugin, descriptor: int) -> None:
-    """Have what ends this process too early say where: a fault in C code, `os._exit`, code that cannot be stopped."""
+    """Have what ends this process too early say where: also code that cannot be stopped."""
     plugin.own_process = True
     plugin.when_python_is_stuck = descriptor
-    faulthandler.enable(descriptor, all_threads=False)
-    plugin.last_words = lambda text: _write_all(descriptor, text.encode())
-
-    def telling_exit(status: int) -> None:
-        frame = sys._getframe(1)
-        _write_all(
-            descriptor,
-            f'os._exit({status}) was called:\n  File "{frame.f_code.co_filename}", line {frame.f_lineno}'
-            f" in {frame.f_code.co_name}\n".encode(),
-        )
-        save_here()
-        _exit(status)
-
-    os._exit = telling_exit  # type: ignore[assignment]
+    words = LastWords(descriptor)
+    plugin.last_words = words.write
+    words.leave_on_crash(before_exit=save_here)
 
 
 def _capture_anew(config: pytest.Config, files: tuple[int, int]) -> None:

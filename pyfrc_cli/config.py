@@ -1,0 +1,77 @@
+"""`pyfrc config`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .project_options import chosen_project, project_options
+
+if TYPE_CHECKING:
+    from pyfrc_core.config.sim_file import LoadedSimConfig
+
+_HELP = {"help_option_names": ["-h", "--help"]}
+
+
+@click.group("config", context_settings=_HELP)
+def command() -> None:
+    """Check and show sim/config.json, which the physics and the simulator read."""
+
+
+@command.command("check", context_settings=_HELP)
+@project_options
+@click.option("--strict", is_flag=True, help="Let warnings fail the command, as for continuous integration.")
+def check(directory: Path | None, main: Path | None, robot_class: str | None, strict: bool) -> None:
+    """Say what is wrong with sim/config.json, which of its keys have no effect, and what is hard to believe.
+
+    \b
+    Exit codes: 0 nothing is wrong, 1 there are warnings (with --strict), 2 something is wrong.
+    """
+    from pyfrc_core.config.findings import MOST_TOLD
+
+    loaded = _loaded(directory, main, robot_class)
+    warnings = [*loaded.warnings, *loaded.doubts()]
+    for warning in warnings:
+        click.secho(f"warning: {warning}", fg="yellow")
+    what = "no mistakes" if loaded.text else "there is no such file, so everything is at its default"
+    if warnings:
+        count = f"more than {MOST_TOLD}" if len(loaded.warnings) > MOST_TOLD else str(len(warnings))
+        what += f", but {count} warning{'s' * (count != '1')}"
+    click.echo(f"{loaded.name}: {what}")
+    sys.exit(1 if strict and warnings else 0)
+
+
+@command.command("show", context_settings=_HELP)
+@project_options
+@click.option("--json", "as_json", is_flag=True, help="As JSON, which sim/config.json itself may hold.")
+def show(directory: Path | None, main: Path | None, robot_class: str | None, as_json: bool) -> None:
+    """Show the values in effect, and where each comes from."""
+    loaded = _loaded(directory, main, robot_class)
+    if as_json:
+        click.echo(json.dumps(loaded.as_json(), indent=2))
+        return
+    rows = [(path, json.dumps(value), source) for path, value, source in loaded.settings()]
+    path_width, value_width = (min(max(len(row[column]) for row in rows), 40) for column in (0, 1))
+    for path, value, source in rows:
+        click.echo(f"{path:{path_width}}  {value:{value_width}}  {source}")
+
+
+@command.command("schema", context_settings=_HELP)
+def schema() -> None:
+    """Print the JSON Schema of sim/config.json, for editors to complete from.
+
+    Write it to sim/config.schema.json, and put "$schema": "config.schema.json" at the top of sim/config.json.
+    """
+    from pyfrc_core.config.sim_schema import sim_config_schema
+
+    click.echo(sim_config_schema())
+
+
+def _loaded(directory: Path | None, main: Path | None, robot_class: str | None) -> LoadedSimConfig:
+    from pyfrc_core.config.sim_file import load_sim_config
+
+    return load_sim_config(chosen_project(directory, main, robot_class).root, shown_from=Path.cwd())

@@ -1,0 +1,207 @@
+"""Reads ``sim/config.json``: the values in effect, what in it has no effect, and where each value comes from."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path as File
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from ..errors import nearest
+from .doubts import doubts
+from .findings import MOST_TOLD, Finding, Path, dotted, finding_at, in_order, mistakes, settings_error
+from .in_effect import FROM_SEASON, Origins, in_effect, without_effect
+from .json_text import MOST_BYTES, JsonText
+from .seasons import SEASONS
+from .sim import SimConfig, SimConfigFile
+from .tables import AXES
+
+SIM_CONFIG = File("sim", "config.json")
+
+
+@dataclass(frozen=True)
+class LoadedSimConfig:
+    """``sim/config.json``, or the defaults where there is none."""
+
+    #: The values that hold, a season's data and older names applied.
+    config: SimConfig
+    #: The file as the user knows it, whether it is there or not.
+    name: str
+    #: What in the file has no effect, in the file's order.
+    warnings: tuple[Finding, ...] = ()
+    #: The file's text; None where there is no file.
+    text: JsonText | None = None
+    _origins: Origins = field(default_factory=dict)
+
+    def settings(self) -> Iterator[tuple[str, Any, str]]:
+        """Each value in effect: its path (``pyfrc.robot.w``), the value as in JSON, and where it comes from."""
+        for path, value in _leaves(self.config.model_dump(mode="json"), ()):
+            yield dotted(("pyfrc", *path)), value, self._source(path)
+
+    def as_json(self) -> dict[str, Any]:
+        """The values in effect and their sources, by path; itself a content that ``sim/config.json`` may have.
+
+        What the season decides stands apart, under ``season``: in the file it would be ignored.
+        """
+        values = self.config.model_dump(mode="json")
+        sources = {path: source for path, _, source in self.settings()}
+        if self.config.field.season not in SEASONS:
+            return {"pyfrc": values, "sources": sources}
+        decided = {name: values["field"].pop(name) for name in FROM_SEASON}
+        return {"pyfrc": values, "season": decided, "sources": sources}
+
+    def doubts(self) -> tuple[Finding, ...]:
+        """What the file says that is surely not meant, in the file's order."""
+        found = {}
+        for path, why in doubts(self.config):
+            origin = self._origins.get(path, path)
+            if self.text is not None and isinstance(origin, tuple) and self._has(origin):
+                whole = ("pyfrc", *origin)
+                found[whole] = finding_at(self.text, whole, f"{dotted(whole)} = {self.text.excerpt(whole)}: {why}")
+        return tuple(in_order(found.values()))
+
+    def _source(self, path: Path) -> str:
+        origin = self._origins.get(path, path)
+        if isinstance(origin, str):
+            return origin
+        if len(path) == 4 and path[2] == "axes":
+            # An axis may stand in the file by its letter.
+            names = [(*path[:3], key) for key, number in AXES.numbers.items() if str(number) == path[3]]
+            origin = next(filter(self._has, names), path)
+        if origin == path and not self._has(path):
+            return "default"
+        assert self.text is not None
+        place = f"{self.name}:{self.text.line_of(('pyfrc', *origin))}"
+        return place if origin == path else f"{place} ({dotted(origin)})"
+
+    def _has(self, path: Path) -> bool:
+        return self.text is not None and self.text.has(("pyfrc", *path))
+
+
+def load_sim_config(root: File, *, shown_from: File | None = None) -> LoadedSimConfig:
+    """What ``sim/config.json`` below the project's directory says; the file is only read.
+
+    :param root: the directory of the robot's code
+    :param shown_from: the directory that the file's name is told from; default: `root`
+    :raises SettingsError: with each mistake's line, path and value, and what is allowed there
+    """
+    file = root / SIM_CONFIG
+    shown_from = shown_from or root
+    name = _shown(file, shown_from)
+    if not (file.exists() or file.is_symlink()):
+        config, origins = in_effect(SimConfig())
+        elsewhere = tuple(
+            Finding(_shown(other, shown_from), None, "pyfrc does not read this file", f"Move it to {name}")
+            for other in _misplaced(root)
+        )
+        return LoadedSimConfig(config, name, elsewhere, _origins=origins)
+    text = JsonText(file, name)
+    try:
+        given = SimConfigFile.model_validate(text.value).pyfrc
+    except ValidationError as invalid:
+        raise settings_error(mistakes(invalid, text.value, text)) from None
+    config, origins = in_effect(given)
+    return LoadedSimConfig(config, name, _warnings(given, text, file.parent), text, origins)
+
+
+def _shown(file: File, directory: File) -> str:
+    try:
+        return File(os.path.relpath(file, directory)).as_posix()
+    except ValueError:  # on another drive
+        return str(file)
+
+
+def _misplaced(root: File) -> Iterator[File]:
+    """The files that are surely meant to be ``sim/config.json``: they speak of pyfrc, and stand near."""
+    near = [root / "config.json", root / "tests" / SIM_CONFIG]
+    if not (root.parent / "robot.py").exists():  # whose it would be
+        near.append(root.parent / SIM_CONFIG)
+    with suppress(OSError):
+        for directory in sorted(root.iterdir()):
+            if directory.name.casefold() == "sim" and directory.is_dir():
+                near += sorted(file for file in directory.iterdir() if file.name.casefold() == "config.json")
+    for file in near:
+        with suppress(OSError):
+            if file.is_file() and file.stat().st_size <= MOST_BYTES and b'"pyfrc"' in file.read_bytes():
+                yield file
+
+
+def _warnings(given: SimConfig, text: JsonText, directory: File) -> tuple[Finding, ...]:
+    found = _find_warnings(given, text, directory)
+    told = in_order(finding_at(text, path, message, remedy) for path, message, remedy in islice(found, MOST_TOLD))
+    if next(found, None) is not None:
+        told.append(Finding(text.name, None, "... and there is more"))
+    return tuple(told)
+
+
+def _find_warnings(given: SimConfig, text: JsonText, directory: File) -> Iterator[tuple[Path, str, str | None]]:
+    """What in the file has no effect: the path, what is to be said of it, and what can be done."""
+    for path, line in text.repeated_keys():
+        if path[0] == "pyfrc":  # all else is other tools'
+            yield path, f"{dotted(path)} stands here again, and replaces what line {line} says", None
+    if "pyfrc" not in text.value:
+        for key in text.value:
+            if key.casefold() == "pyfrc" or nearest(key[:50], ["pyfrc"]).startswith("did you mean"):
+                yield (key,), f"unknown key {dotted((key,))!r}", "did you mean 'pyfrc'?"
+        return
+    for path, known in _unknown_keys(given, text.value["pyfrc"], ("pyfrc",)):
+        # Of a long key, the beginning is enough to find the nearest.
+        yield path, f"unknown key {dotted(path)!r}", nearest(str(path[-1])[:50], known)
+    for path, why in without_effect(given):
+        yield ("pyfrc", *path), f"{dotted(('pyfrc', *path))} = {text.excerpt(('pyfrc', *path))}: {why}", None
+    image = given.field.image
+    if image is not None and not _is_file(directory, image):
+        path = ("pyfrc", "field", "image")
+        yield path, f"{dotted(path)} = {text.excerpt(path)}: there is no such file", "It is looked for in sim/."
+    for port, joystick in text.value["pyfrc"].get("joysticks", {}).items():
+        for first, again in _same_axis(joystick.get("axes", {})):
+            path = ("pyfrc", "joysticks", port, "axes", again)
+            yield path, f"{dotted(path)}: this is the same axis as {first!r}, whose label it replaces", None
+
+
+def _unknown_keys(given: Any, data: Any, path: Path) -> Iterator[tuple[Path, list[str]]]:
+    """The keys in `data` that did not get into its model `given`; and those that are known there."""
+    if isinstance(given, BaseModel):
+        known = type(given).model_fields
+        for key, item in data.items():
+            if key in known:
+                yield from _unknown_keys(getattr(given, key), item, (*path, key))
+            else:
+                yield (*path, key), list(known)
+    elif isinstance(given, tuple):
+        for index, (each, item) in enumerate(zip(given, data, strict=True)):
+            yield from _unknown_keys(each, item, (*path, index))
+    elif isinstance(given, dict):
+        for key, item in data.items():
+            if isinstance(item, dict):
+                yield from _unknown_keys(given[int(key)], item, (*path, key))
+
+
+def _same_axis(axes: dict[str, str]) -> Iterator[tuple[str, str]]:
+    """Pairs of keys that name the same axis."""
+    seen: dict[int, str] = {}
+    for key in axes:
+        first = seen.setdefault(AXES.numbers[key], key)
+        if first != key:
+            yield first, key
+
+
+def _is_file(directory: File, name: str) -> bool:
+    try:
+        return (directory / name).is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        return False
+
+
+def _leaves(value: Any, path: Path) -> Iterator[tuple[Path, Any]]:
+    """The values at the ends of an object of objects; an array is one."""
+    if isinstance(value, dict) and value:
+        for key, item in value.items():
+            yield from _leaves(item, (*path, key))
+    else:
+        yield path, value

@@ -1,0 +1,73 @@
+"""What people choose, type and click in a dashboard: found in NetworkTables, where the robot has put it."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from typing import Any
+
+import ntcore
+
+from ..runtime.clock import PACKET_US
+from ..runtime.scripts.targets import NETWORK
+from .inputs import Input
+from .values import draw
+
+_PEOPLES_TABLES = ("/SmartDashboard/", "/Shuffleboard/")
+
+#: Seconds from one choice to the next, on average.
+_PAUSE = 3.0
+
+
+def find_dashboard() -> Iterator[Input]:
+    """The choosers' options, commands' buttons, plain entries."""
+    network = ntcore.NetworkTableInstance.getDefault()
+    for topic in network.getTopics():
+        name = topic.getName()
+        table, _, entry = name.rpartition("/")
+        if not name.startswith(_PEOPLES_TABLES) or entry.startswith("."):
+            continue
+        sort, made_by = topic.getType(), network.getEntry(f"{table}/.type").getString("")
+        if made_by == "String Chooser":
+            if entry == "options" and (options := network.getEntry(name).getStringArray([])):
+                yield Input(f"{NETWORK}{table}/selected", "choice", table, tuple(options))
+        elif made_by == "Command":
+            if entry == "running":
+                yield Input(NETWORK + name, "command", table)
+        elif sort == ntcore.NetworkTableType.kBoolean:
+            yield Input(NETWORK + name, "flag", name)
+        elif sort == ntcore.NetworkTableType.kDouble:
+            yield Input(NETWORK + name, "number", name)
+
+
+class Dashboard:
+    """One match's people at the dashboard."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self._chance = chance
+        self.next_us = 0
+        self._inputs: list[Input] = []
+        self._numbers: dict[str, float] = {}
+        self._chosen: set[str] = set()
+
+    def know(self, inputs: list[Input]) -> None:
+        """What there is to choose."""
+        self._inputs = inputs
+        for each in inputs:
+            if each.kind == "number" and each.target not in self._numbers:
+                entry = ntcore.NetworkTableInstance.getDefault().getEntry(each.target.removeprefix(NETWORK))
+                self._numbers[each.target] = entry.getDouble(0.0)
+
+    def write(self, now_us: int, found: dict[str, Any]) -> None:
+        """Add what is to be written now: a choice for each new chooser, and now and then something."""
+        chance = self._chance
+        for each in self._inputs:
+            if each.kind == "choice" and each.target not in self._chosen:
+                self._chosen.add(each.target)
+                self._choose(each, found)
+        if self._inputs and self.next_us:
+            self._choose(chance.choice(self._inputs), found)
+        self.next_us = now_us + PACKET_US + round(chance.expovariate(1 / _PAUSE) * 50) * PACKET_US
+
+    def _choose(self, each: Input, found: dict[str, Any]) -> None:
+        found[each.target] = draw(each.kind, self._chance, each.options, self._numbers.get(each.target))

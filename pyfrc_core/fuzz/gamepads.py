@@ -1,0 +1,66 @@
+"""Which joysticks a robot asks for, and as what: the HAL cannot tell, the robot's objects can."""
+
+from __future__ import annotations
+
+import functools
+import types
+from collections.abc import Iterator
+from typing import Any
+
+import wpilib
+from wpilib.interfaces import GenericHID
+
+#: The axes of gamepads that are triggers: they go from 0 to 1, not from -1.
+TRIGGERS: dict[str, tuple[int, ...]] = {"XboxController": (2, 3), "PS4Controller": (3, 4), "PS5Controller": (3, 4)}
+
+#: Where robots with more than this many objects keep a joystick is not looked for any longer.
+_MOST_OBJECTS = 20_000
+
+_CONTAINERS = (list, tuple, set, frozenset)
+#: What leads to everything in the process.
+_TOO_FAR = (types.ModuleType, type)
+
+
+def find_gamepads(robot: Any) -> dict[int, str]:
+    """By port, the class of the joystick that the robot has made for it; those that can be found."""
+    found: dict[int, str] = {}
+    for stick in _reachable(robot):
+        name = next((each.__name__ for each in type(stick).__mro__ if hasattr(wpilib, each.__name__)), "")
+        if name in TRIGGERS or found.get(stick.getPort()) is None:
+            found[stick.getPort()] = name
+    return dict(sorted(found.items()))
+
+
+def _reachable(robot: Any) -> Iterator[GenericHID]:
+    """Breadth first, through attributes, containers and what functions have in their closures."""
+    seen, waiting = {id(robot)}, [robot]
+    for each in waiting:
+        if isinstance(each, GenericHID):
+            yield each
+            continue
+        if len(seen) > _MOST_OBJECTS:
+            return
+        for part in _parts(each):
+            if id(part) not in seen and not isinstance(part, _TOO_FAR):
+                seen.add(id(part))
+                waiting.append(part)
+
+
+def _parts(thing: Any) -> Iterator[Any]:
+    if isinstance(thing, dict):
+        yield from thing.values()
+    elif isinstance(thing, _CONTAINERS):
+        yield from thing
+    elif isinstance(thing, types.MethodType):
+        yield from (thing.__self__, thing.__func__)
+    elif isinstance(thing, types.FunctionType):
+        for cell in thing.__closure__ or ():
+            try:
+                yield cell.cell_contents
+            except ValueError:  # not bound yet
+                continue
+        yield from thing.__defaults__ or ()
+    elif isinstance(thing, functools.partial):
+        yield from (thing.func, *thing.args, *thing.keywords.values())
+    else:
+        yield from getattr(thing, "__dict__", {}).values()

@@ -1,0 +1,128 @@
+"""What of a robot can be mashed: its joysticks' controls, and the sensors of the devices that it has made.
+
+What its dashboard lets people choose is in `dashboard`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from wpilib.simulation import SimDeviceSim
+
+from ..hal import HalData, format_path
+from .gamepads import TRIGGERS
+from .values import Kind
+
+
+@dataclass(frozen=True, order=True)
+class Input:
+    """One input.
+
+    :param target: what an input script calls it
+    :param kind: what sort of values it has
+    :param device: what it is part of: the inputs of one device belong together
+    :param options: of kinds that have a few values only, those
+    """
+
+    target: str
+    kind: Kind
+    device: str = ""
+    options: tuple[Any, ...] = ()
+
+
+# -- joysticks -------------------------------------------------------------------------------------------------------
+
+
+def find_controls(hal_data: HalData, gamepads: Mapping[int, str]) -> Iterator[Input]:
+    """The axes, buttons and POVs of the joysticks that are plugged in."""
+    for number, stick in enumerate(hal_data["joysticks"]):
+        axes, buttons, povs = stick.counts()
+        name, triggers = f"joysticks[{number}]", TRIGGERS.get(gamepads.get(number, ""), ())
+        for axis in range(axes):
+            yield Input(f"{name}.axes[{axis}]", "trigger" if axis in triggers else "axis", name)
+        for button in range(1, buttons + 1):
+            yield Input(f"{name}.buttons[{button}]", "button", name)
+        for pov in range(povs):
+            yield Input(f"{name}.povs[{pov}]", "pov", name)
+
+
+# -- sensors ---------------------------------------------------------------------------------------------------------
+
+#: By room of `hal_data`: the values that its devices read.
+_DEVICES: dict[str, tuple[tuple[str, Kind], ...]] = {
+    "dio": (("value", "switch"),),
+    "analog_in": (("voltage", "volts"),),
+    "encoder": (("count", "count"), ("rate", "rate")),
+    "analog_gyro": (("angle", "angle"), ("rate", "turning")),
+    "duty_cycle": (("output", "turns"), ("frequency", "hertz")),
+}
+_MODULES: dict[str, tuple[tuple[str, Kind], ...]] = {
+    "pcm_compressor": (("pressure_switch", "switch"),),
+    "ph_compressor": (("pressure_switch", "switch"),),
+    "pdp": (("voltage", "battery"), *((f"current[{channel}]", "amperes") for channel in range(24))),
+}
+
+#: Values of SimDevices with numbers, by their names; the first that fits.
+_NAMED: tuple[tuple[str, Kind], ...] = (
+    (r"rate|velocity", "turning"),
+    (r"yaw|pitch|roll", "half turns"),
+    (r"heading", "heading"),
+    (r"angle", "angle"),
+    (r"accel|^[xyz]$", "acceleration"),
+    (r"range|distance", "range"),
+    (r"voltage", "battery"),
+    (r"current", "amperes"),
+)
+
+
+def find_sensors(hal_data: HalData) -> Iterator[Input]:
+    """What the robot's sensors measure; of a SimDevice what is not an output of the robot's."""
+    yield Input("power.vin_voltage", "battery", "power")
+    yield Input("fpga_button", "switch", "fpga_button")
+    if hal_data["accelerometer"]["active"]:
+        for axis in "xyz":
+            yield Input(f"accelerometer.{axis}", "acceleration", "accelerometer")
+    wired = _wired(hal_data)
+    for room, values in _DEVICES.items():
+        for number, device in enumerate(hal_data[room]):
+            if device["initialized"] and device.get("is_input", True) and (room, number) not in wired:
+                for value, kind in values:
+                    yield Input(f"{room}[{number}].{value}", kind, f"{room}[{number}]")
+    for room, values in _MODULES.items():
+        for number in hal_data[room]:
+            for value, kind in values:
+                yield Input(f"{room}[{number}].{value}", kind, f"{room}[{number}]")
+    for name in hal_data["CAN"]:
+        yield from _of_sim_device(name)
+
+
+def _wired(hal_data: HalData) -> set[tuple[str, int | None]]:
+    """Channels that nobody reads by themselves: encoders and gyros are wired to them."""
+    encoders = [encoder["config"] for encoder in hal_data["encoder"] if encoder["initialized"]]
+    gyros = [number for number, gyro in enumerate(hal_data["analog_gyro"]) if gyro["initialized"]]
+    return {("dio", wire) for channels in encoders for wire in channels.values()} | {
+        ("analog_in", number) for number in gyros
+    }
+
+
+def _of_sim_device(name: str) -> Iterator[Input]:
+    device = SimDeviceSim(name)
+    for value, is_output in device.enumerateValues():
+        if is_output:
+            continue
+        options: tuple[str, ...] = ()
+        kind: Kind
+        sort = device.getValue(value).type.name
+        if sort == "BOOLEAN":
+            kind = "connected" if re.search("connected|valid", value, re.IGNORECASE) else "switch"
+        elif sort == "ENUM":
+            kind, options = "option", tuple(SimDeviceSim.getEnumOptions(device.getEnum(value)))
+        elif sort == "DOUBLE":
+            kind = next((kind for pattern, kind in _NAMED if re.search(pattern, value, re.IGNORECASE)), "turns")
+        else:
+            kind = "whole"
+        if kind != "option" or options:
+            yield Input(format_path(("CAN", name, value)), kind, format_path(("CAN", name)), options)

@@ -1,0 +1,160 @@
+"""Mashes what sensors measure: jumps, slow ways from one value to another, wheels that turn and stand still."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from ..hal import HalData
+from ..runtime.clock import PACKET_US
+from .inputs import Input
+from .values import SPANS, can_be, draw, nearest
+
+#: While something moves, it is measured anew this often.
+_STEP_US = 3 * PACKET_US
+
+#: Seconds from one sensor's change to the next one's, on average, and at least.
+_PAUSE, _SHORTEST_PAUSE = 1.0, 0.1
+
+#: How often a battery's voltage, a button on the roboRIO and the currents change, against other devices.
+_SELDOM = ("power", "fpga_button", "pdp")
+
+#: What to write next, and when; None when it is over.
+_Going = Callable[[int, dict[str, Any]], "int | None"]
+
+
+class Sensors:
+    """One match's measurements."""
+
+    def __init__(self, chance: random.Random, hal_data: HalData) -> None:
+        self._chance = chance
+        self._hal_data = hal_data
+        self.next_us = 0
+        #: Devices that are not to be touched yet, or any more.
+        self.left_alone: set[str] = set()
+        self.waits = False
+        #: What each was when it was last written or looked at, by target.
+        self._known: dict[str, Any] = {}
+        self._inputs: list[Input] = []
+        self._devices: dict[str, list[Input]] = {}
+        self._names: list[str] = []
+        self._weights: list[float] = []
+        self._change_us = 0
+        #: By device, what is under way with it.
+        self._going: dict[str, tuple[int, _Going]] = {}
+
+    def know(self, inputs: list[Input]) -> None:
+        """Which inputs there are."""
+        self._inputs, self._devices = inputs, {}
+        for each in inputs:
+            self._devices.setdefault(each.device, []).append(each)
+        self._names = list(self._devices)
+        self._weights = [0.25 if name.startswith(_SELDOM) else 1.0 for name in self._names]
+
+    def write(self, now_us: int, found: dict[str, Any]) -> None:
+        """Add what is to be written now."""
+        now: dict[str, Any] = {}
+        for device, (due_us, go) in list(self._going.items()):
+            if device in self.left_alone:
+                del self._going[device]
+            elif due_us <= now_us:
+                again_us = go(now_us, now)
+                if again_us is None:
+                    del self._going[device]
+                else:
+                    self._going[device] = (again_us, go)
+        if now_us >= self._change_us:
+            self._change(now_us, now)
+            mean = max(_SHORTEST_PAUSE, _PAUSE / (1 + sum(self._weights)))
+            self._change_us = now_us + PACKET_US + round(self._chance.expovariate(1 / mean) * 50) * PACKET_US
+        self.next_us = min([self._change_us, *(due_us for due_us, _ in self._going.values())])
+        self._known |= now
+        found |= now
+
+    def look(self) -> Iterator[Input]:
+        """Those that have changed without being mashed: the project's physics drives them, or code of the robot's own.
+
+        Robots reset encoders and gyros: what has become 0 says nothing.
+        """
+        known = self._known
+        for each in self._inputs:
+            # Rates follow from other values.
+            if each.kind == "rate" or each.device in self.left_alone:
+                continue
+            now = self._hal_data.read(each.target)
+            if now and known.get(each.target, now) != now:
+                yield each
+            known[each.target] = now
+
+    def _change(self, now_us: int, found: dict[str, Any]) -> None:
+        chance = self._chance
+        if not self._names or self.waits:
+            return
+        (device,) = chance.choices(self._names, self._weights)
+        if device in self.left_alone:
+            return
+        inputs = self._devices[device]
+        self._going.pop(device, None)
+        if inputs[0].kind == "count":
+            begun = self._turn_wheel(device, now_us, found)
+        else:
+            begun = self._measure(chance.choice(inputs), now_us, found)
+        if begun is not None:
+            self._going[device] = begun
+
+    def _measure(self, each: Input, now_us: int, found: dict[str, Any]) -> tuple[int, _Going] | None:
+        chance = self._chance
+        before = self._hal_data.read(each.target)
+        if each.kind in ("connected", "battery"):  # a loose contact, a heavy load: soon over
+            value = not before if each.kind == "connected" else draw(each.kind, chance)
+            found[each.target] = value
+            rest = before if each.kind == "connected" else round(chance.uniform(11.5, 12.8), 2)
+            return now_us + chance.choice((1, 2, 5, 25, 50)) * PACKET_US, _back(each, rest)
+        if each.kind == "switch":
+            found[each.target] = not before
+            if chance.random() < 0.5:
+                return now_us + chance.choice((1, 1, 2, 5, 25)) * PACKET_US, _back(each, before)
+            return None
+        value = draw(each.kind, chance, each.options)
+        if each.kind not in SPANS or SPANS[each.kind].whole or chance.random() < 0.6 or not can_be(each.kind, before):
+            found[each.target] = value
+            return None
+        end_us = now_us + round(chance.uniform(0.3, 4) * 50) * PACKET_US
+
+        def go(at_us: int, found: dict[str, Any]) -> int | None:
+            done = min(1.0, (at_us - now_us) / (end_us - now_us))
+            found[each.target] = nearest(each.kind, before + (value - before) * done)
+            return at_us + _STEP_US if at_us < end_us else None
+
+        return now_us + _STEP_US, go
+
+    def _turn_wheel(self, device: str, now_us: int, found: dict[str, Any]) -> tuple[int, _Going] | None:
+        """An encoder: its count goes on from where it is, since robots reset it."""
+        chance, hal_data = self._chance, self._hal_data
+        target, rate_target = f"{device}.count", f"{device}.rate"
+        how = chance.random()
+        if how < 0.25:  # somebody has turned it, or it has slipped
+            jump = chance.choice((-1, 1)) * chance.choice((1, 10, 500, 20_000))
+            found[target] = nearest("count", hal_data.read(target) + jump)
+            return None
+        speed = chance.choice((-1, 1)) * math.exp(chance.uniform(math.log(10), math.log(5000)))
+        end_us = now_us + round(chance.uniform(0.1, 2) * 50) * PACKET_US
+        found[rate_target] = nearest("rate", speed * abs(hal_data.read(f"{device}.distance_per_pulse")))
+
+        def go(at_us: int, found: dict[str, Any]) -> int | None:
+            found[target] = nearest("count", hal_data.read(target) + speed * _STEP_US / 1_000_000)
+            if at_us < end_us:
+                return at_us + _STEP_US
+            found[rate_target] = 0.0
+            return None
+
+        return now_us + _STEP_US, go
+
+
+def _back(each: Input, value: Any) -> _Going:
+    def go(at_us: int, found: dict[str, Any]) -> None:
+        found[each.target] = value
+
+    return go

@@ -1,0 +1,171 @@
+"""Mashes the controls as hands do: a pose of several at once, held for a while, then another.
+
+Bugs need chords: two buttons with a stick at its end is one pose in a few hundred, but one moment in millions if
+each control changed by itself.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from ..hal.modes import JOYSTICKS
+from ..runtime.clock import PACKET_US
+from .inputs import Input
+from .values import NOT_PRESSED, Kind, draw
+
+#: Packets come 50 times a second, and hands move no faster.
+_STEP_US = 2 * PACKET_US
+
+#: How often a port is mashed when the robot's joysticks could not be found: teams count from 0.
+_UNKNOWN = (40, 15, 3, 1, 1, 1)
+#: When they could, how often those and the others.
+_KNOWN, _OTHERS = 100, 1
+
+#: How many buttons, and how many axes a pose has.
+_BUTTONS = (0, 0, 1, 1, 2, 2, 2, 3, 3, 4)
+_AXES = (0, 0, 1, 1, 1, 2, 2, 2, 4)
+
+_RELEASED: dict[Kind, Any] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": NOT_PRESSED}
+
+
+class Sticks:
+    """One match's hands."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self._chance = chance
+        self.next_us = 0
+        #: Ports without a joystick: writing to them would plug one in.
+        self.unplugged: set[int] = set()
+        self._ports: list[tuple[list[Input], list[Input], list[Input]]] = [([], [], []) for _ in range(JOYSTICKS)]
+        self._weights: tuple[int, ...] = _UNKNOWN
+        self._pose_until_us = 0
+        self._held: dict[Input, Any] = {}
+        #: Taps: when which button is pressed or let go.
+        self._taps: list[tuple[int, Input, bool]] = []
+        #: Sticks in motion: where each started, and where it is to be at the end of the pose.
+        self._moving: dict[Input, tuple[int, float, float]] = {}
+        self._trembling: Input | None = None
+
+    def know(self, controls: Iterable[Input], gamepads: Iterable[int]) -> None:
+        """Which controls there are, and for which ports the robot has made joysticks."""
+        self._ports = [([], [], []) for _ in range(JOYSTICKS)]
+        for control in controls:
+            port = int(control.device[len("joysticks[") : -1])
+            sort = {"button": 0, "pov": 2}.get(control.kind, 1)
+            self._ports[port][sort].append(control)
+        known = set(gamepads)
+        self._weights = tuple(_KNOWN if port in known else _OTHERS for port in range(JOYSTICKS)) if known else _UNKNOWN
+
+    def unplug(self, port: int) -> None:
+        """The joystick is gone, and with it what was pressed on it."""
+        self.unplugged.add(port)
+        gone = f"joysticks[{port}]"
+        self._held = {control: value for control, value in self._held.items() if control.device != gone}
+        self._moving = {control: moving for control, moving in self._moving.items() if control.device != gone}
+        self._taps = [tap for tap in self._taps if tap[1].device != gone]
+        if self._trembling is not None and self._trembling.device == gone:
+            self._trembling = None
+
+    def plug_in(self, port: int) -> None:
+        """The joystick is there again, with nothing pressed."""
+        self.unplugged.discard(port)
+
+    def change_pose(self, now_us: int) -> None:
+        """Take another pose at once."""
+        self._pose_until_us = self.next_us = now_us
+
+    def write(self, now_us: int, found: dict[str, Any]) -> None:
+        """Add what is to be written now."""
+        if now_us >= self._pose_until_us:
+            self._pose(now_us, found)
+        while self._taps and self._taps[0][0] <= now_us:
+            _, button, pressed = self._taps.pop(0)
+            found[button.target] = pressed
+        for control, (start_us, start, end) in self._moving.items():
+            done = (now_us - start_us) / (self._pose_until_us - start_us)
+            self._set(control, round(start + (end - start) * done, 3), found)
+        if self._trembling is not None:
+            held = self._held.get(self._trembling, 0.0)
+            found[self._trembling.target] = round(min(1.0, max(-1.0, held + self._chance.uniform(-0.02, 0.02))), 3)
+        step = [now_us + _STEP_US] if self._moving or self._trembling is not None else []
+        self.next_us = min([self._pose_until_us, *step, *(at for at, _, _ in self._taps)])
+
+    def _pose(self, now_us: int, found: dict[str, Any]) -> None:
+        chance = self._chance
+        self._finish(found)
+        for control in [control for control in self._held if chance.random() < 0.75]:
+            self._set(control, _RELEASED[control.kind], found)
+        there = [port for port in range(JOYSTICKS) if port not in self.unplugged and any(self._ports[port])]
+        # Evenly over the orders of magnitude from two packets to two seconds.
+        lasts_us = max(PACKET_US, round(math.exp(chance.uniform(math.log(0.04), math.log(2))) * 50) * PACKET_US)
+        self._pose_until_us = now_us + lasts_us
+        if not there or chance.random() < 0.1:  # hands off
+            for control in list(self._held):
+                self._set(control, _RELEASED[control.kind], found)
+            return
+        ports = chance.choices(there, [self._weights[port] for port in there], k=chance.choice((1, 1, 1, 2)))
+        for port in dict.fromkeys(ports):
+            self._press(*self._ports[port], now_us, found)
+
+    def _finish(self, found: dict[str, Any]) -> None:
+        """Taps end with the pose, and moving sticks arrive where they were going."""
+        for _, button, pressed in self._taps:
+            if not pressed:
+                found[button.target] = False
+        for control, (_, _, end) in self._moving.items():
+            self._set(control, end, found)
+        if self._trembling is not None:
+            found[self._trembling.target] = self._held.get(self._trembling, 0.0)
+        self._taps, self._moving, self._trembling = [], {}, None
+
+    def _press(
+        self, buttons: list[Input], axes: list[Input], povs: list[Input], now_us: int, found: dict[str, Any]
+    ) -> None:
+        chance = self._chance
+        for button in _some(chance, buttons, chance.choice(_BUTTONS)):
+            self._set(button, True, found)
+        for axis in _some(chance, axes, chance.choice(_AXES)):
+            value = draw(axis.kind, chance)
+            how = chance.random()
+            if how < 0.2:
+                self._moving[axis] = (now_us, self._held.get(axis, 0.0), value)
+            else:
+                self._set(axis, value, found)
+                if how < 0.25 and axis.kind == "axis":
+                    self._trembling = axis
+        if povs and chance.random() < 0.35:
+            self._set(chance.choice(povs), draw("pov", chance), found)
+        for button in _some(chance, buttons, chance.choice((0, 0, 1, 2))):
+            if button not in self._held:
+                pressed_us = now_us + chance.randint(0, 10) * PACKET_US
+                if pressed_us + PACKET_US <= self._pose_until_us:
+                    self._taps += [
+                        (pressed_us, button, True),
+                        (pressed_us + chance.randint(1, 3) * PACKET_US, button, False),
+                    ]
+        self._taps.sort()
+
+    def _set(self, control: Input, value: Any, found: dict[str, Any]) -> None:
+        released = _RELEASED[control.kind]
+        if value == self._held.get(control, released):
+            return
+        found[control.target] = value
+        if value == released:
+            del self._held[control]
+        else:
+            self._held[control] = value
+
+
+def _some(chance: random.Random, controls: Sequence[Input], count: int) -> list[Input]:
+    """So many different ones, those with low numbers more often: what gamepads have, and what robots ask for."""
+    left, found = list(controls), []
+    for _ in range(min(count, len(left))):
+        # The first ten (axes: six) are on every gamepad.
+        common = 10 if left[0].kind == "button" else 6
+        weights = [8 if index < common else 1 for index in range(len(left))]
+        (chosen,) = chance.choices(range(len(left)), weights)
+        found.append(left.pop(chosen))
+    return found

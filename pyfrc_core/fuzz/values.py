@@ -1,0 +1,145 @@
+"""The values that inputs have in the real world: what people, their gamepads and sensors produce, and nothing else.
+
+A robot that fails on a stick at 2.0 or a voltage of -3 has no bug that anybody will ever see; one that fails on
+a POV at 315 has.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+from typing import Any, Literal
+
+#: What sort of values an input has. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes.
+Kind = Literal[
+    "axis",
+    "trigger",
+    "button",
+    "pov",
+    "switch",
+    "connected",
+    "volts",
+    "battery",
+    "count",
+    "rate",
+    "angle",
+    "half turns",
+    "heading",
+    "turning",
+    "turns",
+    "acceleration",
+    "amperes",
+    "hertz",
+    "range",
+    "whole",
+    "option",
+    "choice",
+    "command",
+    "flag",
+    "number",
+]
+
+
+@dataclass(frozen=True)
+class Span:
+    """The numbers of one kind.
+
+    :param typical: those at which code decides something: ends, middles, edges
+    :param whole: whether they are whole
+    """
+
+    low: float
+    high: float
+    typical: tuple[float, ...]
+    whole: bool = False
+
+
+#: The edges of the dead bands that teams and WPILib use, from both sides.
+_DEAD_BANDS = (0.01, 0.019, 0.02, 0.021, 0.05, 0.051, 0.1, 0.101)
+
+SPANS: dict[Kind, Span] = {
+    "axis": Span(-1, 1, (0.0, *(sign * edge for edge in _DEAD_BANDS for sign in (1, -1)))),
+    "trigger": Span(0, 1, (0.0, 1.0, 1.0, 0.5, *_DEAD_BANDS)),
+    "volts": Span(0, 5, (0.0, 0.0, 5.0, 5.0, 5.0, 2.5, 0.001, 4.999)),
+    # The roboRIO browns out at 6.3 V (the second edition's 6.75 V); below 4.5 V it is off.
+    "battery": Span(4.5, 13.5, (12.0, 12.6, 6.3, 6.3, 6.2, 6.7, 6.8, 4.6)),
+    "count": Span(-1_000_000, 1_000_000, (0, 0, 1, -1), whole=True),
+    "rate": Span(-100_000, 100_000, (0.0,)),
+    "angle": Span(-3600, 3600, (0.0, 90.0, -90.0, 179.9, 180.0, -180.0, 359.9, 360.0, -360.0, 720.0)),
+    "half turns": Span(-180, 180, (0.0, 90.0, -90.0, 179.9, 180.0, -180.0)),
+    "heading": Span(0, 360, (0.0, 90.0, 180.0, 270.0, 359.9)),
+    "turning": Span(-720, 720, (0.0, 0.0, 1.0, -1.0)),
+    "turns": Span(0, 1, (0.0, 0.0, 0.25, 0.5, 0.75, 0.999, 1.0)),
+    "acceleration": Span(-2, 2, (0.0, 1.0, -1.0, 2.0, -2.0)),
+    "amperes": Span(0, 120, (0.0, 2.0, 40.0, 120.0)),
+    "hertz": Span(0, 1000, (0, 244, 975), whole=True),
+    "range": Span(0, 200, (0.0, 1.0, 200.0)),
+    "whole": Span(0, 100, (0, 1, 100), whole=True),
+}
+
+POV_ANGLES = (0, 45, 90, 135, 180, 225, 270, 315)
+NOT_PRESSED = -1
+
+#: What somebody who tries numbers in a dashboard makes of one.
+_FACTORS = (0.5, 1.0, 2.0)
+
+_DIGITS = 3
+
+
+def draw(kind: Kind, chance: random.Random, options: tuple[Any, ...] = (), now: Any = 0) -> Any:
+    """A value that this kind of input may have.
+
+    :param options: of kinds that have a few values only, those
+    :param now: what the input is now
+    """
+    span = SPANS.get(kind)
+    if kind == "axis":
+        return _axis(chance)
+    if kind == "pov":
+        return chance.choice(POV_ANGLES)
+    if kind in ("option", "choice"):
+        return chance.choice(options)
+    if kind == "command":
+        return True
+    if kind == "number":
+        return now * chance.choice(_FACTORS)
+    if span is None:
+        return chance.random() < 0.5
+    if span.typical and chance.random() < 0.5:
+        return chance.choice(span.typical)
+    value = chance.uniform(span.low, span.high)
+    return round(value) if span.whole else round(value, _DIGITS)
+
+
+def _axis(chance: random.Random) -> float:
+    """Most often a stick that is pushed is pushed to its end, or nearly there."""
+    sort = chance.random()
+    if sort < 0.4:
+        return chance.choice((-1.0, 1.0))
+    if sort < 0.55:
+        return round(chance.choice((-1, 1)) * chance.uniform(0.9, 1), _DIGITS)
+    if sort < 0.7:
+        return chance.choice(SPANS["axis"].typical)
+    return round(chance.uniform(-1, 1), _DIGITS)
+
+
+def nearest(kind: Kind, value: float) -> float:
+    """The nearest value that this kind of input may have, with no more digits than a person reads."""
+    span = SPANS[kind]
+    inside = min(max(value, span.low), span.high)
+    return round(inside) if span.whole else round(inside, _DIGITS)
+
+
+def can_be(kind: Kind, value: Any, options: tuple[Any, ...] = ()) -> bool:
+    """Whether an input of this kind may have this value."""
+    span = SPANS.get(kind)
+    if kind == "pov":
+        return value in (NOT_PRESSED, *POV_ANGLES)
+    if kind in ("option", "choice"):
+        return value in options
+    if kind == "number":
+        return isinstance(value, float)
+    if span is None:
+        return isinstance(value, bool)
+    right_type = isinstance(value, int) if span.whole else isinstance(value, int | float)
+    return right_type and not isinstance(value, bool) and span.low <= value <= span.high

@@ -1,0 +1,285 @@
+"""What a robot project's ``physics.py`` is given to move the robot with, and what it has to be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+import wpilib
+from wpimath.geometry import Pose2d, Rotation2d, Transform2d
+from wpimath.kinematics import ChassisSpeeds
+
+from ..config.in_effect import config_of
+from ..config.sim import SimConfig
+from ..errors import RobotCodeError
+from ..hal import HalData, modes
+from .drivetrains import DriveVector
+from .parameters import ParameterError
+from .pose import METRES_PER_FOOT, Pose, along_arc
+
+if TYPE_CHECKING:
+    from .visionsim import VisionSimTarget
+
+__all__ = ["PhysicsEngine", "PhysicsInitException", "PhysicsInterface"]
+
+
+class PhysicsInitException(RobotCodeError):
+    """The project's ``physics.py`` is not what it must be: a class `PhysicsEngine` with a method `update_sim`."""
+
+
+class PhysicsEngine:
+    """What your ``physics.py`` must contain: a class of this name with these methods.
+
+    You can inherit from this one, but need not. It is made before the robot is, so that `initialize` can set what the
+    robot finds; when its constructor also takes the robot, or its `update_sim` is today's ``(now, tm_diff)``, it is
+    made when the robot's `robotInit` is over.
+
+    :param physics_controller: what you move the robot with
+    """
+
+    def __init__(self, physics_controller: PhysicsInterface) -> None:
+        self.physics_controller = physics_controller
+
+    def initialize(self, hal_data: HalData) -> None:
+        """Called before the robot has started running; optional.
+
+        A device that the robot makes afterwards may begin with values of its own: a digital input reads True.
+
+        :param hal_data: the robot's inputs and outputs
+        """
+
+    def update_sim(self, hal_data: HalData, now: float, tm_diff: float) -> None:
+        """Called every 20 ms of robot time, when the robot's loop has run (every 10 ms for robots with faster loops).
+
+        :param hal_data: the robot's inputs and outputs
+        :param now: the robot's time, in seconds
+        :param tm_diff: the time since the last call, in seconds
+        """
+        raise NotImplementedError("your PhysicsEngine has no update_sim")
+
+
+class PhysicsInterface:
+    """Moves the robot on the field, and turns its gyros with it.
+
+    There is one pose with two views. `get_position` is the documentation's: feet, clockwise, x to the right and y
+    downwards from the field's top left corner. `get_pose` is WPILib's: metres, counter-clockwise, x to the right and y
+    upwards from the bottom left corner.
+
+    :param robot_path: the directory of the robot's code
+    :param fake_time: the robot's time, for physics that want to ask it
+    :param config_obj: what ``sim/config.json`` holds
+    :param hal_data: the robot's inputs and outputs, where the gyros are; None leaves gyros alone
+    """
+
+    def __init__(
+        self,
+        robot_path: str | Path,
+        fake_time: Any,
+        config_obj: SimConfig | Mapping[str, Any],
+        hal_data: HalData | None = None,
+    ) -> None:
+        self.robot_path = str(robot_path)
+        self.fake_time = fake_time
+        #: The robot's start, its size, the field.
+        self.config_obj = config_obj
+        #: The field as dashboards show it; `setRobotPose` puts the robot elsewhere.
+        self.field = wpilib.Field2d()
+        #: The targets that a `VisionSim` looks for, and those that it sees now.
+        self.vision_targets: tuple[VisionSimTarget, ...] = ()
+        self.vision_targets_in_view: tuple[VisionSimTarget, ...] = ()
+        config = config_obj if isinstance(config_obj, SimConfig) else config_of(config_obj)
+        self._hal_data = hal_data
+        self._pose: Pose
+        self._shown: Pose2d
+        self._device_gyros: list[str] = []
+        self._turned = self._rate = 0.0
+        self._height = config.field.h
+        start = config.start
+        self._place(Pose(start.x, start.y, math.radians(start.angle)))
+
+    # -- feet, clockwise -----------------------------------------------------------------------------------------
+
+    @overload
+    def drive(self, speed: float, rotation_speed: float, tm_diff: float) -> Pose2d: ...
+
+    @overload
+    def drive(self, speed: ChassisSpeeds | DriveVector, tm_diff: float, /) -> Pose2d: ...
+
+    @overload
+    def drive(self, speed: ChassisSpeeds | DriveVector, *, tm_diff: float) -> Pose2d: ...
+
+    def drive(
+        self,
+        speed: float | ChassisSpeeds | DriveVector,
+        rotation_speed: float | None = None,
+        tm_diff: float | None = None,
+    ) -> Pose2d:
+        """Move the robot with constant velocities; only while it is enabled.
+
+        Also ``drive(answer, tm_diff)`` with what the drivetrain functions for mecanum and swerve answer. And
+        ``drive(ChassisSpeeds, tm_diff)``, as since 2020: in metres and counter-clockwise, also while the robot is
+        disabled, as one that rolls on is; gyros are left to you.
+
+        :param speed: the robot's speed forward, in ft/s
+        :param rotation_speed: clockwise, in radians/s
+        :param tm_diff: for how long, in seconds: what `update_sim` was given
+        :returns: where the robot is then
+        """
+        if isinstance(speed, (ChassisSpeeds, DriveVector)):
+            time = rotation_speed if tm_diff is None else tm_diff  # the second of two
+            if time is None or (rotation_speed is not None and tm_diff is not None):
+                raise TypeError(f"drive({type(speed).__name__}, tm_diff) takes a time, in seconds, and nothing else")
+            if isinstance(speed, DriveVector):
+                return self._drive(speed[1], speed[0], speed[2], time)
+            turn = -speed.omega * time
+            forward, right = speed.vx / METRES_PER_FOOT * time, -speed.vy / METRES_PER_FOOT * time
+            return self._move_along(forward, right, turn)
+        if rotation_speed is None or tm_diff is None:
+            raise TypeError(
+                "drive(speed, rotation_speed, tm_diff) takes three numbers, and drive(speeds, tm_diff) ChassisSpeeds "
+                f"and a time; this was given a {type(speed).__name__}"
+            )
+        return self._drive(speed, 0.0, rotation_speed, tm_diff)
+
+    def vector_drive(self, vx: float, vy: float, vw: float, tm_diff: float) -> None:
+        """Move the robot with a constant velocity vector relative to it; only while it is enabled.
+
+        :param vx: speed to the robot's right, in ft/s
+        :param vy: speed forward, in ft/s
+        :param vw: clockwise, in radians/s
+        :param tm_diff: for how long, in seconds
+        """
+        self._drive(vy, vx, vw, tm_diff)
+
+    def distance_drive(self, x: float, y: float, angle: float) -> None:
+        """Move the robot some distance, as seen from where it is, then turn it; only while it is enabled.
+
+        :param x: feet forward
+        :param y: feet to the right
+        :param angle: radians, clockwise
+        """
+        if modes.is_enabled():
+            self._move(x, y, angle)
+            self._turn_analog_gyros(angle)
+
+    def get_position(self) -> tuple[float, float, float]:
+        """Where the robot is: (x, y, angle) in feet and radians; the angle goes on counting beyond a full turn."""
+        pose = self._current()
+        return pose.x, pose.y, pose.angle
+
+    def get_offset(self, x: float, y: float) -> tuple[float, float]:
+        """How far away a coordinate is, in feet, and at what angle.
+
+        :returns: the distance, and degrees clockwise from the direction in which the robot faces, from -180 to 180
+        """
+        pose = self._current()
+        dx, dy = x - pose.x, y - pose.y
+        angle = math.remainder(math.atan2(dy, dx) - pose.angle, math.tau)
+        return math.hypot(dx, dy), math.degrees(angle)
+
+    # -- gyros ---------------------------------------------------------------------------------------------------
+
+    def add_device_gyro_channel(self, angle_key: str) -> None:
+        """Have a gyro turn with the robot, however it moves.
+
+        :param angle_key: the name of its angle in ``hal_data['robot']``, in degrees clockwise, such as
+            ``'navx_spi_4_angle'``
+        """
+        if angle_key not in self._device_gyros:
+            self._device_gyros.append(angle_key)
+
+    def add_analog_gyro_channel(self, ch: int) -> None:
+        """No longer needed: analog gyros turn with the robot."""
+
+    def add_gyro_channel(self, ch: int) -> None:
+        """No longer needed: analog gyros turn with the robot."""
+
+    # -- metres, counter-clockwise -------------------------------------------------------------------------------
+
+    def move_robot(self, transform: Transform2d) -> Pose2d:
+        """Move the robot, as seen from where it is; also while it is disabled, as a robot that rolls on does.
+
+        Analog gyros are left to you.
+
+        :param transform: in metres, counter-clockwise, as `TankModel.calculate` answers it
+        :returns: where the robot is then
+        """
+        if not isinstance(transform, Transform2d):
+            raise TypeError(f"move_robot(transform) takes a Transform2d, not a {type(transform).__name__}")
+        turn = transform.rotation().radians()
+        return self._move(transform.X() / METRES_PER_FOOT, -transform.Y() / METRES_PER_FOOT, -turn)
+
+    def get_pose(self) -> Pose2d:
+        """Where the robot is, in metres."""
+        return self.field.getRobotPose()
+
+    # -- drawing -------------------------------------------------------------------------------------------------
+
+    def draw_vision_targets(self, targets: Sequence[VisionSimTarget], in_view: Sequence[VisionSimTarget]) -> None:
+        """Show a camera's targets on the field; those in view also as an object of their own."""
+        self.vision_targets, self.vision_targets_in_view = tuple(targets), tuple(in_view)
+        for name, shown in (("vision targets", targets), ("vision targets in view", in_view)):
+            self.field.getObject(name).setPoses([self._seen_in_metres(Pose(t.x, t.y, 0.0)) for t in shown])
+
+    # -- the pose ------------------------------------------------------------------------------------------------
+
+    def _drive(self, forward: float, right: float, turning: float, time: float) -> Pose2d:
+        if not modes.is_enabled():
+            return self.get_pose()
+        turn = turning * time
+        pose = self._move_along(forward * time, right * time, turn)
+        self._turn_analog_gyros(turn)
+        return pose
+
+    def _move_along(self, forward: float, right: float, turn: float) -> Pose2d:
+        """Move with constant velocities that would, without the turn, bring the robot so far forward and right."""
+        _check(forward, right, turn)
+        return self._move(*along_arc(forward, right, turn), turn)
+
+    def _move(self, forward: float, right: float, turn: float) -> Pose2d:
+        _check(forward, right, turn)
+        if self._device_gyros and self._hal_data is not None:
+            angles = self._hal_data["robot"]
+            for key in self._device_gyros:
+                angles[key] = angles.get(key, 0.0) + math.degrees(turn)
+        return self._place(self._current().moved(forward, right, turn))
+
+    def _turn_analog_gyros(self, turn: float) -> None:
+        if turn and self._hal_data is not None:
+            self._turned += math.degrees(turn)
+            for gyro in self._hal_data["analog_gyro"]:
+                gyro["angle"] += math.degrees(turn)
+
+    def update_rates(self, tm_diff: float) -> None:
+        """Called when `update_sim` is over: analog gyros read the rate at which it has turned them, in degrees/s."""
+        rate, self._turned = self._turned / tm_diff, 0.0
+        if rate != self._rate and self._hal_data is not None:
+            self._rate = rate
+            for gyro in self._hal_data["analog_gyro"]:
+                gyro["rate"] = rate
+
+    def _current(self) -> Pose:
+        """The pose, unless somebody has put the robot elsewhere on the `field`."""
+        shown = self.field.getRobotPose()
+        if shown != self._shown:
+            self._pose = Pose(
+                shown.X() / METRES_PER_FOOT, self._height - shown.Y() / METRES_PER_FOOT, -shown.rotation().radians()
+            )
+        return self._pose
+
+    def _place(self, pose: Pose) -> Pose2d:
+        self._pose = pose
+        self._shown = self._seen_in_metres(pose)
+        self.field.setRobotPose(self._shown)
+        return self._shown
+
+    def _seen_in_metres(self, pose: Pose) -> Pose2d:
+        return Pose2d(pose.x * METRES_PER_FOOT, (self._height - pose.y) * METRES_PER_FOOT, Rotation2d(-pose.angle))
+
+
+def _check(forward: float, right: float, turn: float) -> None:
+    """Numbers that are none would carry on into the robot's pose and never leave it."""
+    if not math.isfinite(forward + right + turn):
+        raise ParameterError(f"the robot cannot move by {forward:g} ft forward, {right:g} ft right, {turn:g} rad")

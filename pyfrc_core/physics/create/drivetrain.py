@@ -1,0 +1,328 @@
+"""Which of a robot's motors drive it, which is on which side, and which encoder belongs to what.
+
+Known are how the motors answer the sticks and what the robot's code calls them. What an answer means follows from what
+a driver means by it: a stick pushed forward drives the robot forward, one pushed to the left turns or moves it to the
+left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from .names import Name
+from .sticks import FORWARD_AXES, Axis
+from .survey import Encoder, Motor, Survey
+
+
+@dataclass(frozen=True)
+class Side:
+    """Motors that do the same, being geared together.
+
+    :param forward: the sign of their output when it drives the robot forward
+    """
+
+    motors: list[Motor]
+    forward: int
+
+
+@dataclass(frozen=True)
+class Tank:
+    """Two sides of motors."""
+
+    left: Side
+    right: Side
+
+    @property
+    def motors(self) -> list[Motor]:
+        return [*self.left.motors, *self.right.motors]
+
+
+@dataclass(frozen=True)
+class Mecanum:
+    """Four wheels, each with motors of its own, by their corners: ``front_left`` and so on."""
+
+    wheels: dict[str, Side]
+
+    @property
+    def motors(self) -> list[Motor]:
+        return [motor for wheel in self.wheels.values() for motor in wheel.motors]
+
+
+@dataclass(frozen=True)
+class Swerve:
+    """Four wheels, each with a motor that drives it and one that turns it: what they do together cannot be seen."""
+
+    drive: list[Motor]
+    steer: list[Motor]
+
+
+#: The corners in the order in which pyfrc's drivetrains take their motors.
+CORNERS = ("front_left", "rear_left", "front_right", "rear_right")
+
+
+@dataclass
+class Layout:
+    """What is what on the robot.
+
+    :param drivetrain: one whose motors can be told apart
+    :param swerve: the motors that are a swerve drive's by their names
+    :param encoders: the encoders of the wheels, by side or corner
+    :param mechanisms: each other motor that has an encoder, with it
+    :param undriven: motors and encoders of which nothing is known
+    :param assumptions: sentences on what was taken for granted
+    """
+
+    drivetrain: Tank | Mecanum | None = None
+    swerve: Swerve | None = None
+    encoders: dict[str, list[Encoder]] = field(default_factory=dict)
+    mechanisms: list[tuple[Motor, Encoder]] = field(default_factory=list)
+    undriven: list[Motor | Encoder] = field(default_factory=list)
+    assumptions: list[str] = field(default_factory=list)
+
+
+def find_layout(found: Survey) -> Layout:
+    """What is what on the robot, as far as names and sticks tell."""
+    layout = Layout(swerve=_swerve(found.motors))
+    if layout.swerve is None and not any(motor.name.says_swerve for motor in found.motors):
+        layout.drivetrain = _Finder(found, layout.assumptions).find()
+    _assign_encoders(found, layout)
+    return layout
+
+
+def _swerve(motors: list[Motor]) -> Swerve | None:
+    drive, steer = ([motor for motor in motors if motor.name.task == task] for task in ("drive", "steer"))
+    return Swerve(drive, steer) if len(drive) == len(steer) == len(CORNERS) else None
+
+
+class _Finder:
+    """Looks for the drivetrain, from the surest sign to the least sure one."""
+
+    def __init__(self, found: Survey, assumptions: list[str]) -> None:
+        self._motors = {motor.path: motor for motor in found.motors}
+        self._responses = {
+            axis: {path: answer for path, answer in answers.items() if path in self._motors}
+            for axis, answers in found.responses.items()
+        }
+        self._assumptions = assumptions
+        self._contradicted = False
+
+    def find(self) -> Tank | Mecanum | None:
+        return self._by_forward_and_turn() or self._by_two_sticks() or self._by_names()
+
+    def _by_forward_and_turn(self) -> Tank | Mecanum | None:
+        """Motors that all answer one axis, and some of them the other way round another one."""
+        for forward in self._forward_axes():
+            answers = self._responses[forward]
+            signs = {path: _sign(answer) for path, answer in answers.items()}
+            patterns: dict[Axis, dict[str, int]] = {}
+            for axis, others in self._responses.items():
+                pattern = {path: _sign(others.get(path, 0.0)) * sign for path, sign in signs.items()}
+                if others.keys() == answers.keys() and len(set(pattern.values())) == 2:
+                    patterns.setdefault(axis, pattern)
+            if patterns:
+                wheels = self._mecanum(signs, patterns)
+                if wheels is not None:
+                    return wheels
+                # Turning left, the left side goes backward.
+                tank = self._tank(min(patterns.values(), key=self._misfit), signs)
+                if tank is not None:
+                    return tank
+        return None
+
+    def _forward_axes(self) -> list[Axis]:
+        return [axis for axis in self._responses if axis[1] in FORWARD_AXES and len(self._responses[axis]) > 1]
+
+    def _mecanum(self, signs: Mapping[str, int], patterns: Mapping[Axis, Mapping[str, int]]) -> Mecanum | None:
+        distinct: list[Mapping[str, int]] = []
+        for pattern in patterns.values():
+            if sum(pattern.values()) == 0 and not any(
+                pattern == other or _opposite(pattern, other) for other in distinct
+            ):
+                distinct.append(pattern)
+        if len(distinct) < 2:
+            return None
+        # The first of the two axes, a stick's x, moves nearly all robots sideways. Names know better.
+        sideways, turn = distinct[:2]
+        if self._misfit(sideways) < self._misfit(turn):
+            sideways, turn = turn, sideways
+        # With followers, several motors turn a wheel, and on all four wheels the same number.
+        wheels: dict[tuple[int, int], list[str]] = {}
+        for path in signs:
+            wheels.setdefault((sideways[path], turn[path]), []).append(path)
+        if len(set(map(len, wheels.values()))) > 1:
+            return None
+        corners = {}
+        for (aside, around), paths in wheels.items():
+            side = _agreed({self._motors[path].name.side for path in paths}) or ("left" if around < 0 else "right")
+            # To move left, the front left and the rear right wheel go backward.
+            front = (aside < 0) == (side == "left")
+            end = _agreed({self._motors[path].name.end for path in paths}) or ("front" if front else "rear")
+            corners[f"{end}_{side}"] = paths
+        if corners.keys() != set(CORNERS):
+            return None
+        if not all(self._motors[path].name.side for path in signs):
+            self._assumptions.append(
+                "The robot was taken to turn left and to move left with sticks pushed to the left."
+            )
+        return Mecanum({corner: self._side(paths, signs) for corner, paths in sorted(corners.items())})
+
+    def _tank(self, turn: Mapping[str, int], signs: Mapping[str, int]) -> Tank | None:
+        """Two sides; what their motors are called comes before which way the stick turned them."""
+        left = [path for path, sign in turn.items() if sign < 0]
+        right = [path for path, sign in turn.items() if sign > 0]
+        misnamed = self._misnamed(turn)
+        if self._misfit(turn):
+            if not self._contradicted:
+                fewer = misnamed if self._misfit(turn) == len(misnamed) else self._named(turn) - misnamed
+                motors = ", ".join(str(self._motors[path]) for path in turn if path in fewer)
+                self._assumptions.append(
+                    "The stick that turns the robot moves some motors as if they were on the other side than the one "
+                    f"that they are called after, unlike the rest: {motors}. Their names or their channels may be "
+                    "mixed up, or more than one drivetrain answers that stick."
+                )
+            self._contradicted = True
+            return None
+        if misnamed:
+            left, right = right, left
+            self._assumptions.append(
+                "By their names, the motors turn the robot right when the stick is pushed to the left: in its code a "
+                "sign is likely to be wrong (WPILib counts counter-clockwise turns as positive)."
+            )
+        elif not all(self._motors[path].name.side for path in signs):
+            self._assumptions.append("The robot was taken to turn left with the stick pushed to the left.")
+        return Tank(self._side(left, signs), self._side(right, signs))
+
+    def _named(self, turn: Mapping[str, int]) -> set[str]:
+        return {path for path in turn if self._motors[path].name.side is not None}
+
+    def _misnamed(self, turn: Mapping[str, int]) -> set[str]:
+        """The motors that are called after the other side than the one that a turn to the left puts them on."""
+        return {path for path in self._named(turn) if (self._motors[path].name.side == "left") != (turn[path] < 0)}
+
+    def _misfit(self, turn: Mapping[str, int]) -> int:
+        """How many motors' names contradict the others': none if all are on their side, or all on the other one."""
+        wrong = len(self._misnamed(turn))
+        return min(wrong, len(self._named(turn)) - wrong)
+
+    def _by_two_sticks(self) -> Tank | None:
+        """Each side answers a stick of its own."""
+        groups: list[tuple[Axis, dict[str, float]]] = []
+        for axis, answers in self._responses.items():
+            moved = {path for _, group in groups for path in group}
+            if axis[1] in FORWARD_AXES and answers and not moved & answers.keys():
+                groups.append((axis, answers))
+        named: dict[str | None, dict[str, float]] = {}
+        for _, answers in groups:
+            sides = {self._motors[path].name.side for path in answers}
+            plain = all(self._motors[path].name.is_plain for path in answers)
+            if len(sides) == 1 and plain:
+                named.setdefault(sides.pop(), answers)
+        if named.keys() >= {"left", "right"}:
+            left, right = named["left"], named["right"]
+        else:
+            nameless = [group for _, group in groups if not any(self._motors[path].name.purpose for path in group)]
+            nameless = [group for group in nameless if not any(self._motors[path].name.side for path in group)]
+            if len(nameless) < 2 or len(nameless[0]) != len(nameless[1]):
+                return None
+            left, right = nameless[:2]
+            self._assumptions.append("The first of the two sticks was taken for the left side's.")
+        signs = {path: _sign(answer) for path, answer in (left | right).items()}
+        return Tank(self._side(left, signs), self._side(right, signs))
+
+    def _by_names(self) -> Tank | None:
+        """Motors that are called after the two sides, and nothing else."""
+        drive = {path: motor for path, motor in self._motors.items() if motor.name.is_plain and motor.name.side}
+        left = [path for path, motor in drive.items() if motor.name.side == "left"]
+        right = [path for path in drive if path not in left]
+        if not left or len(left) != len(right):
+            return None
+        forward = next((self._responses[axis] for axis in self._forward_axes()), {})
+        signs = {path: _sign(forward.get(path, -1.0 if motor.inverted else 1.0)) for path, motor in drive.items()}
+        if self._contradicted:
+            self._assumptions.append("Which motor is on which side was told by their names.")
+        elif not drive.keys() <= forward.keys():
+            self._assumptions.append(
+                "No stick moved the motors as a drivetrain's: which is on which side was told by their names, and an "
+                "output of 1 was taken for forward, of -1 for motors that the robot's code inverts."
+            )
+        else:
+            self._assumptions.append("No stick turned the robot: which motor is on which side was told by their names.")
+        return Tank(self._side(left, signs), self._side(right, signs))
+
+    def _side(self, paths: Iterable[str], signs: Mapping[str, int]) -> Side:
+        motors = [motor for path, motor in self._motors.items() if path in set(paths)]
+        return Side(motors, signs[motors[0].path])
+
+
+def _agreed(said: set[str | None]) -> str | None:
+    """What the names of motors that are geared together say, where they do not contradict each other."""
+    words = said - {None}
+    return words.pop() if len(words) == 1 else None
+
+
+def _sign(value: float) -> int:
+    return (value > 0) - (value < 0)
+
+
+def _opposite(one: Mapping[str, int], other: Mapping[str, int]) -> bool:
+    return all(one[path] == -other[path] for path in one)
+
+
+# -- encoders ----------------------------------------------------------------------------------------------------
+
+
+def _assign_encoders(found: Survey, layout: Layout) -> None:
+    driving = layout.drivetrain.motors if layout.drivetrain else []
+    others = [motor for motor in found.motors if motor not in driving]
+    free = list(found.encoders)
+
+    def pair(motor: Motor, encoder: Encoder) -> None:
+        layout.mechanisms.append((motor, encoder))
+        others.remove(motor)
+        free.remove(encoder)
+
+    for encoder in found.encoders:
+        purpose = encoder.name.purpose
+        fitting = [motor for motor in others if purpose & motor.name.purpose]
+        if fitting:
+            pair(max(fitting, key=lambda motor: _likeness(motor.name, encoder.name)), encoder)
+    if layout.drivetrain is not None:
+        plain = [encoder for encoder in free if not encoder.name.purpose]
+        for encoder in _wheel_encoders(layout, plain or [encoder for encoder in free if encoder.name.side]):
+            free.remove(encoder)
+    # One motor and one encoder belong together whatever they are called, unless that is lift and turret.
+    single = layout.drivetrain is None and len(others) == len(free) == 1
+    if single and not (others[0].name.purpose and free[0].name.purpose):
+        pair(others[0], free[0])
+    layout.undriven = [*others, *free]
+
+
+def _likeness(motor: Name, encoder: Name) -> tuple[int, bool, bool, bool]:
+    """More of it, the likelier they belong together."""
+    return (
+        len(motor.purpose & encoder.purpose),
+        motor.owner == encoder.owner,
+        motor.side == encoder.side,
+        motor.end == encoder.end,
+    )
+
+
+def _wheel_encoders(layout: Layout, candidates: list[Encoder]) -> list[Encoder]:
+    """Give the drivetrain its encoders, by their names or, without, in the order of their channels; answers them."""
+    corners = isinstance(layout.drivetrain, Mecanum)
+    wheels = list(CORNERS) if corners else ["left", "right"]
+    by_name: dict[str, list[Encoder]] = {}
+    for encoder in candidates:
+        parts = (encoder.name.end, encoder.name.side) if corners else (encoder.name.side,)
+        if all(parts):
+            by_name.setdefault("_".join(map(str, parts)), []).append(encoder)
+    if not by_name:
+        by_name = {wheel: [encoder] for wheel, encoder in zip(wheels, candidates, strict=False)}
+        taken = [wheel.replace("_", " ") for wheel in by_name]
+        if len(taken) == 1:
+            layout.assumptions.append(f"The encoder was taken for the {taken[0]} {'wheel' if corners else 'side'}'s.")
+        elif taken:
+            layout.assumptions.append(f"The encoders were taken in the order {', '.join(taken)}.")
+    layout.encoders = {wheel: by_name[wheel] for wheel in wheels if wheel in by_name}
+    return [encoder for encoders in layout.encoders.values() for encoder in encoders]

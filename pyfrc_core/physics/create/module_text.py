@@ -1,0 +1,62 @@
+"""A Python module's text while it grows: its imports, its names, what is set up and what is done in each loop."""
+
+from __future__ import annotations
+
+import json
+import re
+from keyword import kwlist
+from unicodedata import normalize
+
+from .survey import Encoder, Motor
+
+
+class ModuleText:
+    """The parts of the file, while it grows."""
+
+    def __init__(self) -> None:
+        self.imports: set[str] = set()
+        self.sims: set[str] = set()
+        self.numbers: list[str] = []
+        self.setup: list[str] = []
+        self.update: list[str] = []
+        # In capitals, as the numbers at the top are. "top" would make a second TOP_SPEED.
+        taken = ("physics_controller", "drivetrain", "update_sim", "top", *kwlist)
+        self._taken: set[str] = {name.upper() for name in taken}
+
+    def name(self, wanted: str) -> str:
+        """An attribute's name that is not taken yet."""
+        # As Python's parser reads it: "arm²" is arm2.
+        letters = normalize("NFKC", normalize("NFKC", wanted).lower())
+        plain = re.sub("_+", "_", "".join(letter if f"_{letter}".isidentifier() else "_" for letter in letters))
+        plain = plain.strip("_") or "device"
+        plain = plain if plain.isidentifier() else f"device_{plain}"
+        number, name = 1, plain
+        while name.upper() in self._taken:
+            number += 1
+            name = f"{plain}_{number}"
+        self._taken.add(name.upper())
+        return name
+
+    def motor(self, motor: Motor, wanted: str) -> str:
+        """Sets up a motor; answers the expression for its output."""
+        name = self.name(wanted)
+        if motor.channel is not None:
+            self.sims.add("PWMSim")
+            self.setup.append(f"self.{name} = PWMSim({motor.channel})")
+            return f"self.{name}.getSpeed()"
+        self.sims.add("SimDeviceSim")
+        self.setup.append(f"self.{name} = SimDeviceSim({quoted(motor.device)}).getDouble({quoted(motor.value)})")
+        return f"self.{name}.get()"
+
+    def encoder(self, encoder: Encoder, wanted: str, units: str) -> str:
+        """Sets up an encoder; answers its name."""
+        self.sims.add("EncoderSim")
+        name = self.name(wanted)
+        how = f"createForChannel({encoder.channels[0]})" if encoder.channels else f"createForIndex({encoder.index})"
+        self.setup.append(f"self.{name} = EncoderShaft(EncoderSim.{how}, {units})")
+        return name
+
+
+def quoted(text: str) -> str:
+    """`text` as a Python literal."""
+    return json.dumps(text, ensure_ascii=False)

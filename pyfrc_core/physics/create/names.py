@@ -1,0 +1,239 @@
+"""What the robot's code calls its devices: found by looking through the robot's attributes, and what such names say."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections import deque
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+import wpilib
+
+from ...hal.devices import encoder_channels
+from ...robot_files import RobotFiles
+
+#: How many attributes stand between the robot and a device at most, and how many parts of a list are looked at.
+_DEPTH, _PARTS = 6, 64
+
+_LEFT = {"left", "l", "lf", "fl", "lr", "rl", "lb", "bl", "lm", "ml"}
+_RIGHT = {"right", "r", "rf", "fr", "rr", "rb", "br", "rm", "mr"}
+_FRONT = {"front", "f", "lf", "fl", "rf", "fr"}
+_REAR = {"rear", "back", "lr", "rl", "rr", "lb", "bl", "rb", "br"}
+
+#: Words that say no more of a motor or an encoder than that it is part of a drivetrain, or nothing at all.
+_PLAIN = {
+    *_LEFT, *_RIGHT, *_FRONT, *_REAR,
+    "mid", "middle", "center", "motor", "motors", "controller", "controllers", "drive", "driver", "train",
+    "drivetrain", "drivebase", "chassis", "base", "wheel", "wheels", "side", "talon", "spark", "sparkmax",
+    "victor", "sp", "srx", "spx", "max", "flex", "leader", "follower", "followers", "master", "slave", "primary",
+    "secondary", "main", "encoder", "encoders", "enc", "robot", "container", "subsystem", "subsystems",
+    "component", "components", "hardware", "io", "map", "robotmap", "tank", "mecanum", "ports", "devices", "pwm",
+    "can", "mc",
+}  # fmt: skip
+
+_SWERVE = {"swerve", "steer", "steering", "azimuth"}
+
+#: Of a swerve module's two motors: words that call one the motor that turns the wheel, or the one that drives it.
+_STEERING = {"steer", "steering", "azimuth", "angle", "pivot", "rotate", "rotation", "turn", "turning"}
+_DRIVING = {"drive", "driving", "speed", "propulsion"}
+_OF_MODULES = _SWERVE | _STEERING | _DRIVING | {"module", "modules"}
+
+
+class Name:
+    """What robot code calls a device, from the robot down: ``drivetrain.left_motor``."""
+
+    def __init__(self, path: tuple[str, ...] = ()) -> None:
+        self.text = one_line(".".join(path).replace(".[", "["))
+        self.owner = path[:-1]
+        self._words = [_words(part) for part in path]
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __bool__(self) -> bool:
+        return bool(self.text)
+
+    @property
+    def side(self) -> str | None:
+        """``left`` or ``right``, where the name says so: the device's own comes before its owner's."""
+        return self._which({"left": _LEFT, "right": _RIGHT})
+
+    @property
+    def end(self) -> str | None:
+        """``front`` or ``rear``, where the name says so."""
+        return self._which({"front": _FRONT, "rear": _REAR})
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether nothing in the name speaks against its being the drivetrain's, as ``left_climber`` does."""
+        return bool(self) and not self.purpose
+
+    @property
+    def says_swerve(self) -> bool:
+        return any(_SWERVE.intersection(words) for words in self._words)
+
+    @property
+    def task(self) -> str | None:
+        """Which of a swerve module's two motors it is by its name, ``drive`` or ``steer``; None for other motors."""
+        if self.purpose - _OF_MODULES:
+            return None
+        for words in reversed(self._words):
+            for task, known in (("steer", _STEERING), ("drive", _DRIVING)):
+                if known.intersection(words):
+                    return task
+        return None
+
+    @property
+    def purpose(self) -> set[str]:
+        """The words that tell it from other devices, such as ``lift`` in ``lift_motor``."""
+        return {
+            word
+            for words in self._words
+            for word in words
+            if len(word) > 1 and word not in _PLAIN and not word.isdigit()
+        }
+
+    def _which(self, choices: dict[str, set[str]]) -> str | None:
+        for words in reversed(self._words):
+            said = [choice for choice, known in choices.items() if known.intersection(words)]
+            if len(said) == 1:
+                return said[0]
+        return None
+
+
+def one_line(text: str) -> str:
+    """`text` as a comment may hold it, whatever the keys of a dict and the names of devices look like."""
+    return " ".join("".join(letter if letter.isprintable() else " " for letter in text).split())
+
+
+def _words(name: str) -> list[str]:
+    """``leftMotor_2`` and ``_left_motor2`` both are left, motor, 2."""
+    name = re.sub(r"^_[A-Z]\w*?__", "", name)  # as Python stores a name that begins with two underscores
+    return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name)]
+
+
+#: A device's place: the room of `hal_data` and the channel, or for a device on the CAN bus ``CAN`` and its number.
+Place = tuple[str, int]
+
+
+class Found(NamedTuple):
+    """A device that the robot's code holds."""
+
+    name: Name
+    #: The robot's own object for it.
+    thing: Any
+
+
+def find_devices(robot: Any, files: RobotFiles) -> dict[Place, Found]:
+    """The robot's devices as its code calls them; under the shortest name where there are several.
+
+    Looked through are the robot's attributes, those of the project's own objects that it holds, lists and dicts of
+    them, and the variables of the project's modules. Called are only the devices' own methods that tell a channel.
+    """
+    found: dict[Place, Found] = {}
+    for path, thing in _reachable(robot, files):
+        for place, suffix in _places(thing):
+            found.setdefault(place, Found(Name((*path[:-1], path[-1] + suffix)), thing))
+    return found
+
+
+def _reachable(robot: Any, files: RobotFiles) -> Iterator[tuple[tuple[str, ...], Any]]:
+    modules = [
+        module
+        for module in list(sys.modules.values())
+        if files.is_robot_code(str(getattr(module, "__file__", None) or ""))
+    ]
+    waiting: deque[tuple[tuple[str, ...], Any]] = deque([((), robot), *(((), module) for module in modules)])
+    seen = {id(robot), *map(id, modules)}
+    ours = {module.__name__ for module in modules}
+    while waiting:
+        path, owner = waiting.popleft()
+        for name, value in _parts(owner, ours):
+            if id(value) in seen or isinstance(value, (str, bytes, int, float, type(None))):
+                continue
+            seen.add(id(value))
+            here = (*path, name)
+            yield here, value
+            if len(here) < _DEPTH and _is_looked_into(value, ours):
+                waiting.append((here, value))
+
+
+def _is_looked_into(value: Any, ours: set[str]) -> bool:
+    if isinstance(value, (list, tuple, dict, set)):
+        return True
+    owner = value if isinstance(value, type) else type(value)
+    return any(base.__module__ in ours for base in owner.__mro__)
+
+
+def _parts(owner: Any, ours: set[str]) -> Iterable[tuple[str, Any]]:
+    if isinstance(owner, dict):
+        return [(f"[{key}]", value) for key, value in list(owner.items())[:_PARTS]]
+    if isinstance(owner, (list, tuple, set)):
+        return [(f"[{index}]", value) for index, value in enumerate(list(owner)[:_PARTS])]
+    parts = dict(getattr(owner, "__dict__", {}))
+    for base in () if isinstance(owner, type) else type(owner).__mro__:
+        if base.__module__ in ours:
+            for name, value in vars(base).items():
+                parts.setdefault(name, value)
+    return [(name, value) for name, value in parts.items() if not name.startswith("__")]
+
+
+def _places(thing: Any) -> Iterator[tuple[Place, str]]:
+    """Where a device is: its rooms and channels, each with what is to be added to its name."""
+    if isinstance(thing, wpilib.Encoder):
+        index = thing.getFPGAIndex()
+        yield ("encoder", index), ""
+        channels = encoder_channels(index)
+        for letter in "AB":
+            channel = channels[f"{letter}Source_Channel"]
+            if channel is not None:
+                yield ("dio", channel), f" {letter}"
+    elif isinstance(thing, wpilib.AnalogGyro):
+        channel = thing.getAnalogInput().getChannel()
+        yield ("analog_gyro", channel), ""
+        yield ("analog_in", channel), ""
+    elif isinstance(thing, wpilib.DoubleSolenoid):
+        yield ("solenoid", thing.getFwdChannel()), " forward"
+        yield ("solenoid", thing.getRevChannel()), " reverse"
+    elif isinstance(thing, wpilib.DutyCycleEncoder):
+        yield ("dio", thing.getSourceChannel()), ""
+    elif isinstance(thing, wpilib.Servo):
+        yield ("servo", thing.getChannel()), ""
+        yield ("pwm", thing.getChannel()), ""
+    else:
+        for kinds, room in _WITH_CHANNEL:
+            if isinstance(thing, kinds):
+                yield (room, thing.getChannel()), ""
+        number = _can_number(thing)
+        if number is not None:
+            yield ("CAN", number), ""
+
+
+_WITH_CHANNEL: tuple[tuple[Any, str], ...] = (
+    ((wpilib.PWMMotorController, wpilib.PWM), "pwm"),
+    ((wpilib.DigitalInput, wpilib.DigitalOutput), "dio"),
+    ((wpilib.AnalogInput,), "analog_in"),
+    ((wpilib.Relay,), "relay"),
+    ((wpilib.Solenoid,), "solenoid"),
+)
+
+
+_CAN_NUMBERS = range(63)
+
+
+def _can_number(thing: Any) -> int | None:
+    """The number on the CAN bus of a vendor's motor controller or sensor, as the vendors' classes tell it."""
+    if isinstance(thing, type):
+        return None
+    for name in ("getDeviceId", "getDeviceID", "device_id"):
+        teller = getattr(type(thing), name, None)
+        if teller is None:
+            continue
+        try:
+            number = getattr(thing, name)
+            number = number() if callable(number) else number
+        except Exception:  # a vendor's class; its number is only for a label
+            return None
+        return number if isinstance(number, int) and number in _CAN_NUMBERS else None
+    return None

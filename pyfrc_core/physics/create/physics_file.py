@@ -1,0 +1,318 @@
+"""The text of ``physics.py`` for a robot: today's generation, in metres and counter-clockwise."""
+
+from __future__ import annotations
+
+import re
+from textwrap import wrap
+
+from ...errors import PyfrcError
+from .drivetrain import CORNERS, Layout, Mecanum, Tank
+from .module_text import ModuleText, quoted
+from .names import one_line
+from .report import listed, notes
+from .survey import Encoder, Gyro, Motor, Survey
+
+_HEAD = '''"""The physics of this robot: what its motors do to its sensors and to its place on the field.
+
+`pyfrc test` and the simulator run it because it is beside the robot's code. `pyfrc create-physics`
+looked at the robot and wrote it; from now on it is yours. The numbers below are those of a common
+robot: put in your own.
+"""
+'''
+
+_TANK_NUMBERS = """
+# The drivetrain. Other motors are in pyfrc.physics.motor_cfgs too, such as MOTOR_CFG_NEO.
+MOTOR = motor_cfgs.MOTOR_CFG_CIM
+MOTORS_PER_SIDE = {per_side}
+GEARING = 10.71  # turns of a motor for one turn of the wheels
+MASS = 110 * units.lbs  # with battery and bumpers
+TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right ones
+WHEEL_DIAMETER = 6 * units.inch
+ROBOT_WIDTH = 27.5 * units.inch  # with bumpers
+ROBOT_LENGTH = 36.5 * units.inch
+"""
+
+_MECANUM_NUMBERS = """
+# The drivetrain.
+TOP_SPEED = 10 * units.feet / units.second  # at full power
+TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right ones
+WHEELBASE = 22 * units.inch  # from the front wheels to the rear ones
+"""
+
+#: By the unit of the drivetrain's model.
+_UNITS = {
+    "foot": """
+# What the robot's setDistancePerPulse() has its encoders measure: 0.3048 for metres, 1 for feet,
+# 12 for inches.
+ENCODER_UNITS = 0.3048
+""",
+    "metre": """
+# What the robot's setDistancePerPulse() has its encoders measure: 1 for metres, 3.281 for feet,
+# 39.37 for inches.
+ENCODER_UNITS = 1.0
+""",
+}
+
+_COUNTS = """
+# Some encoders are taken in counts by the robot, which calls no setDistancePerPulse().
+COUNTS_PER_TURN = 360  # of a wheel
+{diameter}ENCODER_COUNTS = COUNTS_PER_TURN / (math.pi * WHEEL_DIAMETER.m_as("{unit}"))
+"""
+
+_SHAFT = '''
+
+class EncoderShaft:
+    """Turns an encoder; like a real one, it counts on from where the robot's reset() has put it."""
+
+    def __init__(self, encoder: EncoderSim, units: float) -> None:
+        """`units`: how many of the encoder's units are one of those that it is turned by."""
+        self.encoder = encoder
+        self.units = units
+        self.counts = 0
+
+    def turn_to(self, position: float, velocity: float) -> None:
+        """The velocity is per second."""
+        counts = round(position * self.units / self.encoder.getDistancePerPulse())
+        self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
+        self.encoder.setRate(velocity * self.units)
+        self.counts = counts
+'''
+
+_ENGINE = '''
+
+class PhysicsEngine:
+    """Made when the robot's robotInit is over; its update_sim is called after the robot's loop."""
+
+    def __init__(self, physics_controller: PhysicsInterface, robot: wpilib.RobotBase) -> None:
+        self.physics_controller = physics_controller
+{setup}
+    def update_sim(self, now: float, tm_diff: float) -> None:
+        """`now` is the robot's time, `tm_diff` how much of it has passed since the last call."""
+{update}'''
+
+
+def physics_text(found: Survey, layout: Layout) -> str:
+    """The whole file.
+
+    :raises PyfrcError: should it come out as no valid Python
+    """
+    text = ModuleText()
+    drivetrain = layout.drivetrain
+    if isinstance(drivetrain, Tank):
+        _tank(text, drivetrain, layout, found.gyros)
+    elif isinstance(drivetrain, Mecanum):
+        _mecanum(text, drivetrain, layout, found.gyros)
+    for motor, encoder in layout.mechanisms:
+        _mechanism(text, motor, encoder)
+    return checked(_assembled(text, notes(found, layout)))
+
+
+def checked(text: str) -> str:
+    """`text`, which nobody gets to see if it is no valid Python.
+
+    :raises PyfrcError: asking to report it
+    """
+    try:
+        compile(text, "physics.py", "exec", dont_inherit=True)
+    except (SyntaxError, ValueError) as error:
+        line = text.splitlines()[error.lineno - 1].strip() if isinstance(error, SyntaxError) and error.lineno else ""
+        raise PyfrcError(
+            f"a physics.py was made that is no valid Python: {error}" + (f"\n    {line}" if line else ""),
+            remedy="That is a mistake in pyfrc: please report it, with this message and what your robot calls its "
+            "motors and sensors. Nothing was written.",
+        ) from error
+    return text
+
+
+def _assembled(text: ModuleText, remarks: list[str]) -> str:
+    numbers = "".join(text.numbers)
+    imports = ["import math\n"] if any("math." in part for part in (numbers, *text.update)) else []
+    sims = f"from wpilib.simulation import {', '.join(sorted(text.sims))}\n" if text.sims else ""
+    imports.append(f"import wpilib\n{sims}")
+    ours = sorted({"from pyfrc.physics.core import PhysicsInterface", *text.imports}, key=_import_order)
+    imports.append("\n".join(ours) + "\n")
+    comments = [wrap(one_line(remark), 98, initial_indent="# ", subsequent_indent="# ") for remark in remarks]
+    engine = _ENGINE.format(setup=_indented(text.setup), update=_indented(text.update))
+    return "".join(
+        [
+            f"{_HEAD}\n",
+            "\n".join(imports),
+            *("\n{}\n".format("\n".join(lines)) for lines in comments),
+            numbers,
+            _SHAFT if "EncoderSim" in text.sims else "",
+            engine,
+        ]
+    )
+
+
+def _import_order(line: str) -> tuple[bool, str]:
+    return "physics import" not in line, line
+
+
+def _indented(lines: list[str]) -> str:
+    return "".join(f"        {line}\n" if line else "\n" for line in lines)
+
+
+# -- drivetrains -------------------------------------------------------------------------------------------------
+
+
+def _tank(text: ModuleText, tank: Tank, layout: Layout, gyros: list[Gyro]) -> None:
+    text.imports |= {"from pyfrc.physics import motor_cfgs, tankmodel", "from pyfrc.physics.units import units"}
+    text.numbers.append(_TANK_NUMBERS.format(per_side=max(len(tank.left.motors), len(tank.right.motors))))
+    outputs = {}
+    for side, motors in (("left", tank.left), ("right", tank.right)):
+        text.setup += ["", f"# {side.capitalize()}: {listed(motors.motors)}"]
+        if len(motors.motors) > 1:
+            text.setup[-1] += ". Geared together, one tells for all."
+        sign = motors.forward if side == "left" else -motors.forward
+        outputs[side] = _signed(sign, text.motor(motors.motors[0], f"{side}_motor"))
+    text.setup += [
+        "",
+        "self.drivetrain = tankmodel.TankModel.theory(",
+        "    MOTOR,",
+        "    robot_mass=MASS,",
+        "    gearing=GEARING,",
+        "    nmotors=MOTORS_PER_SIDE,",
+        "    x_wheelbase=TRACK_WIDTH,",
+        "    robot_width=ROBOT_WIDTH,",
+        "    robot_length=ROBOT_LENGTH,",
+        "    wheel_diameter=WHEEL_DIAMETER,",
+        ")",
+        "# With this moment of inertia the robot turns as far as its encoders say: its wheels never slip.",
+        "self.drivetrain.inertia = MASS * TRACK_WIDTH**2 / 2",
+    ]
+    encoders = _wheel_encoders(text, layout)
+    text.update += [
+        *_about_signs("To the model, the left motor is forward at 1 and the right one at -1", *outputs.values()),
+        f"left = {outputs['left']}",
+        f"right = {outputs['right']}",
+        "moved = self.drivetrain.calculate(left, right, tm_diff)",
+        "self.physics_controller.move_robot(moved)",
+    ]
+    if encoders:
+        text.update += ["", "# In feet."]
+    for side, name in encoders:
+        model = f"self.drivetrain.{side[0]}"
+        text.update.append(f"self.{name}.turn_to({model}_position, {model}_velocity)")
+    _gyros(text, gyros, "math.degrees(moved.rotation().radians())")
+
+
+def _mecanum(text: ModuleText, mecanum: Mecanum, layout: Layout, gyros: list[Gyro]) -> None:
+    text.imports |= {"from pyfrc.physics import drivetrains", "from pyfrc.physics.units import units"}
+    text.numbers.append(_MECANUM_NUMBERS)
+    text.setup.append("")
+    if any(len(wheel.motors) > 1 for wheel in mecanum.wheels.values()):
+        text.setup.append("# Of motors geared together, one tells for all.")
+    values = []
+    for corner in CORNERS:
+        wheel = mecanum.wheels[corner]
+        output = text.motor(wheel.motors[0], f"{corner}_motor")
+        names = [str(motor.name) for motor in wheel.motors if motor.name]
+        if names:
+            text.setup[-1] += f"  # {', '.join(names)}"
+        values.append(_signed(wheel.forward if corner.endswith("left") else -wheel.forward, output))
+    text.setup += ["", "self.drivetrain = drivetrains.MecanumDrivetrain(TRACK_WIDTH, WHEELBASE, TOP_SPEED)"]
+    encoders = _wheel_encoders(text, layout)
+    text.update += [
+        *_about_signs("To the drivetrain, left motors are forward at 1 and right ones at -1", *values),
+        "speeds = self.drivetrain.calculate(",
+        *(f"    {value}," for value in values),
+        ")",
+        "self.physics_controller.drive(speeds, tm_diff)",
+    ]
+    if encoders:
+        text.update += ["", "wheels = self.drivetrain.wheelSpeeds  # in metres per second"]
+    for corner, name in encoders:
+        distance = text.name(f"{name}_distance")
+        text.setup.append(f"self.{distance} = 0.0")
+        end, side = corner.split("_")
+        speed = f"wheels.{end}{side.capitalize()}"
+        text.update += [f"self.{distance} += {speed} * tm_diff", f"self.{name}.turn_to(self.{distance}, {speed})"]
+    _gyros(text, gyros, "math.degrees(speeds.omega * tm_diff)")
+
+
+def _wheel_encoders(text: ModuleText, layout: Layout) -> list[tuple[str, str]]:
+    """Sets up the wheels' encoders; answers each one's wheel and name."""
+    found = [(wheel, encoder) for wheel, encoders in layout.encoders.items() for encoder in encoders]
+    if not found:
+        return []
+    unit = "foot" if isinstance(layout.drivetrain, Tank) else "metre"  # what the drivetrain's model measures in
+    if any(not encoder.counts for _, encoder in found):
+        text.numbers.append(_UNITS[unit])
+    if any(encoder.counts for _, encoder in found):
+        diameter = "" if unit == "foot" else "WHEEL_DIAMETER = 6 * units.inch\n"  # else it stands above already
+        text.numbers.append(_COUNTS.format(diameter=diameter, unit={"foot": "foot", "metre": "meter"}[unit]))
+    text.setup.append("")
+    return [
+        (wheel, text.encoder(encoder, f"{wheel}_encoder", "ENCODER_COUNTS" if encoder.counts else "ENCODER_UNITS"))
+        for wheel, encoder in found
+    ]
+
+
+def _about_signs(rule: str, *values: str) -> list[str]:
+    negated = any(value.startswith("-") for value in values)
+    return [f"# {rule}; with a minus, so is this robot's." if negated else f"# {rule}."]
+
+
+def _signed(sign: int, expression: str) -> str:
+    return expression if sign > 0 else f"-{expression}"
+
+
+# -- gyros and mechanisms ----------------------------------------------------------------------------------------
+
+
+def _gyros(text: ModuleText, gyros: list[Gyro], turned: str) -> None:
+    """`turned`: the expression for the robot's turn, in degrees counter-clockwise."""
+    if gyros:
+        text.update += ["", f"turned = {turned}  # counter-clockwise"]
+    for gyro in gyros:
+        _gyro(text, gyro)
+
+
+def _gyro(text: ModuleText, gyro: Gyro) -> None:
+    name = str(gyro.name) or "gyro"
+    sign = "-" if gyro.clockwise else "+"
+    rate = f"{'-' if gyro.clockwise else ''}turned / tm_diff"
+    text.update.append(f"# This gyro counts {'clockwise' if gyro.clockwise else 'counter-clockwise'}, in degrees.")
+    if gyro.channel is not None:
+        text.sims.add("AnalogGyroSim")
+        name = text.name(name)
+        text.setup += ["", f"self.{name} = AnalogGyroSim({gyro.channel})"]
+        text.update += [f"self.{name}.setAngle(self.{name}.getAngle() {sign} turned)", f"self.{name}.setRate({rate})"]
+        return
+    text.sims.add("SimDeviceSim")
+    device = f"SimDeviceSim({quoted(gyro.device)})"
+    angle = text.name(f"{name}_angle")
+    text.setup += ["", f"self.{angle} = {device}.getDouble({quoted(gyro.angle)})"]
+    turned = f"self.{angle}.get() {sign} turned"
+    text.update.append(f"self.{angle}.set({f'math.remainder({turned}, 360)' if gyro.wraps else turned})")
+    if gyro.rate:
+        rate_value = text.name(f"{name}_rate")
+        text.setup.append(f"self.{rate_value} = {device}.getDouble({quoted(gyro.rate)})")
+        text.update.append(f"self.{rate_value}.set({rate})")
+
+
+def _mechanism(text: ModuleText, motor: Motor, encoder: Encoder) -> None:
+    text.imports.add("from pyfrc.physics import motion")
+    purpose = [
+        word for word in re.split(r"[\W_]+", str(encoder.name or motor.name)) if word not in ("encoder", "motor")
+    ]
+    name = text.name("_".join(purpose) or "mechanism")
+    number = name.upper()
+    speed, unit = ("720.0", "counts") if encoder.counts else ("1.0", "what its encoder measures")
+    text.numbers.append(
+        f"\n{number}_SPEED = {speed}  # at full power, in {unit} per second\n"
+        f"{number}_MIN, {number}_MAX = None, None  # where it comes to a stop; None if nothing stops it\n"
+    )
+    text.setup += ["", f"# {motor} turns {encoder}"]
+    output = text.motor(motor, f"{name}_motor")
+    shaft = text.encoder(encoder, f"{name}_encoder", "1")
+    text.setup.append(f'self.{name} = motion.LinearMotion("{name}", {number}_SPEED, 1, {number}_MAX, {number}_MIN)')
+    if text.update:
+        text.update.append("")
+    text.update += [
+        f"before = self.{name}.position_ft  # or in whatever unit: that of {number}_SPEED",
+        f"self.{name}.compute({_signed(-1 if motor.inverted else 1, output)}, tm_diff)",
+        f"after = self.{name}.position_ft",
+        f"self.{shaft}.turn_to(after, (after - before) / tm_diff)",
+    ]

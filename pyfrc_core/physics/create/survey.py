@@ -1,0 +1,288 @@
+"""What a robot has: its motors, encoders and gyros, found by starting its program and looking at what it made."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+import hal
+import wpilib
+from wpilib.simulation import SimDeviceSim
+
+from ...errors import PyfrcError, RobotCodeError
+from ...hal import HalData
+from ...project import Project
+from ...runtime.endings import TestEnded, TestRanTooLong
+from ...runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ...runtime.own_process import LastWords
+from ...runtime.redirect import redirection
+from ...runtime.robot import RobotRun
+from ...runtime.watchdog import Watchdog
+from .names import Found, Name, Place, find_devices, one_line
+from .sticks import Responses, try_sticks
+
+#: How long the robot is left alone, disabled, before its devices are counted: some are made in the first loop.
+_SETTLING_US = 100_000
+
+#: How much robot time it may take, for robots that sleep in their loops.
+_LIMIT_US = 10_000_000_000
+
+_FAILURES = (Exception, SystemExit, TestRanTooLong)
+
+
+@dataclass(frozen=True)
+class Motor:
+    """A motor, and where its output can be read.
+
+    :param channel: the PWM channel; None for a motor that shows as a SimDevice
+    :param device, value: the SimDevice and which of its values is the output
+    :param inverted: whether the robot has inverted it, where that can be told
+    """
+
+    name: Name
+    channel: int | None = None
+    device: str = ""
+    value: str = ""
+    inverted: bool = False
+
+    @property
+    def path(self) -> str:
+        """Its output in `hal_data`."""
+        return f"pwm[{self.channel}].value" if self.channel is not None else f"CAN[{self.device}].{self.value}"
+
+    def __str__(self) -> str:
+        place = f"PWM {self.channel}" if self.channel is not None else one_line(self.device)
+        return f"{place} ({self.name})" if self.name else place
+
+    def output(self, hal_data: HalData) -> float:
+        """What the robot tells it to do, from -1 to 1."""
+        if self.channel is not None:
+            return float(hal_data["pwm"][self.channel]["value"])
+        return float(hal_data["CAN"][self.device][self.value])
+
+
+@dataclass(frozen=True)
+class Encoder:
+    """A quadrature encoder.
+
+    :param channels: its two digital inputs, where that can be told
+    :param counts: whether the robot takes it in counts, `setDistancePerPulse` never being called
+    """
+
+    name: Name
+    index: int
+    channels: tuple[int, int] | None
+    counts: bool
+
+    def __str__(self) -> str:
+        place = f"DIO {self.channels[0]}, {self.channels[1]}" if self.channels else f"encoder {self.index}"
+        return f"{self.name or 'encoder'} ({place})"
+
+
+@dataclass(frozen=True)
+class Gyro:
+    """Something that measures the robot's heading, in degrees.
+
+    :param channel: an analog gyro's channel; None for a SimDevice
+    :param device: the SimDevice, whose values `angle` and `rate` are
+    :param clockwise: the direction in which it counts up
+    :param wraps: whether its angle stays between -180 and 180
+    """
+
+    name: Name
+    channel: int | None = None
+    device: str = ""
+    angle: str = ""
+    rate: str = ""
+    clockwise: bool = True
+    wraps: bool = False
+
+    def __str__(self) -> str:
+        place = f"analog {self.channel}" if self.channel is not None else one_line(self.device)
+        return f"{self.name} ({place})" if self.name else place
+
+
+@dataclass
+class Survey:
+    """What was found."""
+
+    motors: list[Motor] = field(default_factory=list)
+    encoders: list[Encoder] = field(default_factory=list)
+    gyros: list[Gyro] = field(default_factory=list)
+    #: Devices of which no physics are known, as text.
+    others: list[str] = field(default_factory=list)
+    #: For ``sim/config.json``: what the channels of each kind are called.
+    labels: dict[str, dict[str, str]] = field(default_factory=dict)
+    #: How the motors answered the driver's sticks.
+    responses: Responses = field(default_factory=dict)
+    #: Why the sticks could not be tried, in a line that names the user's.
+    problem: str | None = None
+
+
+def survey(project: Project, last_words: LastWords) -> Survey:
+    """Start the robot's program, look at what it has made, then let it be driven and see which motors answer.
+
+    :param last_words: of this process, which ends when the robot's code hangs and cannot be stopped
+    :raises RobotCodeError: when the robot's code fails before it can be driven, naming the user's line
+    """
+    redirection.install(project.files)
+    robot_class = project.load()
+    run = RobotRun()
+    hang_seconds = project.settings.test.hang_seconds
+    with Watchdog(run, project.files, hang_seconds, last_words.write, last_words.descriptor).watching():
+        try:
+            run.open()
+            run.clock.limit_us = _LIMIT_US
+            try:
+                run.construct(robot_class)
+                run.start()
+                run.run_until(run.clock.now_us + _SETTLING_US)
+            except _FAILURES as error:
+                raise _of_robot_code(error, project) from error
+            found = look(run.hal_data, find_devices(run.robot, project.files))
+            try:
+                found.responses = try_sticks(run, {motor.path: motor.output for motor in found.motors})
+            except _FAILURES as error:
+                found.problem = str(_of_robot_code(error, project))
+        finally:
+            _close(run)
+    found.motors = _one_output_each(found)
+    return found
+
+
+def _close(run: RobotRun) -> None:
+    """The end of the run; a robot that cannot end has told all that is asked of it here."""
+    with suppress(Exception, TestEnded):
+        run.close()
+
+
+def _of_robot_code(error: BaseException, project: Project) -> PyfrcError:
+    leave_out_pyfrc(error, project.files)
+    if not isinstance(error, TestRanTooLong):
+        return as_robot_code_error(error, project.files)
+    return RobotCodeError(
+        f"the robot is still here after {_LIMIT_US / 1_000_000:g} s of robot time, and cannot be driven.",
+        where=project.files.innermost_line(error.__traceback__),
+        remedy="Does it wait here forever? The robot's methods must return for it to go on.",
+    )
+
+
+def look(hal_data: HalData, named: Mapping[Place, Found]) -> Survey:
+    """What the HAL shows of the devices that the robot has made, with the names that its code has for them."""
+    found = Survey()
+
+    def name_of(room: str, channel: int) -> Name:
+        return named[room, channel].name if (room, channel) in named else Name()
+
+    for channel in _made(hal_data, "pwm"):
+        if ("servo", channel) in named:
+            found.others.append(f"servo: PWM {channel} ({name_of('servo', channel)})")
+            continue
+        thing: Any = named["pwm", channel].thing if ("pwm", channel) in named else None
+        inverted = hasattr(thing, "getInverted") and bool(thing.getInverted())
+        found.motors.append(Motor(name_of("pwm", channel), channel, inverted=inverted))
+    for index in _made(hal_data, "encoder"):
+        encoder = hal_data["encoder"][index]
+        a, b = (encoder["config"][f"{letter}Source_Channel"] for letter in "AB")
+        counts = abs(encoder["distance_per_pulse"]) == 1.0
+        channels = None if a is None or b is None else (a, b)
+        found.encoders.append(Encoder(name_of("encoder", index), index, channels, counts))
+    for channel in _made(hal_data, "analog_gyro"):
+        found.gyros.append(Gyro(name_of("analog_gyro", channel), channel))
+    for device in hal_data["CAN"]:
+        _look_at_sim_device(found, device, named)
+    found.labels = _labels(found, named)
+    for (room, channel), device in named.items():
+        kind = {"dio": "digital", "analog_in": "analog"}.get(room)
+        if kind is not None and not isinstance(device.thing, (wpilib.Encoder, wpilib.AnalogGyro)):
+            found.others.append(f"{kind} channel {channel} ({device.name})")
+    return found
+
+
+def _made(hal_data: HalData, room: str) -> list[int]:
+    return [index for index, device in enumerate(hal_data[room]) if device["initialized"]]
+
+
+@dataclass(frozen=True)
+class _GyroKind:
+    """Gyros that show as a SimDevice of this name, and how they count: WPILib's and the vendors' documentation."""
+
+    device: re.Pattern[str]
+    angle: str
+    rate: str
+    clockwise: bool = True
+    wraps: bool = False
+
+
+_GYROS = (
+    _GyroKind(re.compile(r"Gyro:ADXRS450\[\d+\]"), "angle_x", "rate_x"),
+    _GyroKind(re.compile(r"Gyro:ADIS16(448|470)\[\d+\]"), "gyro_angle_z", "gyro_rate_z", clockwise=False),
+    _GyroKind(re.compile(r"navX-Sensor\[\d+\]"), "Yaw", "Rate", wraps=True),
+)
+
+#: What vendors call the output of a motor controller, from -1 to 1.
+_OUTPUT = re.compile(r"((applied|percent|motor|duty)[ _]?)?(cycle|output|speed)", re.IGNORECASE)
+
+
+def _look_at_sim_device(found: Survey, device: str, named: Mapping[Place, Found]) -> None:
+    # WPILib's own devices have a kind before a colon; those that are not on the CAN bus are told by their channels.
+    elsewhere = ":" in device and not device.startswith("CAN")
+    number = None if elsewhere else re.search(r"\[(\d+)\]$", device)
+    known = named.get(("CAN", int(number[1]))) if number else None
+    name = known.name if known else Name()
+    values = dict(SimDeviceSim(device).enumerateValues())
+    for kind in _GYROS:
+        if kind.device.fullmatch(device) and kind.angle in values:
+            rate = kind.rate if kind.rate in values else ""
+            found.gyros.append(Gyro(name, None, device, kind.angle, rate, kind.clockwise, kind.wraps))
+            return
+    # Which of its values is a motor's output will show when the sticks are tried.
+    outputs = [value for value, readonly in values.items() if readonly or _OUTPUT.fullmatch(value)]
+    value_of = SimDeviceSim(device).getValue
+    outputs = [value for value in outputs if value_of(value).type == hal.Type.DOUBLE]
+    found.motors += [Motor(name, None, device, value) for value in outputs]
+    if not outputs and not elsewhere:
+        found.others.append(f"{device} ({name})" if name else device)
+
+
+def _one_output_each(found: Survey) -> list[Motor]:
+    """The motors, with one value for each SimDevice: the one that answers the sticks, or is called an output."""
+    answers = {path: abs(answer) for answers in found.responses.values() for path, answer in answers.items()}
+    chosen: dict[str, Motor] = {}
+    for motor in found.motors:
+        if motor.channel is not None:
+            chosen[motor.path] = motor
+            continue
+        claim, before = _claim(motor, answers), chosen.get(motor.device)
+        if any(claim) and (before is None or claim > _claim(before, answers)):
+            chosen[motor.device] = motor
+    missed = {motor.device: motor for motor in found.motors if motor.channel is None and motor.device not in chosen}
+    found.others += map(str, missed.values())
+    return list(chosen.values())
+
+
+def _claim(motor: Motor, answers: Mapping[str, float]) -> tuple[bool, bool]:
+    return 0 < answers.get(motor.path, 0) <= 1, bool(_OUTPUT.fullmatch(motor.value))
+
+
+#: The rooms of `hal_data` whose channels ``sim/config.json`` may name, and the key that they have there.
+_LABELLED = {"pwm": "pwm", "dio": "dio", "analog_in": "analog", "relay": "relay", "solenoid": "solenoid", "CAN": "CAN"}
+
+
+def _labels(found: Survey, named: Mapping[Place, Found]) -> dict[str, dict[str, str]]:
+    names: dict[str, dict[int, str]] = {key: {} for key in _LABELLED.values()}
+    # Channels whose devices have no name of their own are called what they are.
+    names["pwm"] = {motor.channel: "motor" for motor in found.motors if motor.channel is not None}
+    for encoder in found.encoders:
+        for letter, channel in zip("AB", encoder.channels or (), strict=False):
+            names["dio"][channel] = f"encoder {encoder.index} {letter}"
+    names["analog"] = {gyro.channel: "gyro" for gyro in found.gyros if gyro.channel is not None}
+    for (room, channel), device in named.items():
+        if room in _LABELLED:
+            names[_LABELLED[room]][channel] = str(device.name)
+    return {
+        key: {str(channel): labels[channel] for channel in sorted(labels)} for key, labels in names.items() if labels
+    }

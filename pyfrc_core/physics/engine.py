@@ -1,0 +1,203 @@
+"""A project's ``physics.py``: found beside its robot.py, told which generation it is, and kept going with a run."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import wpilib
+from wpimath.geometry import Pose2d
+
+from ..project import Project
+from ..runtime.clock import PACKET_US, PHYSICS, to_us
+from ..runtime.robot import RobotRun
+from .core import PhysicsEngine, PhysicsInitException, PhysicsInterface
+
+#: However fast the robot's loop is, `update_sim` is called no more often than this (100 Hz).
+_SHORTEST_PERIOD_US = 10_000
+
+_WHAT_IT_MUST_HAVE = (
+    "It must have a class PhysicsEngine with __init__(self, physics_controller) or __init__(self, physics_controller, "
+    "robot),\n  and with update_sim(self, hal_data, now, tm_diff) or update_sim(self, now, tm_diff)."
+)
+
+
+def load_physics(project: Project) -> PhysicsModule:
+    """The project's ``physics.py``, imported. The robot's own modules are to be imported before.
+
+    :raises RobotCodeError: when it fails, naming the user's line
+    """
+    return PhysicsModule(project.import_file(project.physics_file), project)
+
+
+class PhysicsModule:
+    """A ``physics.py``, and which generation it is of: told by its signatures.
+
+    The documentation's `update_sim` takes ``(hal_data, now, tm_diff)``, today's ``(now, tm_diff)``; the constructor may
+    ask for the robot in either.
+
+    :raises PhysicsInitException: naming the line of what cannot be called
+    """
+
+    def __init__(self, module: ModuleType, project: Project) -> None:
+        self._project = project
+        self.engine_class = _engine_class(module)
+        self.takes_hal_data = self._takes_hal_data()
+        self.takes_robot = self._takes_robot()
+        initialize = getattr(self.engine_class, "initialize", None)
+        if initialize is not None and not _accepts(initialize, "self", "hal_data"):
+            raise _wrong_signature(self.engine_class, "initialize")
+
+    def attach(self, run: RobotRun, fake_time: object = None) -> Physics:
+        """The physics of one run; to be called before its robot is constructed.
+
+        :param fake_time: what engines find as `physics_controller.fake_time`
+        """
+        config = self._project.sim_config
+        controller = PhysicsInterface(self._project.root, fake_time, config, run.hal_data)
+        if not self.takes_hal_data and not config.says_start:
+            controller.field.setRobotPose(Pose2d())  # where today's robots start
+        return Physics(self, controller, run)
+
+    def _takes_robot(self) -> bool:
+        constructor = self.engine_class.__init__
+        if constructor is not object.__init__:
+            names = list(inspect.signature(constructor).parameters)[1:]
+            with_robot = _accepts(constructor, "self", "physics_controller", "robot")
+            if names[:1] == ["robot"] or not (with_robot or _accepts(constructor, "self", "physics_controller")):
+                raise _wrong_signature(self.engine_class, "__init__")
+            if not with_robot or not _accepts(constructor, "self", "physics_controller"):
+                return with_robot
+            # A second parameter with a default: since 2020 it gets the robot; in 2019 it was somebody's own.
+            return names[1] == "robot" or not self.takes_hal_data
+        raise _wrong_signature(self.engine_class, "__init__")
+
+    def _takes_hal_data(self) -> bool:
+        engine = self.engine_class
+        update = getattr(engine, "update_sim", None)
+        if not callable(update) or update is PhysicsEngine.update_sim:
+            raise PhysicsInitException(
+                "PhysicsEngine has no method update_sim", where=_place(engine), remedy=_WHAT_IT_MUST_HAVE
+            )
+        bound = ["self"] if inspect.isfunction(inspect.getattr_static(engine, "update_sim")) else []
+        names = list(inspect.signature(update).parameters)[len(bound) :]
+        documented = _accepts(update, *bound, "hal_data", "now", "tm_diff")
+        todays = _accepts(update, *bound, "now", "tm_diff") and names[:2] != ["tm_diff", "now"]
+        if names[:1] == ["hal_data"]:
+            todays = False  # one of the others is missing
+        if documented == todays and not documented:
+            raise _wrong_signature(engine, "update_sim")
+        return documented and not todays
+
+
+class Physics:
+    """One run's physics: its engine, made and called when it should be.
+
+    :param controller: what the engine moves the robot with
+    """
+
+    def __init__(self, module: PhysicsModule, controller: PhysicsInterface, run: RobotRun) -> None:
+        self.controller = controller
+        self.engine: Any = None
+        self._module = module
+        self._run = run
+        self._updating = False
+        self._period_us = PACKET_US
+        self._last_us = 0
+        run.physics = self
+        if module.takes_hal_data and not module.takes_robot:
+            run.do(self._make_engine)  # as documented: what `initialize` sets is there when the robot is made
+        else:
+            run.when_initialized.append(self._make_engine)
+        run.when_constructed.append(self._begin)
+
+    def _begin(self) -> None:
+        # Robots with WPILib's iterative loop say how fast it is.
+        period = getattr(self._run.robot, "getPeriod", None)
+        if period is not None:
+            self._period_us = min(PACKET_US, max(_SHORTEST_PERIOD_US, to_us(period())))
+        self._run.clock.every(self._period_us, PHYSICS, self._update)
+
+    def _make_engine(self) -> None:
+        __tracebackhide__ = True
+        module, run = self._module, self._run
+        wpilib.SmartDashboard.putData("Field", self.controller.field)
+        self.engine = module.engine_class(self.controller, *([run.robot] if module.takes_robot else []))
+        initialize = getattr(self.engine, "initialize", None)
+        if initialize is not None:
+            initialize(run.hal_data)
+
+    def _update(self) -> None:
+        __tracebackhide__ = True
+        run = self._run
+        now_us, last_us = run.clock.now_us, self._last_us
+        if self._updating:  # an update that waits, in robot time, is not interrupted by the next
+            return
+        self._last_us = now_us
+        if not run.started:
+            return
+        if self.engine is None:
+            if run.initializes:
+                return
+            self._make_engine()
+        if last_us >= now_us:  # a test has set the time back
+            last_us = now_us - self._period_us
+        now, tm_diff = now_us / 1_000_000, (now_us - last_us) / 1_000_000
+        self._updating = True
+        try:
+            if self._module.takes_hal_data:
+                self.engine.update_sim(run.hal_data, now, tm_diff)
+            else:
+                self.engine.update_sim(now, tm_diff)
+        finally:
+            self._updating = False
+        self.controller.update_rates(tm_diff)
+
+
+def _engine_class(module: ModuleType) -> type[Any]:
+    engine = getattr(module, "PhysicsEngine", None)
+    if isinstance(engine, type) and engine is not PhysicsEngine:
+        return engine
+    classes = [
+        value for value in vars(module).values() if isinstance(value, type) and value.__module__ == module.__name__
+    ]
+    nearly = next((each for each in classes if hasattr(each, "update_sim")), None)
+    raise PhysicsInitException(
+        "there is no class PhysicsEngine in this file"
+        + (f", but a class {nearly.__name__}: rename it" if nearly else ""),
+        where=Path(str(module.__file__)).name if nearly is None else _place(nearly),
+        remedy=_WHAT_IT_MUST_HAVE,
+    )
+
+
+def _accepts(function: Callable[..., Any], *arguments: str) -> bool:
+    try:
+        inspect.signature(function).bind(*arguments)
+    except TypeError:
+        return False
+    return True
+
+
+def _wrong_signature(engine: type[Any], name: str) -> PhysicsInitException:
+    method = getattr(engine, name)
+    if method is object.__init__:
+        message = "PhysicsEngine has no constructor"
+        nearly = next((each for each in vars(engine) if each != name and each.strip("_") == "init"), None)
+        return PhysicsInitException(
+            message + (f", but a method {nearly}: two underscores stand on either side" if nearly else ""),
+            where=_place(engine),
+            remedy=_WHAT_IT_MUST_HAVE,
+        )
+    message = f"PhysicsEngine.{name}{inspect.signature(method)} cannot be called"
+    if next(iter(inspect.signature(method).parameters), "") in ("hal_data", "now", "physics_controller"):
+        message += ": self is missing"
+    return PhysicsInitException(message, where=_place(method), remedy=_WHAT_IT_MUST_HAVE)
+
+
+def _place(thing: Any) -> str:
+    """``physics.py:12``, where a class or a function begins."""
+    file, (_, line) = inspect.getsourcefile(thing) or "physics.py", inspect.getsourcelines(thing)
+    return f"{Path(file).name}:{line}"

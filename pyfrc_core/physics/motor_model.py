@@ -1,0 +1,126 @@
+"""How fast one side of a tank drive gets, from the voltage of its motors.
+
+The equation is that of Noah Gleason's and Eli Barnett's motor characterization whitepaper (as in WPILib's drivetrain
+characterization): ``V = kv * velocity + ka * acceleration + vintercept``, with the friction's `vintercept` against the
+voltage. While the voltage stays the same, its solution is one exponential, which is what is computed here: a step of
+any length is exact.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from .motor_cfgs import MotorModelConfig
+from .parameters import ParameterError, not_negative, positive, within_full_power
+from .quantities import magnitude
+
+if TYPE_CHECKING:
+    from .units import Quantity
+
+
+class MotorModel:
+    """Motor model used by the `TankModel`, which makes its own.
+
+    :param motor_config: the specification of the motor
+    :param kv: voltage for a speed (`units.tm_kv`), computed or measured for the robot
+    :param ka: voltage for an acceleration (`units.tm_ka`)
+    :param vintercept: the least voltage that overcomes steady friction (`units.volt`)
+    :raises WrongDimension: for a parameter in a unit that it cannot be in
+    :raises ParameterError: for a value that cannot be, such as a negative `ka`
+    """
+
+    __slots__ = (
+        "_friction_speed",
+        "_full_speed",
+        "_tm_diff",
+        "kept",
+        "lag",
+        "position",
+        "reach",
+        "steady",
+        "time_constant",
+    )
+
+    #: Current computed position (in ft)
+    position: float
+    #: The speed that the motor value comes to (in ft/s)
+    steady: float
+    #: How much faster than that it is (in ft/s)
+    lag: float
+    #: Seconds in which all but 1/e of what is missing from the steady speed is gained
+    time_constant: float
+    #: What a step of the prepared length leaves of the lag, as a part of it
+    kept: float
+    #: How far a lag of 1 ft/s brings the wheel meanwhile (in ft)
+    reach: float
+
+    def __init__(self, motor_config: MotorModelConfig, kv: Quantity, ka: Quantity, vintercept: Quantity) -> None:
+        self.lag = self.position = self.steady = 0.0
+        volts_per_speed = positive(magnitude(kv, "volt * second / foot", "kv"), "kv")
+        volts_per_acceleration = positive(magnitude(ka, "volt * second ** 2 / foot", "ka"), "ka")
+        friction = not_negative(magnitude(vintercept, "volt", "vintercept"), "vintercept")
+        # Speeds instead of voltages: what each would come to. And the time in which they do.
+        self._full_speed = nominal_volts(motor_config) / volts_per_speed
+        self._friction_speed = friction / volts_per_speed
+        self.time_constant = volts_per_acceleration / volts_per_speed
+        self.prepare(0.0)
+
+    @property
+    def velocity(self) -> float:
+        """Current computed velocity (in ft/s)."""
+        return self.steady + self.lag
+
+    @property
+    def acceleration(self) -> float:
+        """Current computed acceleration (in ft/s^2)."""
+        return 0.0 - self.lag / self.time_constant
+
+    def compute(self, motor_pct: float, tm_diff: float) -> float:
+        """Go on for `tm_diff` seconds with this motor value.
+
+        :param motor_pct: power of the motor, -1 to 1, forward positive; what is beyond counts as full power
+        :param tm_diff: seconds since this was last called
+        :returns: the velocity then, in ft/s
+        :raises ParameterError: for NaN, or a negative time
+        """
+        self.apply(motor_pct, "motor_pct")
+        if tm_diff != self._tm_diff:
+            self.prepare(tm_diff)
+        self.position += self.steady * tm_diff + self.lag * self.reach
+        self.lag *= self.kept
+        return self.velocity
+
+    def apply(self, motor_pct: float, parameter: str) -> None:
+        """Have the following steps be with this motor value; `parameter` is its name in errors."""
+        steady = self._full_speed * within_full_power(motor_pct, parameter)
+        friction = self._friction_speed
+        if steady > friction:
+            steady -= friction
+        elif steady < -friction:
+            steady += friction
+        else:
+            steady = 0.0
+        self.lag = self.velocity - steady
+        self.steady = steady
+
+    def prepare(self, tm_diff: float) -> None:
+        """Have the following steps be `tm_diff` seconds long."""
+        tm_diff = not_negative(tm_diff, "tm_diff")
+        self._tm_diff = tm_diff
+        gained = -math.expm1(-tm_diff / self.time_constant)
+        self.kept = 1.0 - gained
+        self.reach = self.time_constant * gained
+
+
+def nominal_volts(motor_config: MotorModelConfig) -> float:
+    """The voltage that a motor value of 1 stands for.
+
+    :raises ParameterError: if this is no motor configuration
+    """
+    if not isinstance(motor_config, MotorModelConfig):
+        raise ParameterError(
+            f"motor_config = {motor_config!r}: is not a motor's configuration",
+            remedy="take one of pyfrc.physics.motor_cfgs, such as MOTOR_CFG_CIM, or make a MotorModelConfig",
+        )
+    return positive(magnitude(motor_config.nominalVoltage, "volt", "nominalVoltage"), "nominalVoltage")

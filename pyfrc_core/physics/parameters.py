@@ -1,0 +1,62 @@
+"""What the helpers' parameters may be: checked once, where they come in, with errors that name the parameter."""
+
+from __future__ import annotations
+
+import math
+import numbers
+
+from ..errors import PyfrcError
+
+
+class ParameterError(PyfrcError, ValueError):
+    """A parameter of a physics helper has a value that it cannot have."""
+
+
+def finite(value: object, parameter: str) -> float:
+    """`value` as a float, if it is a finite number.
+
+    :raises ParameterError: naming the parameter and what was given
+    """
+    if isinstance(value, numbers.Real) and not isinstance(value, bool) and math.isfinite(value):
+        return float(value)
+    if hasattr(value, "units"):
+        raise ParameterError(f"{parameter} = {value}: must be a plain number, without a unit")
+    raise ParameterError(f"{parameter} = {value!r}: must be a finite number")
+
+
+def positive(value: object, parameter: str) -> float:
+    """`value` as a float, if it is a finite number above zero.
+
+    :raises ParameterError: naming the parameter and what was given
+    """
+    number = finite(value, parameter)
+    if number > 0:
+        return number
+    raise ParameterError(f"{parameter} = {value!r}: must be above zero")
+
+
+def not_negative(value: object, parameter: str) -> float:
+    """`value` as a float, if it is zero or a finite number above it.
+
+    :raises ParameterError: naming the parameter and what was given
+    """
+    number = finite(value, parameter)
+    if number >= 0:
+        return number
+    raise ParameterError(f"{parameter} = {value!r}: must not be below zero")
+
+
+def within_full_power(motor_value: float, parameter: str) -> float:
+    """`motor_value` between -1 and 1: what is beyond counts as full power, since no motor can give more.
+
+    :raises ParameterError: for what is no number, and for NaN, which would carry on into the robot's position and
+        never leave it
+    """
+    try:
+        if -1.0 <= motor_value <= 1.0:
+            return motor_value
+    except TypeError:
+        raise ParameterError(f"{parameter} = {motor_value!r}: must be a number between -1 and 1") from None
+    if motor_value != motor_value:
+        raise ParameterError(f"{parameter} is not a number (NaN)", remedy="a motor's value is between -1 and 1")
+    return math.copysign(1.0, motor_value)

@@ -1,0 +1,78 @@
+"""Physical quantities at the edge: what a user gives, with or without a unit, as the number we calculate with.
+
+Calculating with pint's quantities would cost a hundred times as much; so each is converted once, where it comes in.
+pint is imported only when somebody gives a quantity.
+"""
+
+from __future__ import annotations
+
+import numbers
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ..errors import PyfrcError
+from .parameters import finite
+from .units import units
+
+if TYPE_CHECKING:
+    from .units import Quantity
+
+#: What errors call a dimension, a unit that has it, and an example of how to give it.
+KINDS = (
+    ("a length", "foot", "2 * units.feet"),
+    ("a mass", "pound", "90 * units.lbs"),
+    ("a time", "second", "5 * units.ms"),
+    ("a speed", "foot / second", "12 * units.fps"),
+    ("an acceleration", "foot / second ** 2", "10 * units.feet / units.second ** 2"),
+    ("a voltage", "volt", "1.3 * units.volt"),
+    ("a current", "ampere", "40 * units.ampere"),
+    ("a torque", "newton * meter", "2.42 * units.N_m"),
+    ("a speed of rotation", "1 / second", "5310 * units.cpm"),
+    ("a moment of inertia", "pound * foot ** 2", "110 * units.lbs * units.feet ** 2"),
+    ("a voltage for a speed", "volt * second / foot", "0.92 * units.tm_kv"),
+    ("a voltage for an acceleration", "volt * second ** 2 / foot", "0.22 * units.tm_ka"),
+    ("a number without a dimension", "dimensionless", "0.5"),
+)
+
+
+class WrongDimension(PyfrcError, ValueError):
+    """A parameter was given in a unit that it cannot be in, such as a mass in feet, or without one that it needs."""
+
+
+def magnitude(value: float | Quantity | Any, unit: str, parameter: str, *, plain: bool = False) -> float:
+    """`value` as a number of `unit`. A quantity may be of any of pint's registries, and is converted by its own.
+
+    :param unit: what we calculate in, such as ``"foot"``, as pint itself spells it, without units of ours
+    :param parameter: the parameter's name, for the error
+    :param plain: whether a number without a unit may be given, and then is in `unit` already
+    :raises WrongDimension: saying which parameter, what was given, and what was expected
+    :raises ParameterError: if it is no finite number
+    """
+    is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
+    if plain and is_number:
+        return finite(value, parameter)
+    pint = sys.modules.get("pint")  # who has a quantity has imported it
+    if pint is not None and isinstance(value, pint.Quantity):
+        try:
+            converted = value.to(unit).magnitude
+        except pint.DimensionalityError:
+            raise _wrong(f"{value} is {_kind(value.dimensionality)}", unit, parameter) from None
+        return finite(converted, parameter)
+    if is_number:
+        raise _wrong(f"{value!r} has no unit", unit, parameter)
+    if pint is not None and isinstance(value, pint.Unit):
+        raise _wrong(f"{value} is a unit without a number", unit, parameter)
+    raise _wrong(f"{value!r} is not a quantity", unit, parameter)
+
+
+def _wrong(given: str, unit: str, parameter: str) -> WrongDimension:
+    dimensionality = units.parse_units(unit).dimensionality
+    examples = (text for _, each, text in KINDS if units.parse_units(each).dimensionality == dimensionality)
+    expected = f"{_kind(dimensionality)} was expected, such as {next(examples, f'2 {unit}')}"
+    return WrongDimension(f"{given}, {expected}", where=parameter)
+
+
+def _kind(dimensionality: Any) -> str:
+    """``a length``, or pint's own words for what has no name here."""
+    names = (name for name, unit, _ in KINDS if units.parse_units(unit).dimensionality == dimensionality)
+    return next(names, f"of dimension {dimensionality}")

@@ -1,0 +1,301 @@
+"""A model of a tank drive: from the values of its motors to how far the robot moves and turns."""
+
+from __future__ import annotations
+
+import logging
+import math
+from math import cos, sin
+from typing import TYPE_CHECKING
+
+from wpimath.geometry import Transform2d
+
+from .arc import MOST_BEND, MOST_TIME_CONSTANTS, MOST_TURN, Side, along, bow
+from .motor_cfgs import MotorModelConfig
+from .motor_model import MotorModel, nominal_volts
+from .parameters import ParameterError, positive
+from .quantities import magnitude
+from .units import units
+
+if TYPE_CHECKING:
+    from .units import Quantity
+
+__all__ = ["MotorModel", "TankModel"]
+
+logger = logging.getLogger("pyfrc.physics")
+
+#: From feet and radians in one call: takes a third of the time of making a `Rotation2d`, and a `Transform2d` of it.
+_transform = Transform2d.fromFeet
+
+MOST_TURN_SQUARED, MOST_BEND_SQUARED = MOST_TURN**2, MOST_BEND**2
+
+
+class TankModel:
+    """A tank drive whose sides accelerate as their motors make them; wheels do not slip along the ground.
+
+    Use the constructor if you have measured kv, ka and vintercept, and `theory` if you have not. All parameters are
+    pint quantities, in whatever unit; positions come out in feet, velocities in ft/s. A step of any length is exact.
+
+    The heading comes from the moment of inertia: the sides' difference in acceleration, at the lever of half a
+    wheelbase, turns the whole mass, so it is not tied to how far the wheels have rolled. With
+    ``model.inertia = mass * x_wheelbase**2 / 2`` the heading agrees exactly with wheels that do not slip at all:
+    ``(l_position - r_position) / x_wheelbase`` radians clockwise.
+
+    :param motor_config: specification of the motors
+    :param robot_mass: mass of the robot
+    :param x_wheelbase: distance between the left and the right wheels
+    :param robot_width: with bumpers; with the length it gives the moment of inertia
+    :param robot_length: with bumpers
+    :param l_kv: left side: voltage for a speed (`units.tm_kv`)
+    :param l_ka: left side: voltage for an acceleration (`units.tm_ka`)
+    :param l_vi: left side: the least voltage that overcomes steady friction
+    :param r_kv: right side, as `l_kv`
+    :param r_ka: right side, as `l_ka`
+    :param r_vi: right side, as `l_vi`
+    :param timestep: a time, for models written when this was computed in small steps; the exact solution has none
+    :raises WrongDimension: for a parameter in a unit that it cannot be in, such as a mass in feet
+    :raises ParameterError: for a value that cannot be, such as a negative mass
+    """
+
+    __slots__ = (
+        "_inertia",
+        "_l_motor",
+        "_lmotor",
+        "_pull",
+        "_r_motor",
+        "_rmotor",
+        "_step",
+        "_tm_diff",
+    )
+
+    def __init__(
+        self,
+        motor_config: MotorModelConfig,
+        robot_mass: Quantity,
+        x_wheelbase: Quantity,
+        robot_width: Quantity,
+        robot_length: Quantity,
+        l_kv: Quantity,
+        l_ka: Quantity,
+        l_vi: Quantity,
+        r_kv: Quantity,
+        r_ka: Quantity,
+        r_vi: Quantity,
+        timestep: Quantity = 5 * units.millisecond,
+    ) -> None:
+        mass = positive(magnitude(robot_mass, "pound", "robot_mass"), "robot_mass")
+        wheelbase = positive(magnitude(x_wheelbase, "foot", "x_wheelbase"), "x_wheelbase")
+        width = positive(magnitude(robot_width, "foot", "robot_width"), "robot_width")
+        length = positive(magnitude(robot_length, "foot", "robot_length"), "robot_length")
+        positive(magnitude(timestep, "second", "timestep"), "timestep")
+        logger.info(
+            "Robot base: %.1fx%.1f in frame, %.1f ft wheelbase, %.1f lb mass", width * 12, length * 12, wheelbase, mass
+        )
+
+        self._lmotor = MotorModel(motor_config, l_kv, l_ka, l_vi)
+        self._rmotor = MotorModel(motor_config, r_kv, r_ka, r_vi)
+        self._l_motor = self._r_motor = self._tm_diff = 0.0
+
+        self._pull = 0.5 * wheelbase * mass
+        self._set_inertia(mass * (width**2 + length**2) / 12)  # of a homogeneous plate
+
+    @classmethod
+    def theory(
+        cls,
+        motor_config: MotorModelConfig,
+        robot_mass: Quantity,
+        gearing: float,
+        nmotors: int = 1,
+        x_wheelbase: Quantity = 21.0 * units.inch,
+        robot_width: Quantity = 27.5 * units.inch,
+        robot_length: Quantity = 36.5 * units.inch,
+        wheel_diameter: Quantity = 6 * units.inch,
+        vintercept: Quantity = 1.3 * units.volt,
+        timestep: Quantity = 5 * units.millisecond,
+    ) -> TankModel:
+        r"""The model of a robot whose kv and ka have not been measured, from the motors' data sheet.
+
+        .. math::
+            velocity_{max} = \frac{\omega_{free} \cdot \pi \cdot d_{wheels}}{r_{gearing}} \qquad
+            acceleration_{max} = \frac{2 \cdot n \cdot \tau_{stall} \cdot r_{gearing}}{d_{wheels} \cdot m_{robot}}
+
+            k_v = V_{max} / velocity_{max} \qquad k_a = V_{max} / acceleration_{max}
+
+        :param motor_config: specification of the motors
+        :param robot_mass: mass of the robot
+        :param gearing: gear ratio: for 10.74:1, 10.74
+        :param nmotors: number of motors on each side
+        :param x_wheelbase: distance between the left and the right wheels
+        :param robot_width: with bumpers
+        :param robot_length: with bumpers
+        :param wheel_diameter: diameter of the wheels
+        :param vintercept: the least voltage that overcomes steady friction
+        :param timestep: as in the constructor
+        :raises WrongDimension: for a parameter in a unit that it cannot be in
+        :raises ParameterError: for a value that cannot be, such as a gearing of zero
+        """
+        volts = nominal_volts(motor_config)
+        free = positive(magnitude(motor_config.freeSpeed, "1 / second", "freeSpeed"), "freeSpeed")
+        stall = positive(
+            magnitude(motor_config.stallTorque, "pound * foot ** 2 / second ** 2", "stallTorque"), "stallTorque"
+        )
+        mass = positive(magnitude(robot_mass, "pound", "robot_mass"), "robot_mass")
+        diameter = positive(magnitude(wheel_diameter, "foot", "wheel_diameter"), "wheel_diameter")
+        ratio = positive(gearing, "gearing")
+        if positive(nmotors, "nmotors") % 1:
+            raise ParameterError(f"nmotors = {nmotors!r}: must be a whole number of motors")
+
+        speed = free * math.pi * diameter / ratio
+        acceleration = 2 * nmotors * stall * ratio / (diameter * mass)
+        kv, ka = volts / speed, volts / acceleration
+        logger.info(
+            "Motor config: %d %s motors @ %.2f gearing with %.1f in diameter wheels",
+            nmotors,
+            motor_config.name,
+            ratio,
+            diameter * 12,
+        )
+        logger.info("- Theoretical: vmax=%.3f ft/s, amax=%.3f ft/s^2, kv=%.3f, ka=%.3f", speed, acceleration, kv, ka)
+        side = kv * units.tm_kv, ka * units.tm_ka, vintercept
+        return cls(motor_config, robot_mass, x_wheelbase, robot_width, robot_length, *side, *side, timestep)
+
+    @property
+    def inertia(self) -> Quantity:
+        """Moment of inertia, [mass] * [length]**2: of a plate of the robot's mass, width and length, or what you set.
+
+        :raises WrongDimension: when set in another unit
+        """
+        inertia: Quantity = self._inertia * units.pound * units.foot**2
+        return inertia
+
+    @inertia.setter
+    def inertia(self, inertia: Quantity) -> None:
+        self._set_inertia(positive(magnitude(inertia, "pound * foot ** 2", "inertia"), "inertia"))
+
+    def _set_inertia(self, inertia: float) -> None:
+        self._inertia = inertia
+        self._prepare(self._tm_diff)
+
+    @property
+    def l_position(self) -> float:
+        """The linear position of the left side wheel (in feet), forward positive."""
+        return self._lmotor.position
+
+    @property
+    def r_position(self) -> float:
+        """The linear position of the right side wheel (in feet), forward positive."""
+        return self._rmotor.position
+
+    @property
+    def l_velocity(self) -> float:
+        """The velocity of the left side (in ft/s), forward positive."""
+        return self._lmotor.velocity
+
+    @property
+    def r_velocity(self) -> float:
+        """The velocity of the right side (in ft/s), forward positive."""
+        return self._rmotor.velocity
+
+    def get_distance(self, l_motor: float, r_motor: float, tm_diff: float) -> tuple[float, float, float]:
+        """How far the robot has moved, for `PhysicsInterface.distance_drive`.
+
+        With more than one motor on a side, give the value of one of them.
+
+        :param l_motor: left motor value (-1 to 1); -1 is forward
+        :param r_motor: right motor value (-1 to 1); 1 is forward
+        :param tm_diff: seconds since this was last called
+        :returns: feet forward, feet to the right, both as seen from where the robot was, and radians clockwise
+        :raises ParameterError: for NaN, or a negative time
+        """
+        # What physics spends its time in. Written out in one piece, because every call and every attribute costs as
+        # much as several operations. A motor's value and the length of a step are mostly those of the step before:
+        # what follows from them is kept, and only a change is looked at. NaN is one, too.
+        if l_motor != self._l_motor:
+            self._lmotor.apply(-l_motor, "l_motor")
+            self._l_motor = l_motor
+        if r_motor != self._r_motor:
+            self._rmotor.apply(r_motor, "r_motor")
+            self._r_motor = r_motor
+        if tm_diff != self._tm_diff:
+            self._prepare(tm_diff)
+        left, l_kept, l_reach, l_bow, right, r_kept, r_reach, r_bow, turning, lean, unlike, most_bend_squared = (
+            self._step
+        )
+
+        # Both sides go on, as in `MotorModel.compute`.
+        l_lag, r_lag = left.lag, right.lag
+        left.lag = l_lag * l_kept
+        right.lag = r_lag * r_kept
+        l_moved = left.steady * tm_diff + l_lag * l_reach
+        r_moved = right.steady * tm_diff + r_lag * r_reach
+        left.position += l_moved
+        right.position += r_moved
+
+        # What that makes of the heading: how far it turns, and how far each side's bow (see arc.py) bends the way.
+        middle = 0.5 * (l_moved + r_moved)
+        angle = turning * (l_moved - r_moved)
+        l_bow *= l_lag
+        r_bow *= r_lag
+        bend = l_bow - r_bow
+        half = 0.5 * angle
+        if half == 0.0 == bend:
+            return middle, 0.0, 0.0
+        angle_squared = angle * angle
+        if half == 0.0 or angle_squared > MOST_TURN_SQUARED or bend * bend > most_bend_squared:
+            l_side = Side(left.time_constant, left.steady, l_lag)
+            r_side = Side(right.time_constant, right.steady, r_lag)
+            return *along(tm_diff, turning, l_side, r_side), angle
+
+        # The chord of a circle, and the bows' series, in the direction of the chord. `sway` is what a bow adds to the
+        # side: on the heading, and, integrated by parts, on the speed. 0.6 is half the mean square of a bow's form,
+        # 0.025 half its second moment, and `lean` its first. Two forms that are `unlike` make something of each other.
+        sin_half = sin(half)
+        cos_half = cos(half)
+        l_sway = l_bow * r_moved
+        r_sway = r_bow * l_moved
+        sway = l_sway - r_sway
+        ahead = middle * sin_half / half - sway * (0.6 * bend - lean * angle)
+        aside = sway * (1.0 - 0.025 * angle_squared)
+        if unlike:
+            ahead += unlike * angle * (l_sway + r_sway) / 24.0
+            aside += unlike * l_bow * r_bow / turning
+        return ahead * cos_half - aside * sin_half, ahead * sin_half + aside * cos_half, angle
+
+    def calculate(self, l_motor: float, r_motor: float, tm_diff: float) -> Transform2d:
+        """How far the robot has moved, for `PhysicsInterface.move_robot`.
+
+        With more than one motor on a side, give the value of one of them.
+
+        :param l_motor: left motor value (-1 to 1); 1 is forward
+        :param r_motor: right motor value (-1 to 1); -1 is forward
+        :param tm_diff: seconds since this was last called
+        :returns: metres forward and to the left, and the turn counter-clockwise
+        :raises ParameterError: for NaN, or a negative time
+        """
+        x, y, angle = self.get_distance(-l_motor, -r_motor, tm_diff)
+        return _transform(x, 0.0 - y, 0.0 - angle)
+
+    def _prepare(self, tm_diff: float) -> None:
+        """Keep what depends on the length of the steps only: most are as long as the one before."""
+        left, right = self._lmotor, self._rmotor
+        left.prepare(tm_diff)
+        right.prepare(tm_diff)
+        # From d(omega)/dt = lever * mass * (l_acceleration - r_acceleration) / inertia, begun at rest: both sides of it
+        # integrated once give the rate of turn from the speeds, and twice the angle from the positions.
+        turning = self._pull / self._inertia
+        l_tau, r_tau = left.time_constant, right.time_constant
+        l_passed, r_passed = tm_diff / l_tau, tm_diff / r_tau
+        self._step = (
+            left,
+            left.kept,
+            left.reach,
+            turning * bow(tm_diff, l_tau, left.reach),
+            right,
+            right.kept,
+            right.reach,
+            turning * bow(tm_diff, r_tau, right.reach),
+            turning,
+            (l_passed + r_passed) / 120,
+            (l_passed - r_passed) / 5,
+            MOST_BEND_SQUARED if max(l_passed, r_passed) <= MOST_TIME_CONSTANTS else -1.0,
+        )
+        self._tm_diff = tm_diff

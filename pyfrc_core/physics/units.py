@@ -1,0 +1,61 @@
+"""The units of the physics helpers: ``5 * units.feet``.
+
+pint is imported when `units` is first used, not when it is imported: who gives plain feet never waits for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, cast
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    import pint
+
+    Quantity: TypeAlias = pint.Quantity[Any]
+    UnitRegistry: TypeAlias = pint.UnitRegistry[Any]
+
+
+def _registry() -> UnitRegistry:
+    from .registry import registry
+
+    return registry
+
+
+class _RegistryWhenUsed:
+    """Stands for the registry, for `isinstance` and pint too; nothing of it is its own."""
+
+    def __getattribute__(self, name: str) -> Any:
+        return getattr(_registry(), name)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        setattr(_registry(), name, value)
+
+    def __delattr__(self, name: str) -> None:
+        delattr(_registry(), name)
+
+    # Python looks these up in the class, past __getattribute__.
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        return _registry()(*args, **kwargs)
+
+    def __getitem__(self, item: str) -> Any:
+        return _registry()[item]
+
+    def __contains__(self, item: str) -> bool:
+        return item in _registry()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_registry())
+
+    def __dir__(self) -> list[str]:
+        return dir(_registry())
+
+    def __repr__(self) -> str:
+        return repr(_registry())
+
+
+#: All units that pyfrc uses: those of pint, and `counts_per_minute` (`cpm`), `N_m`, `tm_kv` and `tm_ka`. A unit
+#: registry of pint's; https://pint.readthedocs.io says what it can do. It is not made the application's, since there
+#: can be only one of these, and that is the user's to choose: ``pint.set_application_registry(units)``.
+units = cast("UnitRegistry", _RegistryWhenUsed())

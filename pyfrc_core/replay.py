@@ -1,0 +1,128 @@
+"""`pyfrc replay`: runs the robot as an input script says, and compares what it does with what it did when recorded."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from .errors import PyfrcError
+from .project import Project
+from .runtime.clock import to_us
+from .runtime.failures import as_robot_code_error
+from .runtime.redirect import redirection
+from .runtime.robot import RobotRun
+from .runtime.scripts.files import trace_beside, traced
+from .runtime.scripts.player import Player
+from .runtime.scripts.script import InputScript, load_script
+from .runtime.seeds import seed_generators
+from .runtime.watchdog import Watchdog
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Where two traces first differ.
+
+    :param now: robot time, in seconds
+    :param path: the place in `hal_data`
+    :param recorded: its value when the script was recorded; None when it was not there, or not changed
+    :param replayed: its value now
+    """
+
+    now: float
+    path: str
+    recorded: Any
+    replayed: Any
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """What came of a replay.
+
+    :param seconds: how much robot time passed
+    :param failure: what the robot's code raised, naming its line
+    :param digest: the hash of what the robot did
+    :param equal: whether that is what it did when recorded; None when the recording does not tell
+    :param difference: where it first differs, if the recording's trace is there to tell
+    """
+
+    seconds: float
+    failure: PyfrcError | None
+    digest: str
+    equal: bool | None
+    difference: Difference | None
+
+
+def replay(project: Project, file: Path, *, until: float | None = None, trace: Path | None = None) -> Replayed:
+    """Run the robot as the script in `file` says.
+
+    :param until: an earlier end, in seconds of robot time; the whole is then not compared, what was until then is
+    :param trace: where to write what the robot does
+    :raises ScriptError: when the script is not one, or does not fit the robot
+    :raises RobotCodeError: when the robot's code cannot be imported
+    """
+    script = load_script(file)
+    redirection.install(project.files)
+    robot_class = project.load()
+    until_us = None if until is None else to_us(until)
+    with TemporaryDirectory() as temporary:
+        written = trace or Path(temporary, "trace.jsonl")
+        run = RobotRun()
+        failure = None
+        with Watchdog(run, project.files, project.settings.test.hang_seconds).watching():
+            run.open()
+            try:
+                seed_generators(script.seed)
+                with traced(run, written) as recorder:
+                    try:
+                        _play(project, robot_class, run, script, until_us)
+                    except PyfrcError:
+                        raise
+                    except Exception as error:
+                        failure = as_robot_code_error(error, project.files)
+                    seconds = run.clock.now
+            finally:
+                run.close()
+        beside = trace_beside(file)
+        difference = _first_difference(beside, written, run_us=until_us) if beside.is_file() else None
+    whole = until_us is None or until_us >= script.end_us
+    equal = script.trace == recorder.digest() if script.trace and whole else None
+    return Replayed(seconds, failure, recorder.digest(), equal, difference)
+
+
+def _play(project: Project, robot_class: type[Any], run: RobotRun, script: InputScript, until_us: int | None) -> None:
+    if project.physics_file.is_file():
+        from .physics.engine import load_physics
+
+        load_physics(project).attach(run)
+    run.construct(robot_class)
+    Player(script, run).play(until_us)
+
+
+def _first_difference(recorded: Path, replayed: Path, run_us: int | None) -> Difference | None:
+    for old, new in zip_longest(_changes(recorded), _changes(replayed)):
+        if old == new:
+            continue
+        moments = [change["t"] for change in (old, new) if change is not None]
+        now = min(moments)
+        if run_us is not None and to_us(now) >= run_us:
+            return None
+        before = old.get("set", {}) if old is not None and old["t"] == now else {}
+        after = new.get("set", {}) if new is not None and new["t"] == now else {}
+        for path in sorted({*before, *after}):
+            if before.get(path) != after.get(path) or (path in before) != (path in after):
+                return Difference(now, path, before.get(path), after.get(path))
+        return Difference(now, "what there is", (old or {}).get("gone"), (new or {}).get("gone"))
+    return None
+
+
+def _changes(trace: Path) -> Iterator[dict[str, Any]]:
+    with trace.open(encoding="utf-8") as lines:
+        for line in lines:
+            change = json.loads(line)
+            if "t" in change:
+                yield change

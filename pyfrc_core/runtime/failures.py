@@ -1,0 +1,74 @@
+"""Failures as a student reads them: the user's own file and line first, then what happened."""
+
+from __future__ import annotations
+
+import re
+import sys
+from types import ModuleType
+
+from ..errors import PyfrcError, RobotCodeError, UsageError, text_of
+from ..robot_files import RobotFiles, is_pyfrc
+from .endings import TestFroze
+
+_STACK_ENTRY = re.compile(r'  File "([^"]+)", line \d+, in [^\n]*\n(?:    [^\n]*\n)?\n?')
+
+
+class NamesItsPlace(Exception):
+    """An error whose message begins with the user's file and line."""
+
+
+def leave_out_pyfrc(error: BaseException, files: RobotFiles) -> None:
+    """Take pyfrc's own part out of the traceback of what the user's code raised, or made pyfrc raise."""
+    entry = error.__traceback__
+    if files.innermost_line(entry) is None:
+        return
+    if error.args and isinstance(error.args[0], str) and "\n  File " in error.args[0]:
+        # WPILib tells where a device was made before, with the whole stack of it.
+        error.args = (_STACK_ENTRY.sub(lambda found: _ours(found, files), error.args[0]).strip(), *error.args[1:])
+    while entry is not None:
+        while entry.tb_next is not None and is_pyfrc(entry.tb_next.tb_frame.f_code.co_filename):
+            entry.tb_next = entry.tb_next.tb_next
+        entry = entry.tb_next
+
+
+def headline(error: BaseException, files: RobotFiles) -> str | None:
+    """``robot.py:12: ZeroDivisionError: division by zero``, if the user's code took part in it."""
+    if names_its_place(error) or (isinstance(error, TestFroze) and str(error)):
+        return str(error)
+    traceback = error.__traceback__
+    line = (
+        files.innermost_line(traceback, tests=False) or _line_of_method(error, files) or files.innermost_line(traceback)
+    )
+    return f"{line}: {text_of(error)}" if line else None
+
+
+def as_robot_code_error(error: BaseException, files: RobotFiles) -> PyfrcError:
+    """What the user's code raised, as an error that names its line."""
+    if isinstance(error, PyfrcError):
+        return error
+    text = headline(error, files)
+    return RobotCodeError(text) if text is not None else RobotCodeError(text_of(error))
+
+
+def names_its_place(error: BaseException) -> bool:
+    """Whether the message says it all: what is wrong, where, and what to do."""
+    if isinstance(error, (RobotCodeError, UsageError)):
+        return error.where is not None
+    return isinstance(error, NamesItsPlace)
+
+
+def _ours(entry: re.Match[str], files: RobotFiles) -> str:
+    return entry[0] if files.is_project_file(entry[1]) else ""
+
+
+def _line_of_method(error: BaseException, files: RobotFiles) -> str | None:
+    """The line of a method that WPILib could not even call, as when its `self` was forgotten."""
+    found = re.match(r"TypeError: (\w+)\.(\w+)\(\) (?:takes|missing|got)", text_of(error))
+    if found is None:
+        return None
+    for module in list(sys.modules.values()):
+        owner = vars(module).get(found[1]) if isinstance(module, ModuleType) else None
+        code = getattr(getattr(owner, found[2], None), "__code__", None)
+        if code is not None and files.is_robot_code(code.co_filename):
+            return f"{files.relative(code.co_filename)}:{code.co_firstlineno}"
+    return None

@@ -1,0 +1,38 @@
+"""The files of a recording: ``NAME.jsonl`` is its script, ``NAME.trace.jsonl`` beside it what the robot did."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..robot import RobotRun
+from ..trace import Trace
+from .recorder import Recorder
+
+
+def trace_beside(script: Path) -> Path:
+    """Where the trace of a recording is."""
+    return script.with_name(f"{script.stem}.trace.jsonl")
+
+
+@contextmanager
+def traced(run: RobotRun, file: Path) -> Iterator[Trace]:
+    """Write down what the robot does while this lasts. The run is open, and not started."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with file.open("w", encoding="utf-8") as out:
+        trace = Trace(run.hal_data, out)
+        run.observe(trace.look)
+        yield trace
+        trace.finish()
+
+
+@contextmanager
+def recorded(run: RobotRun, file: Path, robot: str, seed: int) -> Iterator[None]:
+    """Record a run while this lasts: its script, and its trace beside that. The run is open, and not started."""
+    recorder = Recorder(run)
+    with traced(run, trace_beside(file)) as trace:
+        try:
+            yield
+        finally:
+            recorder.script(robot, seed, trace.digest()).save(file)

@@ -1,0 +1,81 @@
+"""Plays an input script into a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ...errors import PyfrcError
+from ..clock import INPUT
+from ..robot import RobotRun
+from .script import InputScript, ScriptError, Step
+from .targets import Targets
+
+
+class Player:
+    """Writes what a script says, when it says so.
+
+    :raises ScriptError: when the script names something that there never is, with its line
+    """
+
+    def __init__(self, script: InputScript, run: RobotRun) -> None:
+        self._script = script
+        self._run = run
+        self._targets = Targets(run.hal_data)
+        self._steps = iter(script.steps)
+        self._next = next(self._steps, None)
+        for step in script.steps:
+            with self._naming_the_line_of(step):
+                for target in step.writes:
+                    self._targets.check(target)
+
+    def play(self, until_us: int | None = None) -> None:
+        """Start the robot, which has been constructed, and run it to the script's end.
+
+        :param until_us: an earlier end
+        :raises ScriptError: when something cannot be written, or the robot has no such device
+        """
+        __tracebackhide__ = True
+        run, script = self._run, self._script
+        run.clock.limit_us = max(run.clock.limit_us, script.end_us)
+        run.clock.before_packet.append(self._on_packet)
+        if script.start_us > run.clock.now_us:
+            run.run_until(script.start_us)
+        self._write_until(script.start_us)
+        run.start()
+        end_us = script.end_us if until_us is None else min(until_us, script.end_us)
+        if end_us > run.clock.now_us:
+            run.run_until(end_us - 1)
+        if end_us == script.end_us:
+            self._see_that_all_were_there()
+
+    def _on_packet(self, now: float) -> None:
+        self._targets.count_down(self._run.clock.now_us)
+
+    def _write_until(self, now_us: int) -> None:
+        while self._next is not None and self._next.at_us <= now_us:
+            step, self._next = self._next, next(self._steps, None)
+            with self._naming_the_line_of(step):
+                for target, value in step.writes.items():
+                    self._targets.write(target, value, now_us)
+        if self._next is not None:
+            self._run.clock.at(self._next.at_us, INPUT, lambda: self._write_until(self._run.clock.now_us))
+
+    def _see_that_all_were_there(self) -> None:
+        """A device that the robot has not made takes what is written to it, and nobody reads it."""
+        for step in self._script.steps:
+            with self._naming_the_line_of(step):
+                for target in step.writes:
+                    self._targets.check_made(target)
+
+    @contextmanager
+    def _naming_the_line_of(self, step: Step) -> Iterator[None]:
+        try:
+            yield
+        except (PyfrcError, TypeError, ValueError) as wrong:
+            if isinstance(wrong, ScriptError):
+                raise
+            message = wrong.message if isinstance(wrong, PyfrcError) else str(wrong)
+            remedy = wrong.remedy if isinstance(wrong, PyfrcError) else None
+            where = f"{self._script.file}:{step.line}" if step.line else self._script.file
+            raise ScriptError(message, where=where, remedy=remedy) from None

@@ -1,0 +1,181 @@
+"""Records a run's input script: what differs, after code from outside has had its say, from what the robot left."""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Iterator
+from importlib.metadata import version
+from typing import Any
+
+import ntcore
+
+from ...hal import modes
+from ..robot import RobotRun
+from .script import InputScript, Step
+from .targets import MATCH_TIME, MODE, NETWORK, PACKET, REMAINING, Countdown, plugged
+
+_RECORDED_PACKAGES = ("pyfrc", "wpilib")
+
+#: Leaves that are told otherwise, as `mode`.
+_TOLD_OTHERWISE = {"control.enabled", "control.autonomous", "control.test"}
+
+#: The types that entries of NetworkTables have for people; structs and the like are written by robots.
+_PLAIN = (bool, int, float, str)
+
+
+class Recorder:
+    """Listens to a run: to be made as soon as the run is open.
+
+    What the robot's own code does, its physics and all else that runs in robot time, is not recorded: a replay has it
+    again.
+    """
+
+    def __init__(self, run: RobotRun) -> None:
+        self._run = run
+        self._hal_data = run.hal_data
+        self._network = _Network()
+        self._steps: list[Step] = []
+        self._match_time = _MatchTime()
+        self._told_by_name = {MODE, *map(plugged, range(modes.JOYSTICKS))}
+        self._start_us = 0
+        #: When the step that is being taken from outside began, if one is.
+        self._stepping_since: int | None = None
+        self._before = self._look()
+        run.recorder = self
+
+    def begin_outside(self, stepping: bool = False) -> None:
+        """Code from outside has its say.
+
+        :param stepping: whether before a packet, which brings what it says
+        """
+        if stepping:
+            self._stepping_since = self._run.clock.now_us
+        self._before = self._look()
+
+    def on_packet_out_of_turn(self) -> None:
+        """Code from outside has a packet delivered, with what it has said until now."""
+        self.end_outside()
+        self._steps.append(Step(self._at_us(), {PACKET: True}))
+        self.begin_outside()
+
+    def end_outside(self, stepping: bool = False) -> None:
+        """Code from outside has had its say."""
+        at_us = self._at_us()
+        if stepping:
+            self._stepping_since = None
+        if not self._run.started:
+            self._start_us = at_us
+        before, self._before = self._before, self._look()
+        writes = dict(self._writes(before, self._before))
+        self._match_time.hear(writes, before[REMAINING], self._before[REMAINING], at_us, stepping)
+        if writes:
+            self._steps.append(Step(at_us, writes))
+
+    def _at_us(self) -> int:
+        """When what is written now is to be written."""
+        now_us = self._run.clock.now_us
+        if not self._run.started or self._stepping_since == now_us:
+            return now_us
+        # Everything due has been done: what comes after it is not to come with it.
+        return now_us + 1
+
+    def script(self, robot: str, seed: int, trace: str | None) -> InputScript:
+        """What was recorded, up to now."""
+        end_us = self._at_us() if self._run.started else self._run.clock.now_us + 1
+        packages = {name: version(name) for name in _RECORDED_PACKAGES}
+        return InputScript(tuple(self._steps), end_us, self._start_us, robot, seed, packages, trace)
+
+    def _look(self) -> dict[str, Any]:
+        found: dict[str, Any] = {MODE: modes.mode_name()}
+        for port, stick in enumerate(self._hal_data["joysticks"]):
+            counts = {count: stick[count] for count in ("axis_count", "button_count", "pov_count")}
+            found[plugged(port)] = any(counts.values())
+            if found[plugged(port)]:
+                found |= {f"joysticks[{port}].{count}": number for count, number in counts.items()}
+        found |= self._hal_data.leaves()
+        found |= self._network.look()
+        return found
+
+    def _writes(self, before: dict[str, Any], now: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+        for target, value in now.items():
+            if target in _TOLD_OTHERWISE or target == REMAINING:
+                continue
+            if target in before and repr(before[target]) == repr(value):
+                continue
+            if value == math.inf and target.startswith("encoder") and target.endswith(".period"):
+                # JSON has no infinity; the HAL keeps a rate as its period.
+                target, value = target.replace(".period", ".rate"), 0.0
+            if target.startswith(NETWORK) or target in self._told_by_name:
+                yield target, value
+            elif self._hal_data.can_write(target):
+                yield from _parts(target, before.get(target), value)
+
+
+class _MatchTime:
+    """Tells the match's time, which whoever runs a match writes before each packet, as one countdown."""
+
+    def __init__(self) -> None:
+        self._countdown = Countdown()
+        self._counting = False
+        #: What was last written to stand still, and may turn out to be the beginning of a countdown.
+        self._last: dict[str, Any] = {}
+
+    def hear(self, writes: dict[str, Any], before: float, left: float, at_us: int, stepping: bool) -> None:
+        """Add to `writes` what has to be said of the seconds that are left now."""
+        if self._counting:
+            if not stepping or left == self._countdown.left(at_us):
+                return
+            self._counting = False
+        elif left == before:
+            return
+        elif REMAINING in self._last and left == self._countdown.left(at_us):
+            self._last[MATCH_TIME] = self._last.pop(REMAINING)
+            self._counting = True
+            return
+        writes[REMAINING] = left
+        self._countdown.start(left, at_us)
+        self._last = writes
+
+
+def _parts(target: str, before: Any, value: Any) -> Iterator[tuple[str, Any]]:
+    """Of a list, the entries that have changed; an unplugged joystick has none."""
+    if not isinstance(value, list):
+        yield target, value
+        return
+    old = before if isinstance(before, list) else []
+    for index, each in enumerate(value):
+        if index >= len(old) or repr(old[index]) != repr(each):
+            yield f"{target}[{index}]", _shortest(each) if target.endswith(".axes") else each
+
+
+def _shortest(axis: float) -> float:
+    """The number with the fewest digits that is the same as a C float: WPILib keeps axes as those."""
+    wanted = struct.pack("f", axis)
+    for digits in range(1, 9):
+        short = float(f"{axis:.{digits}g}")
+        if struct.pack("f", short) == wanted:
+            return short
+    return axis
+
+
+class _Network:
+    """The values that entries of NetworkTables have."""
+
+    def __init__(self) -> None:
+        self._instance = ntcore.NetworkTableInstance.getDefault()
+        self._subscribers: dict[str, ntcore.GenericSubscriber] = {}
+
+    def look(self) -> dict[str, Any]:
+        for topic in self._instance.getTopics():
+            name = topic.getName()
+            if name not in self._subscribers:
+                self._subscribers[name] = topic.genericSubscribe()
+        found = {}
+        for name, subscriber in self._subscribers.items():
+            value = subscriber.get().value() if subscriber.exists() else None
+            if isinstance(value, _PLAIN) or (
+                isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)
+            ):
+                found[NETWORK + name] = value
+        return found

@@ -1,0 +1,203 @@
+"""The form of an input script: JSON lines, first a header, then what is written and when.
+
+    {"format": "pyfrc-input 1", "robot": "robot.py", "end": 16.0, ...}
+    {"t": 1.0, "set": {"mode": "teleop"}}
+    {"t": 1.5, "set": {"joysticks[0].axes[1]": -1.0, "dio[3].value": false}}
+
+What can be written is in `targets`. Times are seconds of robot time; what is written at 1.5 is there when the packet of
+1.5 s arrives. The robot is ended at `end`, before what would happen then.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ...errors import UsageError
+from ...text_files import write_whole
+from ..clock import to_us
+
+FORMAT = "pyfrc-input 1"
+
+#: Longer files are no input scripts; a match that mashes everything at each packet takes a tenth of this.
+_MOST_BYTES = 64 * 1024 * 1024
+#: No robot runs for longer than a day.
+_LONGEST = 86_400.0
+
+
+class ScriptError(UsageError):
+    """An input script is not what it must be, or does not fit the robot; `where` names its line."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """What is written at one moment, in this order.
+
+    :param at_us: when, in microseconds of robot time
+    :param writes: values by target, such as ``"dio[3].value"`` or ``"mode"``
+    :param line: the line of the file, for errors
+    """
+
+    at_us: int
+    writes: Mapping[str, Any]
+    line: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True)
+class InputScript:
+    """What a robot is told from outside in one run.
+
+    :param steps: in the order of their times
+    :param end_us: when the run ends
+    :param start_us: when the robot is started; steps until then are written before
+    :param robot: the file of the robot program
+    :param seed: what random generators start from
+    :param packages: the versions of what it was recorded with
+    :param trace: the hash of what the robot did when this was recorded
+    :param file: where it was read from, for errors
+    """
+
+    steps: tuple[Step, ...]
+    end_us: int
+    start_us: int = 0
+    robot: str = ""
+    seed: int = 0
+    packages: Mapping[str, str] = field(default_factory=dict)
+    trace: str | None = None
+    file: str = field(default="script", compare=False)
+
+    def lines(self) -> Iterator[str]:
+        """The text, line by line."""
+        header: dict[str, Any] = {"format": FORMAT, "robot": self.robot, "seed": self.seed}
+        if self.start_us:
+            header["start"] = self.start_us / 1_000_000
+        header |= {"end": self.end_us / 1_000_000, "packages": dict(self.packages)}
+        if self.trace is not None:
+            header["trace"] = self.trace
+        yield json.dumps(header)
+        for step in self.steps:
+            yield json.dumps({"t": step.at_us / 1_000_000, "set": dict(step.writes)}, ensure_ascii=False)
+
+    def save(self, file: Path) -> None:
+        """Write it to `file`."""
+        write_whole(file, (f"{line}\n" for line in self.lines()))
+
+
+def load_script(file: Path) -> InputScript:
+    """Read an input script.
+
+    :raises ScriptError: naming the line and what is wrong with it
+    """
+    name = file.name
+    try:
+        size = file.stat().st_size
+        if size > _MOST_BYTES:
+            raise ScriptError(
+                f"{size // 2**20} MB are too many for an input script: at most {_MOST_BYTES // 2**20} MB",
+                where=f"{name}:1",
+            )
+        with file.open(encoding="utf-8-sig") as lines:
+            return parse_script(lines, name)
+    except IsADirectoryError:
+        raise ScriptError("this is a directory, not an input script", where=name) from None
+    except FileNotFoundError:
+        raise ScriptError(f"there is no file {file}") from None
+    except UnicodeDecodeError as malformed:
+        raise ScriptError(f"not UTF-8 text: {malformed}", where=name) from None
+
+
+def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
+    """An input script from its lines.
+
+    :raises ScriptError: naming the line and what is wrong with it
+    """
+    numbered = ((number, line) for number, line in enumerate(lines, 1) if line.strip())
+    try:
+        number, first = next(numbered)
+    except StopIteration:
+        raise ScriptError("the file is empty: its first line must be the header", where=f"{name}:1") from None
+    header = _Line(first, f"{name}:{number}")
+    version = header.value.get("format")
+    if version != FORMAT:
+        raise ScriptError(
+            f"unknown format {version!r}: this pyfrc reads {FORMAT!r}"
+            if version is not None
+            else f'the first line must be the header, with "format": "{FORMAT}"',
+            where=header.where,
+        )
+    start, end = header.time("start", 0.0), header.time("end")
+    if end < start:
+        raise ScriptError('"end" comes before "start"', where=header.where)
+    steps = []
+    before = 0
+    for number, text in numbered:
+        line = _Line(text, f"{name}:{number}")
+        at = line.time("t")
+        if at < before:
+            raise ScriptError(f"time goes back from {before / 1e6:g} s to {at / 1e6:g} s", where=line.where)
+        before = at
+        steps.append(Step(at, line.of_type("set", dict, "an object of what is written", None), number))
+    return InputScript(
+        tuple(steps),
+        end,
+        start,
+        header.of_type("robot", str, "text", ""),
+        header.of_type("seed", int, "a whole number", 0),
+        header.of_type("packages", dict, "an object of versions", {}),
+        header.of_type("trace", str, "text", ""),
+        name,
+    )
+
+
+class _Line:
+    """One line's JSON object, with errors that name the line."""
+
+    def __init__(self, text: str, where: str) -> None:
+        self.where = where
+        try:
+            value = json.loads(text, parse_constant=self._no_number)
+        except json.JSONDecodeError as malformed:
+            message = f"not valid JSON: {malformed.msg} (column {malformed.colno})"
+            if not text.endswith("\n"):
+                message += "; is the file cut off here?"
+            raise ScriptError(message, where=where) from None
+        except (RecursionError, ValueError) as malformed:  # too deep; a number of too many digits
+            raise ScriptError(f"not an input script: {malformed}", where=where) from None
+        if not isinstance(value, dict):
+            raise ScriptError("each line must be a JSON object", where=where)
+        self.value: dict[str, Any] = value
+
+    def _no_number(self, name: str) -> float:
+        raise ScriptError(f"{name} is no number that can be written", where=self.where)
+
+    def of_type(self, key: str, kind: type, what: str, default: Any) -> Any:
+        value = self.value.get(key, default)
+        if not isinstance(value, kind) or isinstance(value, bool):
+            raise ScriptError(
+                f'"{key}" must be {what}, not {_short(value)}' if key in self.value else f'"{key}" is missing: {what}',
+                where=self.where,
+            )
+        return value
+
+    def time(self, key: str, default: float | None = None) -> int:
+        """A time in seconds, as microseconds."""
+        value = self.value.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            message = (
+                f'"{key}" must be a time in seconds, not {_short(value)}'
+                if key in self.value
+                else f'"{key}" is missing'
+            )
+            raise ScriptError(message, where=self.where)
+        if not 0 <= value <= _LONGEST:
+            raise ScriptError(f'"{key}" must be from 0 to {_LONGEST:g} s, not {value:g}', where=self.where)
+        return to_us(value)
+
+
+def _short(value: object) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

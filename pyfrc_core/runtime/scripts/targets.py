@@ -1,0 +1,140 @@
+"""What an input script can write: places in `hal_data`, and what the driver station and the network do.
+
+- ``mode``: ``disabled``, ``autonomous``, ``teleop``, ``test``, or ``disabled autonomous``: about to be enabled
+- ``match_time``: seconds left in the period; they count down from then on (``time.remaining`` stands still)
+- ``joysticks[0].plugged``: false: unplugged, with no axes, buttons and POVs; true: plugged in again, nothing pressed
+- ``packet``: true: a packet is delivered at once, out of turn, as tests can have it
+- ``nt:/SmartDashboard/x``: an entry of NetworkTables; a SendableChooser's choice is its entry ``selected``
+- anything else: a path in `hal_data`, such as ``joysticks[0].axes[1]`` or ``event.game_specific_message``
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import ntcore
+import wpilib
+
+from ...errors import UsageError
+from ...hal import HalData, LiveDict, format_path, modes, parse_path
+from ...hal.timing import deliver_packet
+from ..clock import to_us
+
+MODE, MATCH_TIME, PACKET, NETWORK = "mode", "match_time", "packet", "nt:"
+
+#: The path of the seconds left: written, they stand still.
+REMAINING = "time.remaining"
+
+#: Rooms of `hal_data` that hold what robots make, by names or numbers that they choose.
+_COMES_WITH_THE_ROBOT = {"CAN", "robot", "custom", "pcm", "ph", "compressor", "pcm_compressor", "ph_compressor", "pdp"}
+
+_PLUGGED = re.compile(r"joysticks\[([0-5])\]\.plugged")
+
+
+def plugged(port: int) -> str:
+    """The target that says whether a joystick is plugged in."""
+    return f"joysticks[{port}].plugged"
+
+
+class Countdown:
+    """The match's time: so many seconds are left at one moment, and less and less from then on."""
+
+    def __init__(self) -> None:
+        self._ends_us: int | None = None
+
+    def start(self, left: float, now_us: int) -> None:
+        self._ends_us = now_us + to_us(left)
+
+    def stop(self) -> None:
+        self._ends_us = None
+
+    def left(self, now_us: int) -> float | None:
+        """The seconds left; None before it was started."""
+        return None if self._ends_us is None else max(0, self._ends_us - now_us) / 1_000_000
+
+
+class Targets:
+    """Writes to one run's targets.
+
+    :param hal_data: the run's inputs and outputs
+    """
+
+    def __init__(self, hal_data: HalData) -> None:
+        self._hal_data = hal_data
+        self._entries: dict[str, ntcore.NetworkTableEntry] = {}
+        self._countdown = Countdown()
+
+    def write(self, target: str, value: Any, now_us: int) -> None:
+        """Write one value.
+
+        :raises PyfrcError: when there is no such target, or it cannot have this value
+        """
+        if target == MODE:
+            modes.set_mode_named(value)
+        elif target == MATCH_TIME:
+            if isinstance(value, bool) or not isinstance(value, int | float):
+                raise UsageError(f"match_time is a number of seconds, not {value!r}")
+            self._countdown.start(value, now_us)
+            modes.set_match_time(value)
+        elif target == PACKET:
+            deliver_packet()
+            wpilib.DriverStation.refreshData()
+        elif target.startswith(NETWORK):
+            self._write_entry(target.removeprefix(NETWORK), value)
+        elif (stick := _PLUGGED.fullmatch(target)) is not None:
+            modes.plug_in(int(stick[1])) if value else modes.unplug(int(stick[1]))
+        else:
+            if target == REMAINING:
+                self._countdown.stop()
+            self._hal_data.write(target, value)
+
+    def check(self, target: str) -> None:
+        """See that there is such a target, or may be when the robot has made its devices.
+
+        :raises PyfrcError: when there never is
+        """
+        if self._is_path(target):
+            root = parse_path(target)[0]
+            if root not in _COMES_WITH_THE_ROBOT:
+                self._hal_data.read(target)
+
+    def check_made(self, target: str) -> None:
+        """See that the robot has made what the target is part of.
+
+        :raises PyfrcError: when it has not
+        """
+        if not self._is_path(target):
+            return
+        place: Any = self._hal_data
+        for depth, segment in enumerate(segments := parse_path(target)):
+            place = place[segment]
+            if isinstance(place, LiveDict) and place.get("initialized") is False:
+                raise UsageError(f"this robot has no {format_path(segments[: depth + 1])}")
+
+    def count_down(self, now_us: int) -> None:
+        """Called at each packet: the match's time goes on."""
+        left = self._countdown.left(now_us)
+        if left is not None:
+            modes.set_match_time(left)
+
+    @staticmethod
+    def _is_path(target: str) -> bool:
+        return (
+            target not in (MODE, MATCH_TIME, PACKET)
+            and not target.startswith(NETWORK)
+            and not _PLUGGED.fullmatch(target)
+        )
+
+    def _write_entry(self, name: str, value: Any) -> None:
+        entry = self._entries.get(name)
+        if entry is None:
+            entry = self._entries[name] = ntcore.NetworkTableInstance.getDefault().getEntry(name)
+        if (
+            isinstance(value, int)
+            and not isinstance(value, bool)
+            and entry.getType() != ntcore.NetworkTableType.kInteger
+        ):
+            value = float(value)  # JSON does not tell 1 from 1.0, and dashboards write doubles
+        if not entry.setValue(value):
+            raise UsageError(f"{name} is {entry.getTopic().getTypeString()}, and cannot be {value!r}")

@@ -1,0 +1,28 @@
+"""Writing files so that nobody ever finds half of one."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+
+
+def write_whole(file: Path, text: Iterable[str]) -> None:
+    """Write `text` to `file`, whose directory is made if need be: beside it first, then in its place."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with NamedTemporaryFile("w", encoding="utf-8", dir=file.parent, prefix=f".{file.name}-", delete=False) as beside:
+        try:
+            beside.writelines(text)
+            beside.close()
+            Path(beside.name).chmod(0o666 & ~_umask())  # temporary files are made for their owner alone
+            Path(beside.name).replace(file)
+        except BaseException:
+            Path(beside.name).unlink(missing_ok=True)
+            raise
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

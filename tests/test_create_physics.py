@@ -1,0 +1,823 @@
+"""`pyfrc create-physics`: what it writes runs, and moves the robot as its driver means it."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import dedent, indent
+
+import pytest
+from conftest import MakeProject, RobotProject
+
+from pyfrc_core.errors import PyfrcError
+from pyfrc_core.physics.create.physics_file import checked
+
+ROBOTS = Path(__file__).parent / "robots"
+SAMPLES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
+
+FILES = ["physics.py", "sim/config.json"]
+
+
+def create(project: RobotProject) -> str:
+    """Run the command, which must succeed; answers what it printed."""
+    result = project.run("create-physics")
+    assert result.code == 0, result.output
+    return result.stdout
+
+
+def run_tests(project: RobotProject, *args: str) -> None:
+    result = project.run("test", *args)
+    assert result.code == 0, result.output
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A robot, and what its driver does to drive it forward and to turn it left: axes by port and index.
+
+    :param init: its robotInit
+    :param teleop: its teleopPeriodic
+    :param distances: the expressions for the ways of its left and right encoder, in metres
+    :param heading: the expression for its gyro's angle in degrees, counter-clockwise
+    """
+
+    init: str
+    teleop: str
+    distances: str = "None"
+    heading: str = "None"
+    forward: str = "{(0, 1): -1.0}"
+    left: str = "{(0, 0): -1.0}"
+    #: Whether the turn to the left comes out as one to the right.
+    wrong_turn: bool = False
+    says: str = ""
+
+    def files(self) -> dict[str, str]:
+        body = indent(dedent(self.init).strip(), " " * 8)
+        head = "import hal\nimport wpilib\nimport wpilib.drive\nfrom wpimath.filter import SlewRateLimiter\n"
+        return {
+            "robot.py": f"{head}\n\nclass MyRobot(wpilib.TimedRobot):\n    def robotInit(self):\n{body}\n\n"
+            f"    def teleopPeriodic(self):\n        {self.teleop}\n",
+            "tests/test_physics.py": _DRIVES.format(variant=self),
+        }
+
+
+_DRIVES = '''
+import math
+
+import pytest
+from wpimath.geometry import Transform2d
+
+
+def drive(control, hal_data, physics_controller, sticks):
+    """Push the sticks for a second, then let go; answers how the robot has moved."""
+    start = physics_controller.get_pose()
+    control.step_timing(seconds=0.5, autonomous=False, enabled=True)
+    assert physics_controller.get_pose() == start
+    for value in (1.0, 0.0):
+        for (port, axis), pushed in sticks.items():
+            hal_data["joysticks"][port]["axes"][axis] = value * pushed
+        control.step_timing(seconds=1.0, autonomous=False, enabled=True)
+    return Transform2d(start, physics_controller.get_pose())
+
+
+def test_forward(control, hal_data, robot, physics_controller):
+    with control.run_robot():
+        moved = drive(control, hal_data, physics_controller, {variant.forward})
+        assert moved.X() > 1.0
+        assert moved.Y() == pytest.approx(0.0, abs=1e-6)
+        assert moved.rotation().radians() == pytest.approx(0.0, abs=1e-6)
+        distances = {variant.distances}
+        assert distances is None or distances == pytest.approx((moved.X(), moved.X()), abs=0.01)
+
+
+def test_turning_left(control, hal_data, robot, physics_controller):
+    with control.run_robot():
+        moved = drive(control, hal_data, physics_controller, {variant.left})
+        distances, heading, turned = {variant.distances}, {variant.heading}, moved.rotation().radians()
+        if distances is not None:
+            left, right = distances
+            assert (right - left > 0.1) != {variant.wrong_turn}
+            # The robot turns by this much, the wheels being 22 inches apart.
+            assert math.remainder((right - left) / 0.5588 - turned, math.tau) == pytest.approx(0.0, abs=0.05)
+        if heading is not None:
+            assert (heading > 10.0) != {variant.wrong_turn}
+            assert math.remainder(heading - math.degrees(turned), 360.0) == pytest.approx(0.0, abs=0.1)
+'''
+
+VARIANTS = {
+    "setInverted, arcade, an analog gyro": Variant(
+        """
+        self.left_motor, self.right_motor = wpilib.Talon(0), wpilib.Talon(1)
+        self.right_motor.setInverted(True)
+        self.drive = wpilib.drive.DifferentialDrive(self.left_motor, self.right_motor)
+        self.stick = wpilib.Joystick(0)
+        self.left_encoder, self.right_encoder = wpilib.Encoder(0, 1), wpilib.Encoder(4, 5, True)
+        self.left_encoder.setDistancePerPulse(0.001)
+        self.right_encoder.setDistancePerPulse(-0.001)
+        self.gyro = wpilib.AnalogGyro(1)
+        self.gyro.setDeadband(0)
+        """,
+        "self.drive.arcadeDrive(-self.stick.getY(), -self.stick.getX())",
+        "(robot.left_encoder.getDistance(), robot.right_encoder.getDistance())",
+        "-robot.gyro.getAngle()",
+        says="right: PWM 1 (right_motor), forward at -1",
+    ),
+    "no names, right side first, not inverted by the code": Variant(
+        """
+        self.m1, self.m2 = wpilib.Talon(5), wpilib.Talon(6)
+        self.m3, self.m4 = wpilib.Talon(7), wpilib.Talon(8)
+        for motor, follower in ((self.m1, self.m2), (self.m3, self.m4)):
+            motor.addFollower(follower)
+        self.drive = wpilib.drive.DifferentialDrive(self.m3, self.m1)
+        self.pad = wpilib.XboxController(0)
+        self.gyro = wpilib.ADXRS450_Gyro()
+        """,
+        "self.drive.arcadeDrive(-self.pad.getLeftY(), -self.pad.getRightX())",
+        heading="-robot.gyro.getAngle()",
+        left="{(0, 4): -1.0}",
+        says="left: PWM 7 (m3), PWM 8 (m4)\n",
+    ),
+    "inverted by what DifferentialDrive is given, curvature": Variant(
+        """
+        left, self.right = wpilib.Talon(0), wpilib.Talon(1)
+        self.motors = [left]
+        self.drive = wpilib.drive.DifferentialDrive(lambda value: left.set(-value), self.right.set)
+        self.stick = wpilib.Joystick(2)
+        self.e1, self.e2 = wpilib.Encoder(0, 1), wpilib.Encoder(2, 3)
+        self.gyro = wpilib.ADIS16448_IMU()
+        """,
+        "self.drive.curvatureDrive(-self.stick.getY(), -self.stick.getX(), False)",
+        # Taken in counts: 360 are a turn of a wheel of 6 inches.
+        "tuple(encoder.get() / 360 * math.pi * 0.1524 for encoder in (robot.e1, robot.e2))",
+        "robot.gyro.getAngle()",
+        forward="{(2, 1): -1.0}",
+        left="{(2, 1): -1.0, (2, 0): -1.0}",
+        says="left: PWM 0 (motors[0]), forward at -1",
+    ),
+    "tank with a gamepad, slowly": Variant(
+        """
+        self.left = wpilib.MotorControllerGroup(wpilib.Talon(2), wpilib.Talon(3))
+        self.right = wpilib.MotorControllerGroup(wpilib.Talon(0), wpilib.Talon(1))
+        self.left.setInverted(True)
+        self.pad = wpilib.XboxController(0)
+        self.limits = SlewRateLimiter(2.0), SlewRateLimiter(2.0)
+        """,
+        "self.left.set(self.limits[0].calculate(-self.pad.getLeftY()));"
+        " self.right.set(self.limits[1].calculate(-self.pad.getRightY()))",
+        forward="{(0, 1): -1.0, (0, 5): -1.0}",
+        left="{(0, 1): 1.0, (0, 5): -1.0}",
+        says="left: PWM 2, PWM 3, forward at -1",
+    ),
+    "a turn with the wrong sign": Variant(
+        """
+        self.left_motor, self.right_motor = wpilib.Talon(0), wpilib.Talon(1)
+        self.right_motor.setInverted(True)
+        self.drive = wpilib.drive.DifferentialDrive(self.left_motor, self.right_motor)
+        self.stick = wpilib.Joystick(0)
+        self.left_encoder, self.right_encoder = wpilib.Encoder(0, 1), wpilib.Encoder(2, 3)
+        for encoder in (self.left_encoder, self.right_encoder):
+            encoder.setDistancePerPulse(0.001)
+        """,
+        "self.drive.arcadeDrive(-self.stick.getY(), self.stick.getX())",
+        "(robot.left_encoder.getDistance(), robot.right_encoder.getDistance())",
+        wrong_turn=True,
+        says="note: By their names, the motors turn the robot right when the stick is pushed to the left",
+    ),
+    "motors and a gyro on the CAN bus": Variant(
+        """
+        self.devices = [hal.SimDevice("SPARK MAX", number) for number in (11, 12)]
+        output = hal.SimDevice.Direction.kOutput
+        self.temperatures = [device.createDouble("Temperature", output, 25.0) for device in self.devices]
+        values = [device.createDouble("Command", output, 0.0) for device in self.devices]
+        self.drive = wpilib.drive.DifferentialDrive(values[0].set, lambda value: values[1].set(-value))
+        self.stick = wpilib.Joystick(0)
+        self.navx = hal.SimDevice("navX-Sensor", 4)
+        self.yaw = self.navx.createDouble("Yaw", hal.SimDevice.Direction.kInput, 0.0)
+        """,
+        "self.drive.arcadeDrive(-self.stick.getY(), -self.stick.getX())",
+        heading="-robot.yaw.get() % 360",
+        says="left: SPARK MAX[11]\n  right: SPARK MAX[12], forward at -1",
+    ),
+}
+
+
+@pytest.mark.parametrize("variant", VARIANTS.values(), ids=VARIANTS.keys())
+def test_the_robot_moves_as_its_driver_means_it(make_project: MakeProject, variant: Variant) -> None:
+    project = make_project(variant.files())
+    assert variant.says in create(project)
+    run_tests(project)
+
+
+MECANUM = """
+import wpilib
+import wpilib.drive
+
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        self.{0}, self.{1}, self.{2}, self.{3} = motors = [wpilib.Talon(channel) for channel in (3, 0, 2, 1)]
+        motors[2].setInverted(True)
+        motors[3].setInverted(True)
+        self.drive = wpilib.drive.MecanumDrive(*motors)
+        self.stick = wpilib.Joystick(0)
+        self.encoder_fl, self.encoder_rr = wpilib.Encoder(0, 1), wpilib.Encoder(2, 3)
+        for encoder in (self.encoder_fl, self.encoder_rr):
+            encoder.setDistancePerPulse(0.001)
+
+    def teleopPeriodic(self):
+        self.drive.driveCartesian(-self.stick.getY(), self.stick.getRawAxis({sideways}), self.stick.getRawAxis({turn}))
+"""
+
+MECANUM_TEST = """
+import pytest
+from wpimath.geometry import Transform2d
+
+
+@pytest.mark.parametrize("axis, way", [(1, "X"), ({sideways}, "Y"), ({turn}, "turn")])
+def test_ways(control, hal_data, robot, physics_controller, axis, way):
+    with control.run_robot():
+        start = physics_controller.get_pose()
+        hal_data["joysticks"][0]["axes"][axis] = -1.0
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        moved = Transform2d(start, physics_controller.get_pose())
+        ways = dict(X=moved.X(), Y=moved.Y(), turn=moved.rotation().radians())
+        assert ways.pop(way) > 0.3
+        assert ways == pytest.approx(dict.fromkeys(ways, 0.0), abs=1e-6)
+        front_left, rear_right = robot.encoder_fl.getDistance(), robot.encoder_rr.getDistance()
+        assert (front_left > 0.1, rear_right > 0.1) == dict(X=(True, True), Y=(False, False), turn=(False, True))[way]
+"""
+
+
+@pytest.mark.parametrize(
+    ("names", "axes"),
+    [
+        (("front_left", "rear_left", "front_right", "rear_right"), {"sideways": 0, "turn": 4}),
+        (("left_1", "left_2", "right_1", "right_2"), {"sideways": 4, "turn": 0}),
+        (("a", "b", "c", "d"), {"sideways": 0, "turn": 2}),
+    ],
+    ids=["named", "sides tell which axis turns", "without names the x axis moves sideways"],
+)
+def test_mecanum(make_project: MakeProject, names: tuple[str, ...], axes: dict[str, int]) -> None:
+    project = make_project(
+        {"robot.py": MECANUM.format(*names, **axes), "tests/test_ways.py": MECANUM_TEST.format(**axes)}
+    )
+    told = create(project)
+    assert f"front left: PWM 3 ({names[0]})\n  rear left: PWM 0 ({names[1]})" in told
+    assert f"front right: PWM 2 ({names[2]}), forward at -1" in told
+    run_tests(project)
+
+
+def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
+    """Its own tests go on passing, and it drives; autonomous resets the encoders, and they count on from there."""
+    project = make_project({})
+    assert project.run("init").code == 0
+    told = create(project)
+    assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in told
+    project.write(
+        {
+            "tests/test_physics.py": """
+            import pytest
+
+            def test_autonomous(control, robot, physics_controller):
+                with control.run_robot():
+                    for _ in range(2):
+                        start = physics_controller.get_pose()
+                        control.step_timing(seconds=5, autonomous=True, enabled=True)
+                        control.step_timing(seconds=1, autonomous=True, enabled=False)
+                        moved = physics_controller.get_pose().translation().distance(start.translation())
+                        assert moved > 1
+                        assert robot.left_encoder.getDistance() == pytest.approx(moved, abs=0.01)
+                        assert robot.right_encoder.getDistance() == pytest.approx(moved, abs=0.01)
+            """
+        }
+    )
+    (project.path / "tests/test_drive.py").unlink()  # one of its tests turns an encoder itself
+    run_tests(project, "--", "-k", "not practice")
+    config = json.loads((project.path / "sim/config.json").read_text())
+    assert config["pyfrc"]["pwm"]["3"] == "right_follower"
+    assert config["pyfrc"]["dio"]["2"] == "right_encoder A"
+    assert config["$schema"] == "config.schema.json"
+    assert (project.path / "sim/config.schema.json").read_text().strip() == project.run(
+        "config", "schema"
+    ).stdout.strip()
+    assert project.run("config", "check").stdout == "sim/config.json: no mistakes\n"
+
+
+@pytest.mark.parametrize("robot", SAMPLES)
+def test_every_sample_robot_runs_with_it(make_project: MakeProject, robot: str) -> None:
+    project = make_project({})
+    shutil.copytree(ROBOTS / robot, project.path, dirs_exist_ok=True)
+    for name in ("tests", "sim", "since_2020", "physics.py"):
+        path = project.path / name
+        shutil.rmtree(path, ignore_errors=True)
+        path.unlink(missing_ok=True)
+    told = create(project)
+    assert "wrote physics.py\nwrote sim/config.json" in told
+    run_tests(project, "--builtin", "--", "-k", "operator")
+
+
+def test_a_lift_moves_its_encoder(make_project: MakeProject) -> None:
+    """No drivetrain here; and reset() in the robot's code counts."""
+    project = make_project(
+        {
+            "robot.py": """
+            import wpilib
+
+            class Lift:
+                def __init__(self):
+                    self.motor = wpilib.PWMSparkMax(4)
+                    self.motor.setInverted(True)
+                    self.encoder = wpilib.Encoder(8, 9)
+                    self.encoder.setDistancePerPulse(0.01)
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.lift = Lift()
+                    self.spare = wpilib.PWMSparkMax(5)
+
+                def teleopInit(self):
+                    self.lift.encoder.reset()
+
+                def teleopPeriodic(self):
+                    self.lift.motor.set(0.5)
+
+                def autonomousPeriodic(self):
+                    self.lift.motor.set(1.0)
+            """,
+            "tests/test_lift.py": """
+            import pytest
+
+            def test_lift(control, robot):
+                with control.run_robot():
+                    control.step_timing(seconds=2, autonomous=True, enabled=True)
+                    assert robot.lift.encoder.getDistance() == pytest.approx(2.0, abs=0.05)
+                    assert robot.lift.encoder.getRate() == pytest.approx(1.0)
+                    control.step_timing(seconds=2, autonomous=False, enabled=True)
+                    assert robot.lift.encoder.getDistance() == pytest.approx(1.0, abs=0.05)
+            """,
+        }
+    )
+    told = create(project)
+    assert "no drivetrain recognised" in told
+    assert "four_motor_swerve_drivetrain" in told
+    assert "PWM 4 (lift.motor) with lift.encoder (DIO 8, 9)" in told
+    assert "Left as they are, as nothing is known of what they do: PWM 5 (spare)." in (
+        project.path / "physics.py"
+    ).read_text().replace("\n# ", " ")
+    run_tests(project)
+
+
+def test_names_and_inversion_tell_where_no_stick_does(make_project: MakeProject) -> None:
+    """A climber has sides too, a conveyor runs by itself, and a loop that sleeps takes its time: none of it matters."""
+    project = make_project(
+        {
+            "robot.py": """
+            import time
+
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.climber_left, self.climber_right = wpilib.Talon(0), wpilib.Talon(1)
+                    self.motors = {"right": wpilib.Talon(3), "left": wpilib.Talon(2)}
+                    self.motors["left"].setInverted(True)
+                    self.conveyor = wpilib.Talon(4)
+                    self.lift_encoder = wpilib.Encoder(0, 1)
+
+                def robotPeriodic(self):
+                    time.sleep(1)
+                    self.conveyor.set((self.conveyor.get() + 0.3) % 1)
+
+                def autonomousPeriodic(self):
+                    for motor in self.motors.values():
+                        motor.set(0.5)
+            """,
+            "tests/test_forward.py": """
+            from wpimath.geometry import Transform2d
+
+            def test_forward(control, robot, physics_controller):
+                start = physics_controller.get_pose()
+                with control.run_robot():
+                    control.step_timing(seconds=3, autonomous=True, enabled=True)
+                assert Transform2d(start, physics_controller.get_pose()).X() > 1.0
+            """,
+        }
+    )
+    told = create(project)
+    assert "left: PWM 2 (motors[left]), forward at -1\n  right: PWM 3 (motors[right])\nnote: No stick moved" in told
+    assert "encoder: lift" not in told
+    run_tests(project)
+
+
+def test_what_is_on_the_can_bus_is_named_by_its_number(make_project: MakeProject) -> None:
+    """Where the vendor's object tells the number. Motors whose output cannot be seen are told of."""
+    project = make_project(
+        {
+            "vendor.py": """
+            import hal
+
+            class SparkMax:
+                def __init__(self, number, value="Applied Output"):
+                    self.device = hal.SimDevice("SPARK MAX", number)
+                    self.output = self.device.createDouble(value, hal.SimDevice.Direction.kBidir, 0.0)
+                    self.number = number
+
+                def getDeviceId(self):
+                    return self.number
+            """,
+            "robot.py": """
+            import wpilib
+            from vendor import SparkMax
+
+            class Chassis:
+                def __init__(self):
+                    self.right, self.left = SparkMax(1), SparkMax(2)
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.chassis = Chassis()
+                    self.arm = SparkMax(3, "Output Current")
+            """,
+        }
+    )
+    assert "left: SPARK MAX[2] (chassis.left)\n  right: SPARK MAX[1] (chassis.right)" in create(project)
+    config = json.loads((project.path / "sim/config.json").read_text())
+    assert config["pyfrc"]["CAN"] == {"1": "chassis.right", "2": "chassis.left", "3": "arm"}
+    assert "what they do: SPARK MAX[3] (arm)." in (project.path / "physics.py").read_text().replace("\n# ", " ")
+
+
+def test_swerve_is_not_taken_for_a_tank(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.left_drive, self.right_drive = wpilib.Talon(0), wpilib.Talon(1)
+                    self.left_steering, self.right_steering = wpilib.Talon(2), wpilib.Talon(3)
+            """
+        }
+    )
+    assert create(project).startswith("no drivetrain recognised\n")
+
+
+EMPTY = {
+    "robot.py": """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+    """
+}
+
+
+def test_a_robot_with_nothing_at_all(make_project: MakeProject) -> None:
+    project = make_project(EMPTY)
+    assert "no drivetrain recognised" in create(project)
+    run_tests(project, "--builtin", "--", "-k", "operator")
+
+
+def test_existing_files_are_left_alone(make_project: MakeProject) -> None:
+    project = make_project(EMPTY | {"physics.py": "# mine\n"})
+    assert create(project).startswith(
+        "no drivetrain recognised\nleft alone: physics.py (exists)\nwrote sim/config.json"
+    )
+    assert (project.path / "physics.py").read_text() == "# mine\n"
+    # Both there: nothing is run, not even the robot.
+    project.write({"robot.py": "raise RuntimeError\n"})
+    assert create(project) == "left alone: physics.py (exists)\nleft alone: sim/config.json (exists)\n"
+    assert sorted(path.name for path in project.path.iterdir()) == ["physics.py", "robot.py", "sim"]
+    assert sorted(path.name for path in (project.path / "sim").iterdir()) == ["config.json", "config.schema.json"]
+
+
+@pytest.mark.parametrize(
+    ("physics", "config", "mistakes"),
+    [
+        (
+            "x = 1\n\ndef f(:\n",
+            '{"pyfrc": {"robot": {"w": -1}}}',
+            ["physics.py:3: SyntaxError: ", "sim/config.json:1: "],
+        ),
+        ("x = '\0'\n", "{", ["null bytes", "sim/config.json:1:"]),
+    ],
+)
+def test_existing_files_that_are_not_valid(
+    make_project: MakeProject, physics: str, config: str, mistakes: list[str]
+) -> None:
+    """They are left alone too, but not without a word."""
+    project = make_project(EMPTY | {"sim/config.json": config})
+    (project.path / "physics.py").write_text(physics)
+    result = project.run("create-physics")
+    assert result.code == 0
+    assert result.stdout == "left alone: physics.py (exists)\nleft alone: sim/config.json (exists)\n"
+    warnings = [line for line in result.stderr.splitlines() if line.startswith("warning: what is there is not valid: ")]
+    assert len(warnings) == 2
+    assert all(mistake in warning for mistake, warning in zip(mistakes, warnings, strict=True))
+
+
+IN_THE_WAY = {
+    "sim, a file": ("sim", "sim is a file, where the directory of sim/config.json has to be"),
+    "capitals": ("Physics.py", "there is a Physics.py: rename it to physics.py"),
+    "a package": ("physics/__init__.py", "there is a package physics/, but pyfrc runs a file physics.py"),
+}
+
+
+@pytest.mark.parametrize(("file", "message"), IN_THE_WAY.values(), ids=IN_THE_WAY.keys())
+def test_something_else_in_the_place_of_a_file(make_project: MakeProject, file: str, message: str) -> None:
+    project = make_project(EMPTY | {file: "# mine\n"})
+    result = project.run("create-physics")
+    assert (result.code, result.stdout) == (2, "")
+    assert result.first_error == message
+    assert not any((project.path / name).is_file() for name in FILES)
+
+
+def test_what_was_written_is_told_when_the_next_file_cannot_be(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+            from pathlib import Path
+
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    Path(__file__).with_name("sim").touch()
+            """
+        }
+    )
+    result = project.run("create-physics")
+    assert (result.code, result.stdout) == (1, "")
+    assert result.first_error.startswith("config.json could not be written: ")
+    assert "\n  Written before that, and complete: physics.py.\n" in result.stderr
+    assert (project.path / "physics.py").is_file()
+
+
+@pytest.mark.parametrize("options", [["--main", "src/robot.py"], []], ids=["--main", "pyproject.toml"])
+def test_files_are_named_from_the_current_directory(make_project: MakeProject, options: list[str]) -> None:
+    project = make_project({"src/robot.py": EMPTY["robot.py"]})
+    below = project.path / "src"
+    if not options:
+        project.write({"pyproject.toml": '[tool.pyfrc]\nmain = "src/robot.py"\n'})
+    told = project.run("create-physics", *options).stdout
+    assert "\nwrote src/physics.py\nwrote src/sim/config.json\n" in told
+    assert "at the top of src/physics.py to" in told
+    told = project.run("create-physics", *(options and ["--main", "robot.py"]), cwd=below).stdout
+    assert "left alone: physics.py (exists)\n" in told
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
+def test_without_standard_output_and_much_printed(make_project: MakeProject) -> None:
+    """What the robot prints is kept nowhere: not even where files may be no larger than this."""
+    project = make_project(
+        {
+            "robot.py": """
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    print("x" * 2_000_000)
+            """
+        }
+    )
+    command = 'ulimit -f 1000; exec "$0" -m pyfrc create-physics >&-'
+    done = subprocess.run(["sh", "-c", command, sys.executable], cwd=project.path, stderr=subprocess.PIPE, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert all((project.path / file).is_file() for file in FILES)
+
+
+#: Each with what is said behind its place.
+FAILING = {
+    "in robotInit": ("self.motor = wpilib.Talon(1 // 0)", "ZeroDivisionError"),
+    "by leaving": ("raise SystemExit('gone')", "SystemExit: gone"),
+    "by hanging": ("while True: pass", "the robot code hangs here"),
+    "by hanging and not letting go": (
+        "def ever():\n            while True: pass\n"
+        "        while True:\n            try: ever()\n            except BaseException: pass",
+        "the robot code hangs here",
+    ),
+    "by sleeping": ("time.sleep(1e9)", "the robot is still here after 10000 s of robot time, and cannot be driven."),
+    "by ending the process": ("os._exit(0)", "the robot's process ended itself with exit code 0"),
+    "in C": ("ctypes.string_at(0)", "the robot's process was ended by signal 11 (SIGSEGV, segmentation fault)"),
+}
+
+
+@pytest.mark.parametrize(("code", "message"), FAILING.values(), ids=FAILING.keys())
+def test_a_robot_that_fails_is_told_by_its_line(make_project: MakeProject, code: str, message: str) -> None:
+    if "string_at" in code and sys.platform == "win32":
+        pytest.skip("there, a fault in C is an exception of Python's")
+    project = make_project({"pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.25\n"})
+    head = "import ctypes, os, time\nimport wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n"
+    (project.path / "robot.py").write_text(f"{head}    def robotInit(self):\n        {code}\n")
+    result = project.run("create-physics")
+    assert (result.code, result.stdout) == (1, "")
+    assert result.first_error.startswith(f"robot.py:{8 if 'ever' in code else 7}: {message}")
+    assert "Traceback" not in result.output
+    assert not any((project.path / file).exists() for file in ("physics.py", "sim"))
+    assert not list(project.temporary.iterdir())
+
+
+def test_a_robot_that_ends_the_process_when_driven(make_project: MakeProject) -> None:
+    project = make_project(EMPTY)
+    project.write(
+        {"robot.py": EMPTY["robot.py"].replace("pass", "teleopPeriodic = lambda self: __import__('os')._exit(3)")}
+    )
+    result = project.run("create-physics")
+    assert (result.code, result.stdout) == (1, "")
+    assert result.first_error.startswith(
+        f"{project.place('robot.py', '_exit')}: the robot's process ended itself with exit code 3, while pyfrc "
+    )
+    assert not any((project.path / file).exists() for file in ("physics.py", "sim"))
+
+
+def test_verbose_shows_where_the_robot_failed(make_project: MakeProject) -> None:
+    project = make_project(EMPTY)
+    project.write({"robot.py": EMPTY["robot.py"].replace("pass", "robotInit = lambda self: 1 // 0")})
+    result = project.run("-v", "create-physics")
+    assert result.code == 1
+    assert "in <lambda>\n" in result.stderr
+    assert result.stderr.splitlines()[-1].endswith(
+        f"{project.place('robot.py', '//')}: ZeroDivisionError: integer division or modulo by zero"
+    )
+
+
+def test_a_robot_that_fails_when_driven_still_gets_its_files(make_project: MakeProject) -> None:
+    """What its names tell is enough then."""
+    project = make_project(
+        {
+            "robot.py": """
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.left_motor, self.right_motor = wpilib.Talon(0), wpilib.Talon(1)
+                    self.right_motor.setInverted(True)
+
+                def teleopPeriodic(self):
+                    self.left_motor.put(1)
+            """
+        }
+    )
+    result = project.run("create-physics")
+    assert result.code == 0
+    assert "right: PWM 1 (right_motor), forward at -1" in result.stdout
+    place = project.place("robot.py", "put(1)")
+    assert result.stderr.startswith(f"warning: the sticks could not be tried: {place}: AttributeError")
+    assert place in (project.path / "physics.py").read_text()
+
+
+def test_any_names_make_a_valid_file(make_project: MakeProject) -> None:
+    """The keys of dicts may be anything at all, and two gyros may have names that come out the same."""
+    project = make_project(
+        {
+            "robot.py": """
+            import hal
+            import wpilib
+
+            ARMS = ["arm²", "ß", "ss", "½", "x\\0y", "a\\nb = (", "class", "\\ud800", "größe", "1st", '"']
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.talons = {name: wpilib.Talon(i) for i, name in enumerate(ARMS)}
+                    # These become mechanisms, by these words.
+                    self.lifts = {f"lift {name}": wpilib.Talon(i + 12) for i, name in enumerate(ARMS[:5])}
+                    self.lift_encoders = {name: wpilib.Encoder(2 * i, 2 * i + 1) for i, name in enumerate(ARMS[:5])}
+                    self.left, self.right = wpilib.Talon(18), wpilib.Talon(19)
+                    self.g, self.g_angle = Gyro(1), wpilib.AnalogGyro(0)
+                    self.odd = hal.SimDevice('odd\\n"', 3)
+                    self.output = self.odd.createDouble("Output", hal.SimDevice.Direction.kOutput, 0.0)
+
+            class Gyro:
+                def __init__(self, number):
+                    self.device = hal.SimDevice("navX-Sensor", number)
+                    self.yaw = self.device.createDouble("Yaw", hal.SimDevice.Direction.kInput, 0.0)
+
+                def getDeviceId(self):
+                    return 1
+            """
+        }
+    )
+    create(project)
+    text = (project.path / "physics.py").read_text(encoding="utf-8")
+    made = re.findall(r"^        self\.(\w+) = ", text.partition("class PhysicsEngine")[2], re.MULTILINE)
+    assert len(made) == len(set(made))
+    assert {"g_angle", "g_angle_2"} < set(made)
+    numbers = re.findall(r"^(\w+_SPEED) = ", text, re.MULTILINE)
+    assert len(numbers) == len(set(numbers)) == 5
+    run_tests(project, "--builtin", "--", "-k", "operator")
+
+
+def test_a_file_that_is_not_valid_is_never_written() -> None:
+    with pytest.raises(PyfrcError, match=r"(?s)no valid Python.*\n    def = 1\n.*please report it"):
+        checked("x = 1\ndef = 1\n")
+
+
+BOTH_DRIVE = """
+import wpilib
+import wpilib.drive
+
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        self.fl, self.rl, self.fr, self.rr, self.l, self.r = motors = [wpilib.Talon(i) for i in range(6)]
+        for motor in (self.fr, self.rr, self.r):
+            motor.setInverted(True)
+        self.mecanum = wpilib.drive.MecanumDrive(*motors[:4])
+        self.tank = wpilib.drive.DifferentialDrive(self.l, self.r)
+        self.stick = wpilib.Joystick(0)
+
+    def teleopPeriodic(self):
+        self.mecanum.driveCartesian(-self.stick.getY(), self.stick.getX(), self.stick.getZ())
+        self.tank.arcadeDrive(-self.stick.getY(), -self.stick.getX())
+"""
+
+
+def test_names_that_partly_contradict_the_sticks(make_project: MakeProject) -> None:
+    told = create(make_project({"robot.py": BOTH_DRIVE}))
+    assert "left: PWM 0 (fl), PWM 1 (rl), PWM 4 (l)\n  right: PWM 2 (fr), PWM 3 (rr), PWM 5 (r), forward at -1" in told
+    assert "called after, unlike the rest: PWM 1 (rl), PWM 3 (rr)." in told
+    assert "note: Which motor is on which side was told by their names.\n" in told
+
+
+def test_names_that_contradict_the_sticks_and_do_not_help(make_project: MakeProject) -> None:
+    """Three on the left and one on the right make no drivetrain."""
+    names = "self.left_1, self.left_2, self.left_3, self.right_1, self.a, self.b"
+    told = create(
+        make_project(
+            {
+                "robot.py": re.sub("self.fl, self.rl.*self.r =", f"{names} =", BOTH_DRIVE)
+                .replace("(self.fr, self.rr, self.r)", "(motors[2], motors[3], motors[5])")
+                .replace("self.l, self.r)", "*motors[4:])")
+            }
+        )
+    )
+    assert told.startswith("no drivetrain recognised\n")
+    assert "unlike the rest: " in told
+
+
+def test_mecanum_with_followers(make_project: MakeProject) -> None:
+    axes = {"sideways": 0, "turn": 2}
+    robot = MECANUM.format("fl", "rl", "fr", "rr", **axes).replace(
+        "        self.drive =",
+        """        self.f = [wpilib.Talon(channel) for channel in (13, 10, 12, 11)]
+        for motor, follower in zip(motors, self.f):
+            motor.addFollower(follower)
+        self.drive =""",
+    )
+    project = make_project({"robot.py": robot, "tests/test_ways.py": MECANUM_TEST.format(**axes)})
+    told = create(project)
+    assert "mecanum drive\n  front left: PWM 3 (fl), PWM 13 (f[0])\n  rear left: PWM 0 (rl), PWM 10 (f[1])\n" in told
+    run_tests(project)
+
+
+SWERVE = {
+    "lists": """
+        self.drive_motors = [wpilib.Talon(i) for i in range(4)]
+        self.steer_motors = [wpilib.Talon(i) for i in range(4, 8)]
+        self.steer_encoders = [wpilib.Encoder(2 * i, 2 * i + 1) for i in range(4)]
+    """,
+    "modules": """
+        self.modules = [Module(i) for i in range(4)]
+        self.arm_pivot = wpilib.Talon(9)
+    """,
+}
+
+
+@pytest.mark.parametrize("init", SWERVE.values(), ids=SWERVE.keys())
+def test_swerve_is_recognised_and_left_to_the_team(make_project: MakeProject, init: str) -> None:
+    module = """
+class Module:
+    def __init__(self, i):
+        self.drive, self.turn = wpilib.Talon(i), wpilib.Talon(i + 4)
+        self.turn_encoder = wpilib.Encoder(2 * i, 2 * i + 1)
+"""
+    head = "class MyRobot(wpilib.TimedRobot):\n    def robotInit(self):"
+    project = make_project({"robot.py": f"import wpilib\n\n{module}\n\n{head}{init}"})
+    told = create(project)
+    assert told.startswith("swerve drive, which is left to you\n  drive: PWM 0 (")
+    assert "\n  steering: PWM 4 (" in told
+    assert "drivetrains.four_motor_swerve_drivetrain()" in told
+    assert "docs/physics.md" in told
+    assert "  left" not in told
+
+
+def test_a_single_encoder_of_the_drivetrain(make_project: MakeProject) -> None:
+    told = create(
+        make_project(
+            {
+                "robot.py": """
+                import wpilib
+
+                class MyRobot(wpilib.TimedRobot):
+                    def robotInit(self):
+                        self.left, self.right = wpilib.Talon(0), wpilib.Talon(1)
+                        self.encoder = wpilib.Encoder(0, 1)
+                """
+            }
+        )
+    )
+    assert "note: The encoder was taken for the left side's.\n" in told

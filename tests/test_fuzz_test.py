@@ -1,0 +1,365 @@
+"""The ready-made fuzz test: what it mashes, that it repeats itself, and what it leaves behind when a robot fails."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import random
+import re
+from pathlib import Path
+from typing import get_args
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pyfrc_core.fuzz.values import SPANS, Kind, can_be, draw, nearest
+from pyfrc_core.runtime.scripts.script import load_script
+
+ROBOTS = Path(__file__).parent / "robots"
+
+#: A robot with one of everything, which says at its end what it has seen.
+EVERYTHING = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            ctre = wpilib.PneumaticsModuleType.CTREPCM
+            self.pad = wpilib.XboxController(0)
+            self.switch = wpilib.DigitalInput(0)
+            self.lamp = wpilib.DigitalOutput(1)
+            self.encoder = wpilib.Encoder(2, 3)
+            self.absolute = wpilib.DutyCycleEncoder(4)
+            self.potentiometer = wpilib.AnalogPotentiometer(2)
+            self.analog_gyro = wpilib.AnalogGyro(0)
+            self.gyro = wpilib.ADXRS450_Gyro()
+            self.compressor = wpilib.Compressor(0, ctre)
+            self.distribution = wpilib.PowerDistribution()
+            self.chooser = wpilib.SendableChooser()
+            self.chooser.setDefaultOption("Left", 1)
+            self.chooser.addOption("Right", 2)
+            wpilib.SmartDashboard.putData("Auto", self.chooser)
+            wpilib.SmartDashboard.putNumber("Gain", 0.5)
+    """
+
+#: A test of the user's that mashes matches of 20 s and writes down what was written, for each seed.
+MASH = """
+    import json, random
+    from pathlib import Path
+    import pytest
+    from pyfrc_core.fuzz.gamepads import find_gamepads
+    from pyfrc_core.fuzz.inputs import find_controls, find_sensors
+    from pyfrc_core.fuzz.masher import MatchMasher
+    from pyfrc_core.fuzz.values import can_be
+    from pyfrc_core.runtime.scripts.script import InputScript, Step
+    from pyfrc_core.runtime.scripts.targets import Targets
+
+    @pytest.mark.parametrize("seed", range(SEEDS))
+    def test_mash(seed, control, fake_time, hal_data, robot):
+        run = fake_time.run
+        masher = MatchMasher(
+            random.Random(seed), run, seconds=20, physics_inputs=frozenset(PHYSICS), game_messages=("LRL", "RLR")
+        )
+        targets, written, steps = Targets(hal_data), [], []
+
+        def on_step(now):
+            now_us = run.clock.now_us
+            writes = masher.writes(now_us)
+            steps.append(Step(now_us, writes))
+            for target, value in writes.items():
+                written.append((now_us, target, value))
+                targets.write(target, value, now_us)
+            targets.count_down(now_us)
+            return not masher.over(now_us)
+
+        on_step(0.0)
+        control.run_test(on_step)
+        Path(f"written-{seed}.json").write_text(json.dumps(written))
+        inputs = [*find_controls(hal_data, find_gamepads(robot)), *find_sensors(hal_data)]
+        kinds = {each.target: each for each in inputs}
+        outside = [
+            (target, value)
+            for _, target, value in written
+            if target in kinds and not can_be(kinds[target].kind, value, kinds[target].options)
+        ]
+        assert not outside
+        InputScript(tuple(steps), run.clock.now_us).save(Path(f"script-{seed}.jsonl"))
+    """
+
+Written = list[tuple[int, str, object]]
+
+
+def mash(make_project, seeds: int, physics: tuple[str, ...] = (), robot: str = EVERYTHING, **env: str) -> list[Written]:
+    """What the masher wrote in matches from the seeds 0, 1, ..."""
+    test = MASH.replace("SEEDS", str(seeds)).replace("PHYSICS", repr(physics))
+    project = make_project({"robot.py": robot, "tests/test_mash.py": test})
+    result = project.run("test", env=env)
+    assert result.code == 0, result.output
+    files = [project.path / f"written-{seed}.json" for seed in range(seeds)]
+    return [json.loads(file.read_text()) for file in files]
+
+
+@pytest.fixture(scope="module")
+def matches(make_shared_project) -> list[Written]:
+    """What was written in twelve matches of a robot with one of everything."""
+    return mash(make_shared_project, 12)
+
+
+# -- what is mashed --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "target",
+    [
+        *(f"joysticks[0].axes[{axis}]" for axis in range(6)),
+        *(f"joysticks[0].buttons[{button}]" for button in range(1, 11)),
+        "joysticks[0].povs[0]",
+        "joysticks[0].plugged",
+        "dio[0].value",
+        "encoder[0].count",
+        "encoder[0].rate",
+        'CAN["DutyCycle:DutyCycleEncoder[4]"].Position',
+        "analog_in[2].voltage",
+        "analog_gyro[0].angle",
+        'CAN["Gyro:ADXRS450[0]"].angle_x',
+        "pcm_compressor[0].pressure_switch",
+        "power.vin_voltage",
+        "pdp[0].voltage",
+        "mode",
+        "match_time",
+        "alliance_station",
+        "control.dsAttached",
+        "event.game_specific_message",
+        "nt:/SmartDashboard/Auto/selected",
+        "nt:/SmartDashboard/Gain",
+    ],
+)
+def test_everything_that_the_robot_has_is_mashed(target: str, matches: list[Written]) -> None:
+    assert any(target == written for match in matches for _, written, _ in match)
+
+
+@pytest.mark.parametrize("target", ["dio[1].value", "dio[2].value", "dio[5].value", "analog_in[0].voltage"])
+def test_what_nobody_reads_is_not_mashed(target: str, matches: list[Written]) -> None:
+    """An output, an encoder's wire, a channel that the robot has not made, a gyro's wire."""
+    assert all(target != written for match in matches for _, written, _ in match)
+
+
+def values(matches: list[Written], pattern: str) -> set[object]:
+    return {value for match in matches for _, target, value in match if re.fullmatch(pattern, target)}
+
+
+@pytest.mark.parametrize(
+    ("pattern", "low", "high"),
+    [
+        (r"joysticks\[0\]\.axes\[[0145]\]", -1, 1),
+        (r"joysticks\[0\]\.axes\[[23]\]", 0, 1),  # an Xbox controller's triggers
+        (r"analog_in\[2\]\.voltage", 0, 5),
+        (r"CAN.*Position", 0, 1),
+        (r"power\.vin_voltage", 4.5, 13.5),
+        (r"encoder\[0\]\.count", -1e6, 1e6),
+    ],
+)
+def test_numbers_are_those_of_real_devices(pattern: str, low: float, high: float, matches: list[Written]) -> None:
+    found = values(matches, pattern)
+    assert low <= min(found) < max(found) <= high
+    assert any(low + (high - low) * 0.05 < value < low + (high - low) * 0.95 for value in found)
+
+
+def test_both_ends_are_reached(matches: list[Written]) -> None:
+    assert {0.0, 5.0} <= values(matches, r"analog_in\[2\]\.voltage")
+    assert {-1.0, 1.0} <= values(matches, r"joysticks\[0\]\.axes\[1\]")
+    assert 0.0 in values(matches, r"encoder\[0\]\.rate")
+    assert any(value < 6.3 for value in values(matches, r"power\.vin_voltage"))
+
+
+def test_povs_have_eight_directions_and_released(matches: list[Written]) -> None:
+    assert values(matches, r"joysticks\[\d\]\.povs\[0\]") == {-1, 0, 45, 90, 135, 180, 225, 270, 315}
+
+
+def test_choices_are_the_choosers_options(matches: list[Written]) -> None:
+    assert values(matches, r"nt:/SmartDashboard/Auto/selected") == {"Left", "Right"}
+
+
+def test_messages_are_those_of_the_game_or_as_long_or_none(matches: list[Written]) -> None:
+    messages = values(matches, r"event\.game_specific_message")
+    assert messages & {"LRL", "RLR"}
+    assert {len(message) for message in messages} <= {0, 3}
+
+
+def test_a_joystick_that_is_unplugged_stays_so_until_it_is_plugged_in(matches: list[Written]) -> None:
+    """Writing to one of its controls would plug it in."""
+    unplugged = 0
+    for match in matches:
+        gone = set()
+        for _, target, value in match:
+            port = target.partition(".")[0]
+            if target.endswith(".plugged"):
+                (gone.discard if value else gone.add)(port)
+                unplugged += not value
+            assert target.endswith(".plugged") or port not in gone
+    assert unplugged
+
+
+def test_buttons_are_pressed_together_with_the_stick_at_its_end(matches: list[Written]) -> None:
+    together = 0
+    for match in matches:
+        now: dict[str, object] = {}
+        for _, target, value in match:
+            now[target] = value
+            pressed = [each for each in now if each.startswith("joysticks[0].buttons") and now[each]]
+            pushed = [each for each in now if each.startswith("joysticks[0].axes") and abs(now[each]) > 0.9]
+            together += len(pressed) >= 2 and bool(pushed)
+    assert together > 10 * len(matches)
+
+
+def test_modes_come_as_from_a_driver_station(matches: list[Written]) -> None:
+    """Between two modes in which the robot is enabled, it is disabled; and some are left and entered again."""
+    entered_again = 0
+    for match in matches:
+        modes = [value for _, target, value in match if target == "mode"]
+        assert modes[0].startswith("disabled")
+        assert "teleop" in modes
+        for before, after in itertools.pairwise(modes):
+            assert before.startswith("disabled") or after.startswith("disabled")
+        entered_again += any(before == after for before, after in zip(modes, modes[2:], strict=False))
+    assert entered_again
+
+
+@pytest.mark.parametrize(
+    "where",
+    [
+        "self.stick = wpilib.Joystick(3)",
+        "self.held = {'sticks': [wpilib.Joystick(3)]}",
+        "stick = wpilib.Joystick(3); self.read = lambda: stick.getY()",
+        "import commands2.button; self.stick = commands2.button.CommandXboxController(3)",
+    ],
+)
+def test_the_joysticks_that_the_robot_has_made_are_mashed_most(where: str, make_project) -> None:
+    robot = f"""
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            {where}
+    """
+    matches = mash(make_project, 4, robot=robot)
+    ports = [target.partition(".")[0] for match in matches for _, target, _ in match if target.startswith("joysticks")]
+    assert ports.count("joysticks[3]") > 0.8 * len(ports)
+
+
+# -- chance ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_same_seed_writes_the_same_whatever_python_hashes(make_shared_project, matches) -> None:
+    again = mash(make_shared_project, 3, PYTHONHASHSEED="77")
+    assert again == matches[:3]
+    assert again[0] != again[1] != again[2]
+
+
+@given(kind=st.sampled_from(get_args(Kind)), seed=st.integers(0, 2**32), now=st.floats(-1e6, 1e6))
+def test_what_is_drawn_can_be(kind: Kind, seed: int, now: float) -> None:
+    options = ("a", "b")
+    value = draw(kind, random.Random(seed), options, now)
+    assert can_be(kind, value, options)
+    assert value == draw(kind, random.Random(seed), options, now)
+    if kind in SPANS:
+        assert can_be(kind, nearest(kind, now))
+
+
+# -- physics ---------------------------------------------------------------------------------------------------------
+
+SIMULATED = """
+    import wpilib
+    from wpilib.simulation import EncoderSim
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.stick = wpilib.Joystick(0)
+            self.motor = wpilib.PWMSparkMax(0)
+            self.driven, self.other = wpilib.Encoder(0, 1), wpilib.Encoder(2, 3)
+            self.driven_sim = EncoderSim(self.driven)
+
+        def teleopPeriodic(self):
+            self.motor.set(self.stick.getY())
+
+        def autonomousPeriodic(self):
+            self.motor.set(0.5)
+
+        def _simulationPeriodic(self):
+            self.driven_sim.setCount(self.driven_sim.getCount() + round(self.motor.get() * 100))
+    """
+
+
+def test_inputs_that_physics_drives_are_left_to_it(make_project) -> None:
+    """Also those that nobody has named."""
+    for match in mash(make_project, 3, robot=SIMULATED):
+        targets = {target for _, target, _ in match}
+        assert "encoder[1].count" in targets
+        assert not targets & {"encoder[0].count", "encoder[0].rate"}
+
+
+def test_inputs_that_are_said_to_be_driven_are_never_written(make_shared_project) -> None:
+    named = ("encoder[0].count", "analog_in[2].voltage")
+    for match in mash(make_shared_project, 3, named):
+        assert not {target for _, target, _ in match} & {*named, "encoder[0].rate"}
+
+
+# -- the test itself -------------------------------------------------------------------------------------------------
+
+CHORD = """
+    import random
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.stick = wpilib.Joystick(0)
+            self.switch = wpilib.DigitalInput(3)
+            self.motor = wpilib.PWMSparkMax(0)
+
+        def teleopPeriodic(self):
+            self.motor.set(self.stick.getY() * random.uniform(0.5, 1))
+            if self.stick.getRawButton(2) and self.stick.getRawButton(3) and not self.switch.get():
+                raise RuntimeError(f"nobody thought of this {random.random()}")
+    """
+
+
+def test_a_failing_match_is_kept_and_replayed(make_project) -> None:
+    project = make_project({"robot.py": CHORD, "tests/fuzz_test.py": "from pyfrc.tests.fuzz_test import *\n"})
+    result = project.run("test", "--seed", "3")
+    assert result.code == 1
+    failure = re.search(r"robot\.py:13: RuntimeError: nobody thought of this [\d.]+", result.output)
+    assert failure is not None, result.output
+    assert "random seed: 3" in result.output
+    file = re.search(r"pyfrc replay (\S+)", result.output)
+    assert file is not None, result.output
+    assert file[1] == str(Path(".pyfrc", "fuzz", "seed-3.jsonl"))
+    replayed = project.run("replay", file[1])
+    assert replayed.code == 1
+    assert failure[0] in replayed.output  # with the very number
+    at = re.search(r"at ([\d.]+) s of a match", result.output)
+    assert at is not None
+    assert load_script(project.path / file[1]).end_us == round(float(at[1]) * 1e6) + 20_000
+    assert (project.path / ".pyfrc/.gitignore").read_text() == "*\n"
+
+
+@pytest.mark.parametrize("name", ["timed", "square", "pneumatics"])
+def test_the_replay_of_what_was_written_does_the_same(name: str, make_project) -> None:
+    """The traces of a match and of its replay are equal."""
+    files = {path.relative_to(ROBOTS / name).as_posix(): path.read_text() for path in (ROBOTS / name).rglob("*.py")}
+    files = {path: text for path, text in files.items() if not path.startswith("tests/")}
+    project = make_project(files | {"tests/test_mash.py": MASH.replace("SEEDS", "1").replace("PHYSICS", "()")})
+    result = project.run("test", "--trace", "traces")
+    assert result.code == 0, result.output
+    (trace,) = (project.path / "traces").iterdir()
+    replayed = project.run("replay", "--trace", "replayed.jsonl", "script-0.jsonl")
+    assert replayed.code == 0, replayed.output
+    assert len(trace.read_text().splitlines()) > 500
+    assert (project.path / "replayed.jsonl").read_text() == trace.read_text()
+
+
+def test_a_robot_without_a_fault_passes_and_leaves_nothing(make_project) -> None:
+    project = make_project({"robot.py": EVERYTHING, "tests/pyfrc_test.py": "from pyfrc.tests import *\n"})
+    result = project.run("test", "--", "-v")
+    assert result.code == 0, result.output
+    assert result.outcomes()["tests/pyfrc_test.py::test_fuzz"] == "PASSED"
+    assert not (project.path / ".pyfrc").exists()

@@ -1,0 +1,605 @@
+"""A project's physics.py: found, told which generation it is, run with the robot; and what is said of a wrong one."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+SQUARE = Path(__file__).parent / "robots" / "square"
+
+ROBOT = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def __init__(self):
+            super().__init__()
+            self.seen_by_constructor = wpilib.RobotController.getBatteryVoltage()
+
+        def robotInit(self):
+            wpilib.wait(0.1)
+            self.motor = wpilib.PWMSparkMax(0)
+    """
+
+RUNS = """
+    def test_it(control, robot, physics_controller):
+        control.set_operator_control()
+        control.run_test(lambda tm: tm < 1)
+"""
+
+
+def test_both_generations_drive_the_same_square(make_shared_project) -> None:
+    paths = []
+    for physics in ("physics.py", "since_2020/physics.py"):
+        project = make_shared_project({})
+        shutil.copytree(SQUARE, project.path, dirs_exist_ok=True)
+        shutil.copyfile(SQUARE / physics, project.path / "physics.py")
+        result = project.run("test")
+        assert result.code == 0, result.output
+        paths.append(json.loads((project.path / "path.json").read_text("utf-8")))
+    assert len(paths[0]) == len(paths[1]) == 700
+    for documented, todays in zip(*paths, strict=True):
+        assert documented == pytest.approx(todays, abs=1e-9)
+
+
+# -- when what is made and called ------------------------------------------------------------------------------------
+
+ENGINES = {
+    "documented": ("self, physics_controller", "self, hal_data, now, tm_diff", "before"),
+    "today's": ("self, physics_controller", "self, now, tm_diff", "after"),
+    "today's with the robot": ("self, physics_controller, robot", "self, now, tm_diff", "after"),
+    "documented with the robot": ("self, physics_controller, robot", "self, hal_data, now, tm_diff", "after"),
+    "today's with an optional robot": ("self, physics_controller, robot=None", "self, now, tm_diff", "after"),
+    "documented with an option": ("self, physics_controller, quiet=False", "self, hal_data, now, tm_diff", "before"),
+    "documented, any arguments": ("self, physics_controller", "self, hal_data, *args", "before"),
+    "today's with an optional argument": ("self, physics_controller, my_robot=None", "self, now, tm_diff", "after"),
+}
+
+
+@pytest.mark.parametrize("generation", ENGINES)
+def test_the_generation_is_told_by_the_signatures(generation: str, make_project) -> None:
+    constructor, update, when = ENGINES[generation]
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "physics.py": f"""
+                import __main__, wpilib
+
+                class PhysicsEngine:
+                    def __init__({constructor}):
+                        self.arguments = dict(locals())
+                        self.made_at = wpilib.Timer.getFPGATimestamp()
+                        self.calls = []
+                        __main__.engine = self
+
+                    def initialize(self, hal_data):
+                        hal_data["power"]["vin_voltage"] = 9.5
+
+                    def update_sim({update}):
+                        self.calls.append((wpilib.Timer.getFPGATimestamp(), locals()))
+                """,
+            "tests/test_it.py": f"""
+                import __main__
+                import pytest
+                from pyfrc.physics.core import PhysicsInterface
+
+                def test_it(control, robot, physics_controller, hal_data):
+                    control.set_operator_control()
+                    control.run_test(lambda tm: tm < 1)
+                    engine = __main__.engine
+                    assert engine.arguments["physics_controller"] is physics_controller
+                    assert isinstance(physics_controller, PhysicsInterface)
+                    assert engine.arguments.get("robot", engine.arguments.get("my_robot")) is (
+                        robot if {"robot" in constructor} else None
+                    )
+                    assert not engine.arguments.get("quiet", False)
+                    if {when == "before"}:
+                        assert engine.made_at == 0
+                        assert robot.seen_by_constructor == 9.5
+                    else:
+                        assert engine.made_at == pytest.approx(0.1)
+                        assert robot.seen_by_constructor == 12
+                    for at, given in engine.calls:
+                        if {"hal_data" in update}:
+                            assert given["hal_data"] is hal_data
+                        if "now" in given:
+                            assert given["now"] == pytest.approx(at)
+                            assert given["tm_diff"] == pytest.approx(0.02)
+                    assert len(engine.calls) == (49 if {when == "before"} else 44)
+                """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
+
+
+MADE = """
+    import __main__
+
+    class PhysicsEngine:
+        def __init__(self, physics_controller, robot):
+            self.robot = robot
+            self.calls = []
+            self.motor = robot.motor  # made in robotInit
+            __main__.engine = self
+
+        def update_sim(self, now, tm_diff):
+            self.calls.append(tm_diff)
+    """
+
+ROBOTS = {
+    "magicbot": """
+        import magicbot, wpilib
+
+        class MyRobot(magicbot.MagicRobot):
+            def createObjects(self):
+                wpilib.wait(0.5)
+                self.motor = wpilib.PWMSparkMax(0)
+        """,
+    "a loop of its own": """
+        import hal, wpilib
+
+        class MyRobot(wpilib.RobotBase):
+            def __init__(self):
+                super().__init__()
+                self.motor = wpilib.PWMSparkMax(0)
+                self.over = False
+
+            def startCompetition(self):
+                while not self.over:
+                    wpilib.wait(0.05)
+
+            def endCompetition(self):
+                self.over = True
+        """,
+    "a loop around WPILib's": """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                wpilib.wait(0.5)
+                self.motor = wpilib.PWMSparkMax(0)
+
+            def startCompetition(self):
+                super().startCompetition()
+        """,
+}
+
+
+@pytest.mark.parametrize("kind", ROBOTS)
+def test_the_engine_gets_the_robot_when_its_init_is_over(kind: str, make_project) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOTS[kind],
+            "physics.py": MADE,
+            "tests/test_it.py": """
+                import __main__
+
+                def test_it(control, robot):
+                    control.set_operator_control()
+                    control.run_test(lambda tm: tm < 1)
+                    assert __main__.engine.robot is robot
+                    assert set(round(tm_diff, 6) for tm_diff in __main__.engine.calls) == {0.02}
+                    assert len(__main__.engine.calls) in (25, 49)
+                """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
+
+
+def test_a_faster_robot_has_faster_physics(make_project) -> None:
+    """But not above 100 Hz, and never slower than packets come."""
+    project = make_project(
+        {
+            "robot.py": """
+                import wpilib
+
+                class MyRobot(wpilib.TimedRobot):
+                    period = 0.02
+
+                    def __init__(self):
+                        super().__init__(self.period)
+                """,
+            "physics.py": """
+                from pyfrc.physics.core import PhysicsEngine as Base
+
+                class PhysicsEngine(Base):
+                    def update_sim(self, hal_data, now, tm_diff):
+                        hal_data["custom"].setdefault("steps", []).append(round(tm_diff, 6))
+                """,
+            "tests/test_it.py": """
+                import pytest
+                import robot as module
+
+                @pytest.fixture
+                def period(request):
+                    module.MyRobot.period = request.param
+
+                @pytest.mark.parametrize(("period", "expected"), [(0.005, 0.01), (0.015, 0.015), (0.05, 0.02)],
+                    indirect=["period"])
+                def test_it(period, expected, control, robot, hal_data):
+                    control.set_operator_control()
+                    control.run_test(lambda tm: tm < 1)
+                    assert set(hal_data["custom"]["steps"]) == {expected}
+                """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
+
+
+def test_in_one_process_each_robot_has_physics_of_its_own(make_project) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "physics.py": MADE,
+            "tests/test_it.py": """
+                import __main__
+                import gc, weakref
+                import pytest
+
+                engines = []
+
+                @pytest.mark.parametrize("number", range(3))
+                def test_it(number, control, robot):
+                    assert all(old() is None for old in engines), gc.get_referrers(engines[0]())
+                    control.set_operator_control()
+                    control.run_test(lambda tm: tm < 1)
+                    assert __main__.engine.robot is robot
+                    engines.append(weakref.ref(__main__.engine))
+                    del __main__.engine
+                """,
+        }
+    )
+    result = project.run("test", "--no-isolation")
+    assert result.code == 0, result.output
+
+
+WATCHED = """
+    import __main__
+
+    class PhysicsEngine:
+        def __init__(self, physics_controller):
+            self.physics_controller = physics_controller
+            self.calls = __main__.calls = []
+
+        def update_sim(self, hal_data, now, tm_diff):
+            self.calls.append((round(now, 6), round(tm_diff, 6)))
+            self.physics_controller.drive(1, 1, tm_diff)
+    """
+
+
+def passes(make_project, physics: str, test: str, *options: str, robot: str = ROBOT) -> None:
+    project = make_project({"robot.py": robot, "physics.py": physics, "tests/test_it.py": test})
+    result = project.run("test", *options)
+    assert result.code == 0, result.output
+
+
+@pytest.mark.parametrize("passed", [0.02, 1.0, 0.015])
+@pytest.mark.parametrize("reset", [True, False])
+def test_its_time_begins_with_the_robots(passed: float, reset: bool, make_project) -> None:
+    passes(
+        make_project,
+        WATCHED,
+        f"""
+        import __main__
+
+        def test_it(control, fake_time, robot):
+            fake_time.increment_time_by({passed})
+            if {reset}:
+                fake_time.reset()
+            start = fake_time.get()
+            control.set_operator_control()
+            control.run_test(lambda tm: tm < start + 1)
+            assert all(0 < tm_diff <= 0.02 for _, tm_diff in __main__.calls)
+            assert __main__.calls[0][1] == 0.02
+            assert __main__.calls[0][0] <= start + 0.04
+        """,
+        robot="import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n",
+    )
+
+
+def test_the_gyro_reads_its_rate_while_it_turns(make_project) -> None:
+    passes(
+        make_project,
+        """
+        class PhysicsEngine:
+            def __init__(self, physics_controller):
+                self.physics_controller = physics_controller
+
+            def update_sim(self, hal_data, now, tm_diff):
+                if now < 1.5:
+                    self.physics_controller.drive(0, 1, tm_diff / 2)
+                    self.physics_controller.drive(0, 2, tm_diff / 2)
+        """,
+        """
+        import pytest, wpilib
+
+        def test_it(control, robot, hal_data):
+            gyro = wpilib.AnalogGyro(0)
+            with control.run_robot():
+                control.step_timing(seconds=0.9, autonomous=False, enabled=True)
+                assert gyro.getRate() == pytest.approx(1.5 * 57.29578)
+                control.step_timing(seconds=0.9, autonomous=False, enabled=True)
+                assert gyro.getRate() == 0
+                assert gyro.getAngle() == pytest.approx(hal_data["analog_gyro"][1]["angle"])
+        """,
+    )
+
+
+def test_an_update_that_waits_is_not_interrupted_by_the_next(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import __main__, time
+
+        class PhysicsEngine:
+            inside = False
+
+            def __init__(self, physics_controller):
+                __main__.engine = self
+                self.times = []
+
+            def update_sim(self, hal_data, now, tm_diff):
+                assert not self.inside
+                self.inside = True
+                time.sleep(0.05)
+                self.inside = False
+                self.times.append((now, tm_diff))
+        """,
+        """
+        import __main__
+
+        def test_it(control, robot):
+            control.run_test(lambda tm: tm < 1)
+            times = __main__.engine.times
+            assert len(times) > 10
+            for (before, _), (now, tm_diff) in zip(times, times[1:]):
+                assert abs(now - before - tm_diff) < 1e-9
+        """,
+    )
+
+
+@pytest.mark.parametrize("options", [[], ["--no-isolation"]])
+def test_dashboards_see_where_the_robot_is(options: list[str], make_project) -> None:
+    test = """
+        import ntcore
+
+        def test_{}(control, robot, physics_controller):
+            control.set_operator_control()
+            control.run_test(lambda tm: tm < 1)
+            entry = ntcore.NetworkTableInstance.getDefault().getTable("SmartDashboard/Field").getEntry("Robot")
+            pose = physics_controller.get_pose()
+            assert abs(entry.getDoubleArray([])[0] - pose.X()) < 0.02
+            assert pose.X() > 0.1
+    """
+    passes(make_project, WATCHED, test.format("one") + test.format("two"), *options)
+
+
+@pytest.mark.parametrize(("physics", "x", "y"), [(WATCHED, 0, 0), (MADE, 0, 54.25)])
+def test_without_a_config_each_starts_at_its_own_origin(physics: str, x: float, y: float, make_project) -> None:
+    """The documentation's is the top left corner; that of WPILib's field is the bottom left one."""
+    passes(
+        make_project,
+        physics,
+        f"""
+        def test_it(physics_controller):
+            x, y, angle = physics_controller.get_position()
+            pose = physics_controller.get_pose()
+            if {physics is WATCHED}:
+                assert (x, y, angle) == (0, 0, 0)
+            else:
+                assert (pose.X(), pose.Y(), pose.rotation().degrees()) == (0, 0, 0)
+                assert x == 0 and y > 20
+        """,
+    )
+
+
+def test_update_sim_may_be_a_static_method(make_project) -> None:
+    passes(
+        make_project,
+        """
+        calls = []
+
+        class PhysicsEngine:
+            def __init__(self, physics_controller):
+                pass
+
+            @staticmethod
+            def update_sim(now, tm_diff):
+                calls.append(now)
+        """,
+        """
+        import physics
+
+        def test_it(control, robot):
+            control.run_test(lambda tm: tm < 1)
+            assert len(physics.calls) > 40
+        """,
+    )
+
+
+# -- what is wrong with it -------------------------------------------------------------------------------------------
+
+UPDATE = "    def update_sim(self, hal_data, now, tm_diff):\n        pass\n"
+WRONG = {
+    "no engine": ("x = 1\n", "physics.py", "there is no class PhysicsEngine in this file"),
+    "another name": (
+        f"x = 1\n\nclass Physics:\n{UPDATE}",
+        "physics.py:3",
+        "there is no class PhysicsEngine in this file, but a class Physics: rename it",
+    ),
+    "no update_sim": (
+        "class PhysicsEngine:\n    def __init__(self, physics_controller):\n        pass\n",
+        "physics.py:1",
+        "PhysicsEngine has no method update_sim",
+    ),
+    "update_sim only inherited": (
+        "from pyfrc.physics.core import PhysicsEngine as Base\n\nclass PhysicsEngine(Base):\n    pass\n",
+        "physics.py:3",
+        "PhysicsEngine has no method update_sim",
+    ),
+    "no constructor": (f"class PhysicsEngine:\n{UPDATE}", "physics.py:1", "PhysicsEngine has no constructor"),
+    "constructor's arguments": (
+        f"class PhysicsEngine:\n    def __init__(self):\n        pass\n\n{UPDATE}",
+        "physics.py:2",
+        "PhysicsEngine.__init__(self) cannot be called",
+    ),
+    "update_sim's arguments": (
+        "class PhysicsEngine:\n    def __init__(self, controller):\n        pass\n\n    def update_sim(self, now):\n"
+        "        pass\n",
+        "physics.py:5",
+        "PhysicsEngine.update_sim(self, now) cannot be called",
+    ),
+    "only the base class": ("from pyfrc.physics.core import PhysicsEngine\n", "physics.py", "there is no class"),
+    "hal_data without a time": (
+        "class PhysicsEngine:\n    def __init__(self, c):\n        pass\n\n"
+        "    def update_sim(self, hal_data, tm_diff):\n"
+        "        pass\n",
+        "physics.py:5",
+        "PhysicsEngine.update_sim(self, hal_data, tm_diff) cannot be called",
+    ),
+    "the times in the wrong order": (
+        "class PhysicsEngine:\n    def __init__(self, c):\n        pass\n\n    def update_sim(self, tm_diff, now):\n"
+        "        pass\n",
+        "physics.py:5",
+        "PhysicsEngine.update_sim(self, tm_diff, now) cannot be called",
+    ),
+    "self forgotten": (
+        "class PhysicsEngine:\n    def __init__(self, c):\n        pass\n\n    def update_sim(now, tm_diff):\n"
+        "        pass\n",
+        "physics.py:5",
+        "PhysicsEngine.update_sim(now, tm_diff) cannot be called: self is missing",
+    ),
+    "update_sim is no method": (
+        "class PhysicsEngine:\n    update_sim = 3\n\n    def __init__(self, c):\n        pass\n",
+        "physics.py:1",
+        "PhysicsEngine has no method update_sim",
+    ),
+    "the robot first": (
+        f"class PhysicsEngine:\n    def __init__(self, robot, physics_controller):\n        pass\n\n{UPDATE}",
+        "physics.py:2",
+        "PhysicsEngine.__init__(self, robot, physics_controller) cannot be called",
+    ),
+    "one underscore": (
+        f"class PhysicsEngine:\n    def _init_(self, physics_controller):\n        pass\n\n{UPDATE}",
+        "physics.py:1",
+        "PhysicsEngine has no constructor, but a method _init_",
+    ),
+    "initialize without hal_data": (
+        f"class PhysicsEngine:\n    def __init__(self, c):\n        pass\n\n    def initialize(self):\n"
+        f"        pass\n{UPDATE}",
+        "physics.py:5",
+        "PhysicsEngine.initialize(self) cannot be called",
+    ),
+    "syntax": ("class PhysicsEngine:\n    def\n", "physics.py:2", "SyntaxError"),
+    "import": ("import math\nmath.nothing\n", "physics.py:2", "AttributeError"),
+}
+
+
+@pytest.mark.parametrize("mistake", WRONG)
+def test_a_physics_module_that_cannot_be_is_told_once(mistake: str, make_project) -> None:
+    text, place, message = WRONG[mistake]
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": RUNS, "physics.py": ""})
+    (project.path / "physics.py").write_text(text)
+    result = project.run("test")
+    assert result.code == 1
+    assert result.first_error.startswith(f"{place}: {message}")
+    assert "Traceback" not in result.output
+
+
+@pytest.mark.parametrize("update", ["self, hal_data, now, tm_diff", "self, now, tm_diff"])
+@pytest.mark.parametrize("where", ["constructor", "initialize", "update_sim"])
+def test_an_exception_in_physics_names_its_line_first(update: str, where: str, make_project) -> None:
+    lines = dict.fromkeys(("constructor", "initialize", "update_sim"), "pass") | {where: "1 / 0  # here"}
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "tests/test_it.py": RUNS,
+            "physics.py": f"""
+                class PhysicsEngine:
+                    def __init__(self, physics_controller):
+                        {lines["constructor"]}
+
+                    def initialize(self, hal_data):
+                        {lines["initialize"]}
+
+                    def update_sim({update}):
+                        {lines["update_sim"]}
+                """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 1
+    (block,) = result.blocks().values()
+    assert block.startswith(f"{project.place('physics.py', '# here')}: ZeroDivisionError")
+    assert "pyfrc_core/" not in block
+
+
+def test_physics_may_say_themselves_that_they_cannot_be(make_project) -> None:
+    physics = """
+        from pyfrc.physics.core import PhysicsInitException
+
+        class PhysicsEngine:
+            def __init__(self, physics_controller):
+                raise PhysicsInitException("no arm on this robot")
+
+            def update_sim(self, now, tm_diff):
+                pass
+        """
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": RUNS, "physics.py": physics})
+    result = project.run("test")
+    assert result.code == 1
+    (block,) = result.blocks().values()
+    assert block.startswith("physics.py:5: PhysicsInitException: no arm on this robot")
+
+
+def test_physics_that_never_comes_back_is_named(make_project) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "tests/test_it.py": RUNS,
+            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.5\n",
+            "physics.py": """
+                class PhysicsEngine:
+                    def __init__(self, physics_controller):
+                        pass
+
+                    def update_sim(self, now, tm_diff):
+                        while True:
+                            pass  # here
+                """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 1
+    assert "physics.py:7" in result.output or "physics.py:6" in result.output
+
+
+def test_asking_for_physics_that_are_not_there(make_project) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": RUNS})
+    result = project.run("test")
+    assert result.code == 1
+    assert "there is no physics.py in this project" in result.output
+
+
+def test_what_is_wrong_in_the_config_is_told_once(make_project) -> None:
+    files = {
+        "robot.py": ROBOT,
+        "physics.py": MADE,
+        "sim/config.json": '{"pyfrc": {\n"robot": {"starting_x": 2,\n"startingy": 3}}}\n',
+        "tests/test_it.py": RUNS + RUNS.replace("test_it", "test_again"),
+    }
+    project = make_project(files)
+    result = project.run("test")
+    assert result.code == 0, result.output
+    assert result.output.count("sim/config.json:3: SettingsWarning: unknown key 'pyfrc.robot.startingy'") == 1
+
+    project.write({"sim/config.json": '{"pyfrc": {\n"robot": {"starting_x": "2"}}}\n'})
+    result = project.run("test")
+    assert result.code == 2
+    assert result.output.count("sim/config.json:2: pyfrc.robot.starting_x") <= 2  # where it is, and in the summary
+    assert "Traceback" not in result.output

@@ -1,0 +1,321 @@
+"""Input scripts: a recording's replay does what was recorded, and a script that is wrong says so with its line."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pyfrc_core.runtime.scripts.script import FORMAT, InputScript, ScriptError, Step, load_script, parse_script
+
+ROBOTS = Path(__file__).parent / "robots"
+HEADER = {"format": FORMAT, "end": 1.0}
+
+ROBOT = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.stick = wpilib.Joystick(0)
+            self.motor = wpilib.PWMSparkMax(0)
+            self.switch = wpilib.DigitalInput(4)
+            self.chooser = wpilib.SendableChooser()
+            self.chooser.setDefaultOption("Left", 0.25)
+            self.chooser.addOption("Right", 0.75)
+            wpilib.SmartDashboard.putData("Auto", self.chooser)
+            self.seen = []
+
+        def robotPeriodic(self):
+            self.seen.append((
+                wpilib.DriverStation.isEnabled(), wpilib.DriverStation.isAutonomous(),
+                wpilib.DriverStation.getStickAxisCount(0), round(wpilib.DriverStation.getMatchTime(), 2),
+                self.switch.get(), wpilib.SmartDashboard.getNumber("gain", 0),
+            ))
+
+        def autonomousPeriodic(self):
+            self.motor.set(self.chooser.getSelected())
+
+        def teleopPeriodic(self):
+            self.motor.set(self.stick.getY())
+            if self.stick.getRawButton(3) and self.stick.getPOV() == 90:
+                raise RuntimeError("both at once")
+    """
+
+
+def text(*lines: object, header: object = HEADER) -> str:
+    return "".join(json.dumps(line) + "\n" for line in (header, *lines))
+
+
+# -- recordings ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", sorted(path.parent.name for path in ROBOTS.glob("*/robot.py")))
+def test_a_recordings_replay_does_the_same(name: str, make_project) -> None:
+    """Of each sample robot, the one of its own tests that tells it most."""
+    project = make_project({})
+    shutil.copytree(ROBOTS / name, project.path, dirs_exist_ok=True)
+    result = project.run("test", "--record", "recordings", "--", "--ignore=tests/pyfrc_test.py")
+    assert result.code == 0, result.output
+    scripts = [file for file in (project.path / "recordings").iterdir() if ".trace." not in file.name]
+    replayed = project.run("replay", max(scripts, key=lambda file: file.stat().st_size))
+    assert replayed.code == 0, replayed.output
+    assert "The trace equals the recorded one." in replayed.stdout
+
+
+def test_a_matchs_time_is_one_countdown(make_project) -> None:
+    project = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.pyfrc.match]\nteleop = 4\n"})
+    assert project.run("test", "--builtin", "--record", "recordings", "--", "-k", "practice").code == 0
+    (script,) = (file for file in (project.path / "recordings").iterdir() if ".trace." not in file.name)
+    assert [dict(step.writes) for step in load_script(script).steps] == [
+        {"time.remaining": 0.0},
+        {"mode": "autonomous", "match_time": 15.0},
+        {"mode": "disabled"},
+        {"mode": "teleop", "match_time": 4.0},
+    ]
+    replayed = project.run("replay", script)
+    assert "The trace equals the recorded one." in replayed.stdout, replayed.output
+
+
+TODAYS_WAYS = """
+    import ntcore, wpilib
+    from wpilib.simulation import DIOSim, DriverStationSim, JoystickSim, stepTiming
+
+    def test_it(control, robot, hal_data):
+        switch = DIOSim(4)
+        ntcore.NetworkTableInstance.getDefault().getTable("SmartDashboard").putNumber("gain", 1)
+        with control.run_robot():
+            control.step_timing(seconds=0.51, autonomous=True, enabled=True)
+            wpilib.SmartDashboard.putString("Auto/selected", "Right")
+            switch.setValue(False)
+            control.step_timing(seconds=0.033, autonomous=True, enabled=True)
+            stick = JoystickSim(0)
+            stick.setAxisCount(0)
+            stick.setButtonCount(0)
+            stick.setPOVCount(0)
+            DriverStationSim.notifyNewData()
+            stepTiming(0.1)
+            hal_data["joysticks"][0]["axes"][1] = -0.3
+            DriverStationSim.setMatchTime(33)
+            control.step_timing(seconds=0.5, autonomous=False, enabled=True)
+            switch.setValue(True)
+            hal_data["event"]["game_specific_message"] = "LRL"
+            hal_data["control"]["eStop"] = True
+            control.step_timing(seconds=0.5, autonomous=False, enabled=True)
+    """
+
+
+def test_whatever_a_test_does_is_recorded(make_project) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": TODAYS_WAYS})
+    assert project.run("test", "--record", "recordings").code == 0
+    script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
+    replayed = project.run("replay", script)
+    assert replayed.code == 0, replayed.output
+    assert "equals" in replayed.stdout
+    written = {target for line in script.read_text().splitlines()[1:] for target in json.loads(line)["set"]}
+    assert written >= {
+        "mode",
+        "nt:/SmartDashboard/gain",
+        "nt:/SmartDashboard/Auto/selected",
+        "dio[4].value",
+        "joysticks[0].plugged",
+        "packet",
+        "joysticks[0].axes[1]",
+        "time.remaining",
+        "event.game_specific_message",
+        "control.eStop",
+    }
+    assert (
+        '"joysticks[0].axes[1]": -0.3,' in script.read_text() or '"joysticks[0].axes[1]": -0.3}' in script.read_text()
+    )
+
+
+def test_an_encoder_that_stands_still_is_recorded(make_project) -> None:
+    robot = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    def robotInit(self):\n"
+    robot += "        self.encoder = wpilib.Encoder(0, 1)\n"
+    test = """
+        def test_it(control, robot, hal_data):
+            with control.run_robot():
+                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+                hal_data["encoder"][0]["rate"] = 5.0
+                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+                hal_data["encoder"][0]["rate"] = 0.0
+                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+        """
+    project = make_project({"robot.py": robot, "tests/test_it.py": test})
+    assert project.run("test", "--record", "recordings").code == 0
+    replayed = project.run("replay", "recordings/tests_test_it.py.test_it.jsonl")
+    assert "equals" in replayed.stdout, replayed.output
+
+
+FAILING = """
+    def test_it(control, hal_data, robot):
+        control.set_operator_control()
+
+        def on_step(tm):
+            hal_data["joysticks"][0]["buttons"][3] = tm > 0.5
+            hal_data["joysticks"][0]["povs"][0] = 90 if tm > 0.7 else -1
+            return tm < 1
+
+        control.run_test(on_step)
+    """
+
+
+def test_a_failure_comes_back(make_project) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": FAILING})
+    assert project.run("test", "--record", "recordings").code == 1
+    script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
+    replayed = project.run("replay", script)
+    assert replayed.code == 1
+    assert "replayed 0.72 s" in replayed.stdout
+    assert f"then {project.place('robot.py', 'raise RuntimeError')}: RuntimeError: both at once" in replayed.stdout
+    assert "equals" in replayed.stdout
+    assert project.run("replay", script, "--until", "0.7").code == 0
+
+
+def test_where_a_changed_robot_first_differs_is_told(make_project) -> None:
+    test = """
+        def test_it(control, hal_data, robot):
+            hal_data["joysticks"][0]["axes"][1] = 0.5
+            control.set_operator_control()
+            control.run_test(lambda tm: tm < 1)
+        """
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": test})
+    assert project.run("test", "--record", "recordings").code == 0
+    project.write({"robot.py": ROBOT.replace("self.stick.getY()", "self.stick.getY() / 2")})
+    script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
+    replayed = project.run("replay", script, "--trace", "now.jsonl")
+    assert replayed.code == 1
+    assert "first at 0.02 s:" in replayed.stdout
+    assert "pwm[0].raw_value was " in replayed.stdout
+    digest = json.loads((project.path / "now.jsonl").read_text().splitlines()[-1])["sha256"]
+    assert digest != load_script(script).trace
+
+    script.with_name("tests_test_it.py.test_it.trace.jsonl").unlink()
+    replayed = project.run("replay", script)
+    assert replayed.code == 1
+    assert "The trace differs from the recorded one." in replayed.stdout
+
+
+# -- scripts written by hand ---------------------------------------------------------------------------------------
+
+
+def test_a_script_can_say_all_that_comes_from_outside(make_project) -> None:
+    script = text(
+        {"t": 0, "set": {"mode": "disabled autonomous", "nt:/SmartDashboard/gain": 3}},
+        {"t": 0.1, "set": {"mode": "autonomous", "match_time": 15, "nt:/SmartDashboard/Auto/selected": "Right"}},
+        {"t": 0.3, "set": {"mode": "teleop", "joysticks[0].axes[1]": -0.5}},
+        {"t": 0.5, "set": {"joysticks[0].plugged": False, "dio[4].value": False}},
+        {"t": 0.7, "set": {"joysticks[0].plugged": True}},
+    )
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "script.jsonl": script,
+            "tests/test_it.py": """
+                def test_it(control, robot, robot_path, hal_data):
+                    control.replay(robot_path + "/script.jsonl")
+                    seen = dict(zip([round(0.02 * (n + 1), 2) for n in range(len(robot.seen))], robot.seen))
+                    assert seen[0.08] == (False, True, 12, -1.0, True, 3)
+                    assert seen[0.1] == (True, True, 12, 15.0, True, 3)
+                    assert seen[0.28] == (True, True, 12, 14.82, True, 3)
+                    assert seen[0.48][:3] == (True, False, 12)
+                    assert seen[0.5][2:] == (0, 14.6, False, 3)
+                    assert seen[0.7][2] == 12
+                    assert len(seen) == 49
+                    assert hal_data["pwm"][0]["value"] == 0  # plugged in again, nothing is pushed
+                """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
+
+
+def test_a_script_may_be_longer_than_a_test_without_it(make_project) -> None:
+    long = text({"t": 0, "set": {"mode": "disabled"}}, header=HEADER | {"end": 601})
+    project = make_project({"robot.py": ROBOT, "script.jsonl": long})
+    result = project.run("replay", "script.jsonl")
+    assert result.code == 0, result.output
+    assert "replayed 601.00 s" in result.stdout
+
+
+BAD = {
+    "empty": ("", ":1: the file is empty"),
+    "no header": ('{"t": 0, "set": {}}\n', ':1: the first line must be the header, with "format"'),
+    "unknown version": (text(header={"format": "pyfrc-input 2", "end": 1}), ":1: unknown format 'pyfrc-input 2'"),
+    "no end": (text(header={"format": FORMAT}), ':1: "end" is missing'),
+    "truncated": (text({"t": 0, "set": {"mode": "teleop"}})[:-8], ":2: not valid JSON"),
+    "not JSON": (text() + "hello\n", ":2: not valid JSON"),
+    "an array": (text([1, 2]), ":2: each line must be a JSON object"),
+    "time going back": (text({"t": 0.5, "set": {}}, {"t": 0.4, "set": {}}), ":3: time goes back from 0.5 s to 0.4 s"),
+    "NaN": (text({"t": 0.5, "set": {"dio[4].value": float("nan")}}), ":2: NaN is no number that can be written"),
+    "NaN as time": (text({"t": float("nan"), "set": {}}), ":2: NaN is no number"),
+    "negative time": (text({"t": -1, "set": {}}), ':2: "t" must be from 0 to'),
+    "no time": (text({"set": {}}), ':2: "t" is missing'),
+    "a text as time": (text({"t": "1", "set": {}}), ':2: "t" must be a time in seconds, not "1"'),
+    "no writes": (text({"t": 1}), ':2: "set" is missing'),
+    "deep nesting": (text() + "[" * 100_000 + "\n", ":2: not an input script"),
+    "a number of 10,000 digits": (text() + '{"t": 1' + "0" * 10_000 + "}\n", ":2: not an input script"),
+    "unknown room": (text({"t": 0.5, "set": {"dioo[4].value": True}}), ":2: there is no key 'dioo' in hal_data"),
+    "no path": (text({"t": 0.5, "set": {"dio[": True}}), ":2: cannot read"),
+    "unknown field": (text({"t": 0.5, "set": {"dio[4].valu": True}}), ":2: there is no key 'valu' in dio[4]"),
+    "no such channel": (text({"t": 0.5, "set": {"dio[44].value": True}}), ":2: "),
+    "no such device": (
+        text({}, {}, {})[:0] + text({"t": 0.5, "set": {"dio[5].value": True}}),
+        ":2: this robot has no dio[5]",
+    ),
+    "wrong type": (text({"t": 0.5, "set": {"dio[4].value": "up"}}), ":2: "),
+    "unknown mode": (text({"t": 0.5, "set": {"mode": "teleoperated"}}), ":2: there is no mode 'teleoperated'"),
+    "an axis beyond its end": (text({"t": 0.5, "set": {"joysticks[0].axes[1]": 2}}), ":2: "),
+    "another type of entry": (
+        text({"t": 0.1, "set": {"nt:/a": 1.5}}, {"t": 0.5, "set": {"nt:/a": "text"}}),
+        ":3: /a is double, and cannot be 'text'",
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def project(make_shared_project):
+    return make_shared_project({"robot.py": ROBOT})
+
+
+@pytest.mark.parametrize("mistake", BAD)
+def test_a_bad_script_says_so_with_its_line(mistake: str, project) -> None:
+    content, message = BAD[mistake]
+    (project.path / "bad.jsonl").write_text(content)
+    result = project.run("replay", "bad.jsonl")
+    assert result.code == 2, result.output
+    assert f"error: bad.jsonl{message}" in result.stderr
+    assert "Traceback" not in result.output
+
+
+def test_other_files_that_are_no_scripts(tmp_path: Path) -> None:
+    large = tmp_path / "large.jsonl"
+    with large.open("wb") as out:
+        out.truncate(100 * 2**20)
+    with pytest.raises(ScriptError, match=r"large.jsonl:1: 100 MB are too many"):
+        load_script(large)
+    (tmp_path / "binary.jsonl").write_bytes(bytes(range(256)))
+    for name, message in {"binary.jsonl": "not UTF-8", "": "directory", "missing.jsonl": "there is no file"}.items():
+        with pytest.raises(ScriptError, match=message):
+            load_script(tmp_path / name)
+
+
+@given(st.lists(st.text(max_size=40) | st.just(json.dumps(HEADER)), max_size=4))
+def test_whatever_it_is_it_is_a_script_or_says_what_is_wrong(lines: list[str]) -> None:
+    with suppress(ScriptError):
+        parse_script(f"{line}\n" for line in lines)
+
+
+values = st.booleans() | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=9) | st.integers(-9, 9)
+times = st.lists(st.integers(0, 10**9), max_size=9).map(sorted)
+
+
+@given(times, st.dictionaries(st.text(max_size=20), values), st.integers(0, 10**9), st.text(max_size=9))
+def test_a_script_written_and_read_is_the_same(at: list[int], writes: dict, end: int, robot: str) -> None:
+    script = InputScript(tuple(Step(each, writes) for each in at), end, min(end, 5), robot, 7, {"pyfrc": "1"}, "ab")
+    assert parse_script(script.lines()) == script

@@ -1,0 +1,182 @@
+"""`pyfrc config`, and what `pyfrc test` tells of sim/config.json."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from conftest import MakeProject
+
+ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+
+
+def test_check_tells_warnings_and_mistakes(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT})
+    none = project.run("config", "check")
+    assert (none.code, none.stderr) == (0, "")
+    assert none.stdout == "sim/config.json: there is no such file, so everything is at its default\n"
+
+    project.write({"sim/config.json": '{"pyfrc": {\n"robt": {}}}'})
+    warned = project.run("config", "check")
+    assert warned.code == 0, warned.output
+    assert warned.stdout == (
+        "warning: sim/config.json:2: unknown key 'pyfrc.robt'\n  did you mean 'robot'?\n"
+        "sim/config.json: no mistakes, but 1 warning\n"
+    )
+
+    project.write({"sim/config.json": '{"pyfrc": {"robot": {\n"w": -1}, "pwm": {\n"20": "x"}}}'})
+    for subcommand in ("check", "show"):
+        wrong = project.run("config", subcommand)
+        assert wrong.code == 2
+        assert wrong.stdout == ""
+        assert wrong.stderr == (
+            "error: sim/config.json:2: pyfrc.robot.w = -1: input should be greater than 0\n"
+            'sim/config.json:3: pyfrc.pwm.20 = "x": the key should be a number from 0 to 19\n'
+        )
+
+
+def test_show_tells_each_value_and_where_it_comes_from(make_project: MakeProject) -> None:
+    config = """\
+    {
+      "pyfrc": {
+        "robot": {
+          "h": 4,
+          "start_positions": [
+            {"name": "left", "x": 1, "y": 2}
+          ]
+        },
+        "field": {"season": 2018},
+        "joysticks": {"0": {"axes":
+          {"x": "turn"}
+        }}
+      }
+    }
+    """
+    project = make_project({"robot.py": ROBOT, "sim/config.json": config})
+    result = project.run("config", "show")
+    assert result.code == 0, result.output
+    rows = {path: rest for path, *rest in (line.split(maxsplit=2) for line in result.stdout.splitlines())}
+    assert rows["pyfrc.robot.w"] == ["2.0", "default"]
+    assert rows["pyfrc.robot.l"] == ["4.0", "sim/config.json:4 (robot.h)"]
+    assert rows["pyfrc.robot.starting_x"] == ["1.0", "sim/config.json:6 (robot.start_positions[0].x)"]
+    assert rows["pyfrc.field.season"] == ["2018", "sim/config.json:9"]
+    assert rows["pyfrc.field.w"] == ["30.0", "season 2018"]
+    assert rows["pyfrc.joysticks.0.axes.0"] == ['"turn"', "sim/config.json:11 (joysticks.0.axes.x)"]
+    assert rows["pyfrc.joysticks.0.buttons.1"] == ['"Trigger"', "default"]
+
+    as_json = project.run("config", "show", "--json")
+    assert as_json.code == 0, as_json.output
+    shown = json.loads(as_json.stdout)
+    assert shown["pyfrc"]["robot"]["l"] == 4
+    assert shown["sources"]["pyfrc.field.w"] == "season 2018"
+
+
+def test_show_says_default_where_the_only_start_position_says_nothing(make_project: MakeProject) -> None:
+    config = '{"pyfrc": {"robot": {"start_positions": [{"name": "a", "x": 1, "y": 2}]}}}'
+    result = make_project({"robot.py": ROBOT, "sim/config.json": config}).run("config", "show", "--json")
+    sources = json.loads(result.stdout)["sources"]
+    assert sources["pyfrc.robot.starting_y"] == "sim/config.json:1 (robot.start_positions[0].y)"
+    assert sources["pyfrc.robot.starting_angle"] == "default"
+
+
+def test_what_show_prints_as_json_is_a_config_without_warnings(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "sim/config.json": '{"pyfrc": {"field": {"season": 2018}}}'})
+    shown = project.run("config", "show", "--json").stdout
+    assert json.loads(shown)["season"] == {"w": 30, "h": 27, "px_per_ft": 15}
+    project.write({"sim/config.json": shown})
+    checked = project.run("config", "check", "--strict")
+    assert (checked.code, checked.stdout) == (0, "sim/config.json: no mistakes\n")
+    again = json.loads(project.run("config", "show", "--json").stdout)
+    assert again["pyfrc"] == json.loads(shown)["pyfrc"]
+
+
+def test_strict_makes_warnings_fail(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT})
+    for config, code in [("{}", 0), ('{"pyfrc": {"robt": {}}}', 1), ('{"pyfrc": {"robot": {"w": 0.3}}}', 1), ("", 2)]:
+        project.write({"sim/config.json": config})
+        assert project.run("config", "check", "--strict").code == code
+    project.write({"sim/config.json": json.dumps({"pyfrc": {f"key{n}": n for n in range(30)}})})
+    many = project.run("config", "check")
+    assert many.code == 0
+    assert many.stdout.endswith("sim/config.json: no mistakes, but more than 20 warnings\n")
+
+
+def test_the_file_is_named_from_where_the_user_is(make_project: MakeProject) -> None:
+    settings = '[tool.pyfrc]\nmain = "src/robot.py"\n'
+    project = make_project(
+        {
+            "src/robot.py": ROBOT,
+            "pyproject.toml": settings,
+            "src/sim/config.json": '{"pyfrc": {\n"robt": 1}}',
+            "x/y": "",
+        }
+    )
+    for place, arguments, name in [
+        (".", (), "src/sim/config.json"),
+        (".", ("--main", "src/robot.py"), "src/sim/config.json"),
+        ("src/sim", (), "config.json"),
+        ("x", ("--main", "../src/robot.py"), "../src/sim/config.json"),
+    ]:
+        checked = project.run("config", "check", *arguments, cwd=project.path / place)
+        assert f"warning: {name}:2: unknown" in checked.stdout
+        assert f"\n{name}: no mistakes" in checked.stdout
+    project.write({"src/sim/config.json": '{"pyfrc": {\n"robot": 1}}'})
+    for subcommand in ("check", "show"):
+        assert project.run("config", subcommand).first_error.startswith("src/sim/config.json:2: pyfrc.robot = 1")
+
+
+@pytest.mark.parametrize("place", ["config.json", "tests/sim/config.json", "Sim/config.json", "sim/Config.json"])
+def test_a_file_in_the_wrong_place_is_told(make_project: MakeProject, place: str) -> None:
+    project = make_project({"robot.py": ROBOT, place: '{"pyfrc": {}}'})
+    if (project.path / "sim/config.json").exists():
+        pytest.skip("this file system does not tell capital letters from others")
+    checked = project.run("config", "check", "--strict")
+    assert checked.code == 1
+    assert checked.stdout == (
+        f"warning: {place}: pyfrc does not read this file\n  Move it to sim/config.json\n"
+        "sim/config.json: there is no such file, so everything is at its default, but 1 warning\n"
+    )
+    project.write({place: '{"other": 1}'})  # another tool's
+    assert project.run("config", "check", "--strict").code == 0
+
+
+def test_a_file_beside_the_directory_of_the_code_is_told(make_project: MakeProject) -> None:
+    project = make_project({"src/robot.py": ROBOT, "sim/config.json": '{"pyfrc": {}}'})
+    told = "warning: sim/config.json: pyfrc does not read this file\n  Move it to src/sim/config.json\n"
+    assert told in project.run("config", "check", "--main", "src/robot.py").stdout
+    project.write({"robot.py": ROBOT})  # whose it then is
+    assert told not in project.run("config", "check", "--main", "src/robot.py").stdout
+
+
+def test_show_without_a_season_tells_whose_field_it_is(make_project: MakeProject) -> None:
+    result = make_project({"robot.py": ROBOT}).run("config", "show", "--json")
+    assert json.loads(result.stdout)["sources"]["pyfrc.field.w"] == "default: season 2026"
+
+
+GAMEDATA_TEST = "def test_it(gamedata):\n    pass\n"
+
+
+def test_a_test_run_warns_once_of_what_has_no_effect(make_project: MakeProject) -> None:
+    config = '{"pyfrc": {"field": {"season": 2018},\n"dios": {}}}'
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": GAMEDATA_TEST, "sim/config.json": config})
+    result = project.run("test")
+    assert result.code == 0, result.output
+    assert "4 passed, 1 warning" in result.stdout
+    assert result.stdout.count("unknown key 'pyfrc.dios'") == 1
+    _, _, summary = result.stdout.partition("warnings summary")
+    assert "\n  sim/config.json:2: SettingsWarning: unknown key 'pyfrc.dios'\n" in summary
+    assert ".py:" not in summary
+
+    strict = project.run("test", "--", "-W", "error")
+    assert strict.code != 0
+    assert "sim/config.json:2: unknown key 'pyfrc.dios'" in strict.stdout
+    assert "Traceback" not in strict.output
+
+
+def test_a_test_run_tells_a_mistake(make_project: MakeProject) -> None:
+    config = '{"pyfrc": {\n"game_specific_messages": [1]}}'
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": GAMEDATA_TEST, "sim/config.json": config})
+    result = project.run("test")
+    assert result.code != 0
+    assert "sim/config.json:2: pyfrc.game_specific_messages[0] = 1: input should be a valid string" in result.stdout
+    assert "Traceback" not in result.output

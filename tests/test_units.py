@@ -1,0 +1,208 @@
+"""The unit registry: what it knows, that its cache can never make it fail, and errors that name the dimension."""
+
+from __future__ import annotations
+
+import copy
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pint
+import pytest
+
+from pyfrc.physics.motor_cfgs import MOTOR_CFG_CIM
+from pyfrc.physics.tankmodel import TankModel
+from pyfrc.physics.units import units
+from pyfrc_core.physics import registry
+from pyfrc_core.physics.parameters import ParameterError
+from pyfrc_core.physics.quantities import WrongDimension, magnitude
+
+# -- what it knows -----------------------------------------------------------------------------------------------------
+
+
+def test_units_of_our_own() -> None:
+    assert (60 * units.counts_per_minute).to("count / second").magnitude == pytest.approx(1)
+    assert 1 * units.cpm == 1 * units.counts_per_minute
+    assert (5310 * units.cpm).to("1 / minute").magnitude == pytest.approx(5310)
+    assert (1 * units.N_m).to("joule").magnitude == 1
+    assert (0.3048 * units.tm_kv).to("volt * second / metre").magnitude == pytest.approx(1)
+    assert (0.3048 * units.tm_ka).to("volt * second ** 2 / metre").magnitude == pytest.approx(1)
+
+
+def test_units_that_robots_use() -> None:
+    assert 5 * units.feet == units.Quantity(60, "inch") == 60 * units.inch
+    assert (1 * units.lbs).to("kg").magnitude == pytest.approx(0.45359237)
+    assert (10 * units.fps).to("m/s").magnitude == pytest.approx(3.048)
+
+
+def test_it_is_a_registry_of_pints() -> None:
+    assert isinstance(units, pint.UnitRegistry)
+    assert units("5 feet") == units.parse_expression("5 feet") == 5 * units.feet
+    assert "cpm" in units
+    assert "counts_per_minute" in list(units)
+    assert {"tm_kv", "parse_units"} <= set(dir(units))
+    assert "UnitRegistry" in repr(units)
+    assert copy.deepcopy(units).parse_units("N_m") is not None
+    with pytest.raises(pint.UndefinedUnitError):
+        _ = units.furlongs_per_robot
+
+
+def test_a_unit_can_be_added() -> None:
+    units.define("robot_length = 36.5 * inch")
+    assert (2 * units.robot_length).to("inch").magnitude == pytest.approx(73)
+
+
+def test_every_special_method_of_a_registry_is_answered() -> None:
+    """Python looks them up in the class, so that each needs one in what stands for the registry."""
+    of_pint = {name for each in pint.UnitRegistry.__mro__ if each.__module__.startswith("pint") for name in vars(each)}
+    special = {name for name in of_pint if name.startswith("__") and callable(getattr(pint.UnitRegistry, name, None))}
+    construction = {
+        "__init__",
+        "__init_subclass__",
+        "__new__",
+        "__class_getitem__",
+        "__getattr__",
+        "__deepcopy__",
+        "__annotate_func__",
+    }
+    assert special - construction <= set(vars(type(units)))
+
+
+# -- quantities of other registries, and none --------------------------------------------------------------------------
+
+
+def test_quantities_of_another_registry_are_understood() -> None:
+    own = pint.UnitRegistry()
+    model = TankModel.theory(MOTOR_CFG_CIM, own.Quantity(90, "lb"), 10.71, x_wheelbase=2 * own.feet)
+    ours = TankModel.theory(MOTOR_CFG_CIM, 90 * units.lbs, 10.71, x_wheelbase=2 * units.feet)
+    assert model.get_distance(-1, 0.5, 0.5) == ours.get_distance(-1, 0.5, 0.5)
+    assert magnitude(pint.Quantity(1, "metre"), "foot", "length") == pytest.approx(1 / 0.3048)
+    with pytest.raises(WrongDimension, match="robot_mass: 2 foot is a length, a mass was expected"):
+        TankModel.theory(MOTOR_CFG_CIM, 2 * own.feet, 10.71)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "error"),
+    [
+        (90 * units.foot, "pound", "it: 90 foot is a length, a mass was expected, such as 90 * units.lbs"),
+        (90, "pound", "it: 90 has no unit, a mass was expected"),
+        (units.foot, "pound", "it: foot is a unit without a number, a mass was expected"),
+        ("90 lbs", "pound", "it: '90 lbs' is not a quantity, a mass was expected"),
+        (True, "pound", "it: True is not a quantity, a mass was expected"),
+        (None, "foot / second", "it: None is not a quantity, a speed was expected, such as 12 * units.fps"),
+        (
+            1 * units.tm_ka,
+            "volt * second / foot",
+            "is a voltage for an acceleration, a voltage for a speed was expected",
+        ),
+        (1 * units.lbs / units.s, "second", "is of dimension [mass] / [time], a time was expected"),
+        (units.Quantity(3, ""), "foot", "is a number without a dimension, a length was expected"),
+    ],
+)
+def test_a_wrong_dimension_names_what_was_given_and_what_was_expected(value: Any, unit: str, error: str) -> None:
+    with pytest.raises(WrongDimension) as raised:
+        magnitude(value, unit, "it")
+    assert error in str(raised.value)
+
+
+def test_a_plain_number_where_it_may_be_one() -> None:
+    assert magnitude(2, "foot", "x_wheelbase", plain=True) == 2.0
+    assert magnitude(24 * units.inch, "foot", "x_wheelbase", plain=True) == pytest.approx(2.0)
+    for none in (float("nan"), float("inf") * units.feet):
+        with pytest.raises(ParameterError, match="x_wheelbase"):
+            magnitude(none, "foot", "x_wheelbase", plain=True)
+    with pytest.raises(WrongDimension, match="x_wheelbase"):
+        magnitude(2 * units.lbs, "foot", "x_wheelbase", plain=True)
+
+
+# -- the cache on disk -------------------------------------------------------------------------------------------------
+
+KNOWS_ITS_UNITS = "from pyfrc.physics.units import units; print((12 * units.inch).to('feet').magnitude, 60 * units.cpm)"
+
+
+def python(code: str, **variables: str) -> str:
+    """What a new Python prints, with these variables of the environment."""
+    done = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, **variables}, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def works(built: Any) -> bool:
+    return bool((60 * built.cpm).to("count / second").magnitude == 1 and (1 * built.foot).to("inch").magnitude > 11)
+
+
+def test_definitions_are_kept_and_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "not there yet" / "definitions"
+    assert works(registry.build(folder))
+    kept = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert any(name.endswith(".pickle") for name in kept)
+    assert list(folder.parent.iterdir()) == [folder]  # nothing else is left behind
+
+    def parses(*_: Any) -> None:
+        raise AssertionError("parsed again")
+
+    monkeypatch.setattr(registry, "_build_and_keep", parses)
+    assert works(registry.build(folder))
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == kept
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"\x80\x05garbage", b"\x80\x05K\x05.", None], ids=["empty", "garbage", "other", "half"]
+)
+def test_a_damaged_cache_is_made_anew(tmp_path: Path, content: bytes | None) -> None:
+    folder = tmp_path / "definitions"
+    registry.build(folder)
+    sound = {path.name: path.stat().st_size for path in folder.iterdir()}
+    for path in folder.iterdir():
+        path.write_bytes(path.read_bytes()[: path.stat().st_size // 2] if content is None else content)
+    assert works(registry.build(folder))
+    assert {path.name: path.stat().st_size for path in folder.iterdir()} == pytest.approx(sound, rel=0.1)
+
+
+def test_a_cache_that_cannot_be_kept_costs_only_time(tmp_path: Path) -> None:
+    a_file = tmp_path / "file"
+    a_file.write_text("in the way", "utf-8")
+    assert works(registry.build(a_file))
+    assert works(registry.build(a_file / "below"))
+    assert a_file.read_text("utf-8") == "in the way"
+    assert works(registry.build(None))
+
+
+def test_two_at_once_leave_one_whole_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder, other = tmp_path / "definitions", tmp_path / "other"
+    registry.build(other)
+    remove = shutil.rmtree
+
+    def another_process_is_first(path: Path, **options: Any) -> None:
+        remove(path, **options)
+        if path == folder and not folder.exists():
+            shutil.copytree(other, folder)
+
+    monkeypatch.setattr(shutil, "rmtree", another_process_is_first)
+    assert works(registry.build(folder))
+    assert {path.name for path in folder.iterdir()} == {path.name for path in other.iterdir()}
+    assert {path.name for path in tmp_path.iterdir()} == {"definitions", "other"}
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="XDG_CACHE_HOME is of Linux")
+def test_the_cache_is_in_the_users_cache_directory(tmp_path: Path) -> None:
+    assert python(KNOWS_ITS_UNITS, XDG_CACHE_HOME=str(tmp_path)) == "1.0 60 counts_per_minute\n"
+    assert list((tmp_path / "pyfrc").glob("pint-*/*.pickle"))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there, home is no variable")
+def test_without_a_home_nothing_is_written_here(tmp_path: Path) -> None:
+    code = f"import os; os.chdir({str(tmp_path)!r}); os.path.expanduser = lambda path: path; {KNOWS_ITS_UNITS}"
+    assert python(code, XDG_CACHE_HOME="") == "1.0 60 counts_per_minute\n"
+    assert not list(tmp_path.iterdir())
+
+
+def test_pint_is_imported_when_units_are_used() -> None:
+    code = "import sys; from pyfrc.physics.units import units; print('pint' in sys.modules)"
+    assert python(code) == "False\n"
+    assert python(f"{code}; units.feet; print('pint' in sys.modules)") == "False\nTrue\n"
