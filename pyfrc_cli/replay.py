@@ -20,6 +20,12 @@ from .project_options import chosen_project, project_options
     type=click.Path(path_type=Path, dir_okay=False),
     help="Write what the robot does, as JSON lines with a hash at the end.",
 )
+@click.option(
+    "--picture",
+    metavar="FILE",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Draw the driven path on the field, such as path.png.",
+)
 @click.argument("file", type=click.Path(path_type=Path))
 def command(
     directory: Path | None,
@@ -27,9 +33,10 @@ def command(
     robot_class: str | None,
     until: float | None,
     trace: Path | None,
+    picture: Path | None,
     file: Path,
 ) -> None:
-    """Run the robot as an input script says: one that pyfrc test --record has written.
+    """Run the robot as an input script says: one that pyfrc fuzz or pyfrc test --record has written.
 
     \b
     Exit codes: 0 it did what it did when recorded, or the script does not tell;
@@ -37,7 +44,13 @@ def command(
     """
     from pyfrc_core.replay import replay
 
-    replayed = replay(chosen_project(directory, main, robot_class), file, until=until, trace=trace)
+    project = chosen_project(directory, main, robot_class)
+    if picture is not None:
+        from pyfrc_core.sim.simulate import draw_script
+
+        draw_script(project, file, picture, until)
+        click.echo(f"wrote {picture}")
+    replayed = replay(project, file, until=until, trace=trace)
     click.echo(f"replayed {replayed.seconds:.2f} s of robot time")
     if replayed.failure is not None:
         click.secho(f"then {replayed.failure}", fg="red")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from .errors import PyfrcError
+from .errors import PyfrcError, RobotCodeError
 from .project import Project
 from .runtime.clock import to_us
 from .runtime.failures import as_robot_code_error
@@ -66,6 +67,8 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     script = load_script(file)
+    if script.story and (ended := _how_its_process_ends(project, script)) is not None:
+        return Replayed(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
     redirection.install(project.files)
     robot_class = project.load()
     until_us = None if until is None else to_us(until)
@@ -73,13 +76,16 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
         written = trace or Path(temporary, "trace.jsonl")
         run = RobotRun()
         failure = None
-        with Watchdog(run, project.files, project.settings.test.hang_seconds).watching():
+        settings = project.settings
+        hang_seconds = settings.fuzz.hang_seconds if script.story else settings.test.hang_seconds
+        with Watchdog(run, project.files, hang_seconds).watching():
             run.open()
             try:
                 seed_generators(script.seed)
-                with traced(run, written) as recorder:
+                with judged_if_kept(run, project, script), traced(run, written) as recorder:
                     try:
-                        _play(project, robot_class, run, script, until_us)
+                        construct(project, run, robot_class)
+                        Player(script, run).play(until_us)
                     except PyfrcError:
                         raise
                     except Exception as error:
@@ -94,13 +100,35 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     return Replayed(seconds, failure, recorder.digest(), equal, difference)
 
 
-def _play(project: Project, robot_class: type[Any], run: RobotRun, script: InputScript, until_us: int | None) -> None:
+def construct(project: Project, run: RobotRun, robot_class: type[Any]) -> None:
+    """Make the robot, with the project's physics, in a run that is open."""
     if project.physics_file.is_file():
         from .physics.engine import load_physics
 
         load_physics(project).attach(run)
     run.construct(robot_class)
-    Player(script, run).play(until_us)
+
+
+def _how_its_process_ends(project: Project, script: InputScript) -> str | None:
+    """Of a script that fuzzing has kept since the robot's process ended with it, how that was; tried in another one."""
+    from .fuzz.failure import PROCESS_ENDED
+    from .fuzz.robots import robots_of
+
+    with robots_of(project, jobs=1) as robots:
+        failure = robots.follow(script).failure
+    return failure.text if failure is not None and failure.kind == PROCESS_ENDED else None
+
+
+@contextmanager
+def judged_if_kept(run: RobotRun, project: Project, script: InputScript) -> Iterator[None]:
+    """Of a script that fuzzing has kept, take for a failure what fuzzing does."""
+    if not script.story:
+        yield
+        return
+    from .fuzz.judge import judged
+
+    with judged(run, project.files, project.settings.fuzz):
+        yield
 
 
 def _first_difference(recorded: Path, replayed: Path, run_us: int | None) -> Difference | None:

@@ -323,23 +323,52 @@ CHORD = """
     """
 
 
-def test_a_failing_match_is_kept_and_replayed(make_project) -> None:
+def test_the_shortest_way_to_a_failure_is_kept_and_replayed(make_project) -> None:
     project = make_project({"robot.py": CHORD, "tests/fuzz_test.py": "from pyfrc.tests.fuzz_test import *\n"})
     result = project.run("test", "--seed", "3")
     assert result.code == 1
-    failure = re.search(r"robot\.py:13: RuntimeError: nobody thought of this [\d.]+", result.output)
-    assert failure is not None, result.output
+    assert re.search(r"robot\.py:13: RuntimeError: nobody thought of this [\d.]+", result.output), result.output
     assert "random seed: 3" in result.output
     file = re.search(r"pyfrc replay (\S+)", result.output)
     assert file is not None, result.output
     assert file[1] == str(Path(".pyfrc", "fuzz", "seed-3.jsonl"))
+    script = load_script(project.path / file[1])
+    writes = {target: value for step in script.steps for target, value in step.writes.items()}
+    assert writes == {
+        "mode": "teleop",
+        "joysticks[0].buttons[2]": True,
+        "joysticks[0].buttons[3]": True,
+        "dio[3].value": False,
+    }
+    assert re.search(r"at [\d.]+ s in teleoperated: .*", result.output), result.output
+    told = re.search(r"at [\d.]+ s: (robot\.py:13: RuntimeError: .*)", result.output)
+    assert told is not None, result.output
     replayed = project.run("replay", file[1])
     assert replayed.code == 1
-    assert failure[0] in replayed.output  # with the very number
+    assert f"then {told[1]}\n" in replayed.output  # with the very number
+    assert (project.path / ".pyfrc/.gitignore").read_text() == "*\n"
+
+
+def test_where_processes_cannot_be_forked_the_whole_match_is_kept(make_project) -> None:
+    project = make_project(
+        {
+            "robot.py": CHORD,
+            "tests/fuzz_test.py": "from pyfrc.tests.fuzz_test import *\n",
+            "pyproject.toml": """
+                [tool.pyfrc.test]
+                isolation = "spawn"
+                """,
+        }
+    )
+    result = project.run("test", "--seed", "3")
+    failure = re.search(r"robot\.py:13: RuntimeError: nobody thought of this [\d.]+", result.output)
+    assert failure is not None, result.output
+    assert "cannot be forked here" in result.output
     at = re.search(r"at ([\d.]+) s of a match", result.output)
     assert at is not None
-    assert load_script(project.path / file[1]).end_us == round(float(at[1]) * 1e6) + 20_000
-    assert (project.path / ".pyfrc/.gitignore").read_text() == "*\n"
+    file = project.path / ".pyfrc/fuzz/seed-3.jsonl"
+    assert load_script(file).end_us == round(float(at[1]) * 1e6) + 20_000
+    assert failure[0] in project.run("replay", file).output
 
 
 @pytest.mark.parametrize("name", ["timed", "square", "pneumatics"])

@@ -247,6 +247,14 @@ BAD = {
     "empty": ("", ":1: the file is empty"),
     "no header": ('{"t": 0, "set": {}}\n', ':1: the first line must be the header, with "format"'),
     "unknown version": (text(header={"format": "pyfrc-input 2", "end": 1}), ":1: unknown format 'pyfrc-input 2'"),
+    "a story that is none": (
+        text(header={"format": FORMAT, "end": 1, "story": "once"}),
+        ':1: "story" must be a list of',
+    ),
+    "a story of numbers": (
+        text(header={"format": FORMAT, "end": 1, "story": [1]}),
+        ':1: "story" must be a list of texts',
+    ),
     "no end": (text(header={"format": FORMAT}), ':1: "end" is missing'),
     "truncated": (text({"t": 0, "set": {"mode": "teleop"}})[:-8], ":2: not valid JSON"),
     "not JSON": (text() + "hello\n", ":2: not valid JSON"),

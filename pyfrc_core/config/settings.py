@@ -75,6 +75,40 @@ class TestSettings:
 
 
 @dataclass(frozen=True)
+class DeploySettings:
+    """``[tool.pyfrc.deploy]``: what belongs on the robot."""
+
+    __pydantic_config__ = STRICT
+
+    #: Patterns of files and directories that are not uploaded.
+    exclude: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class FuzzSettings:
+    """``[tool.pyfrc.fuzz]``: how long fuzzing's matches are, and what counts as a failure besides exceptions."""
+
+    __pydantic_config__ = STRICT
+
+    #: How long each match is, in robot time.
+    match_seconds: Seconds = 30.0
+    #: Processor seconds without progress in robot time, after which robot code counts as hanging.
+    hang_seconds: Seconds = 2.0
+    #: A loop that takes longer than its period, in robot time.
+    slow_loops: bool = True
+    #: A motor that is told to move while the robot is disabled.
+    motors_while_disabled: bool = True
+    #: A motor that is told to move by NaN.
+    not_a_number: bool = True
+    #: A motor that is told to move by more than 1, or less than -1.
+    out_of_range: bool = True
+    #: An error that the HAL reports.
+    hal_errors: bool = True
+    #: A mode that the robot does not get out of, or a program that ends.
+    stuck_modes: bool = True
+
+
+@dataclass(frozen=True)
 class Settings:
     """``[tool.pyfrc]``."""
 
@@ -84,8 +118,12 @@ class Settings:
     main: str | None = None
     #: The robot class's name, when the file has several.
     robot_class: str | None = None
+    #: The team's number, by which its robot is found.
+    team: int | None = None
     match: MatchSettings = field(default_factory=MatchSettings)
     test: TestSettings = field(default_factory=TestSettings)
+    fuzz: FuzzSettings = field(default_factory=FuzzSettings)
+    deploy: DeploySettings = field(default_factory=DeploySettings)
 
 
 def load_settings(pyproject: Path) -> Settings:
@@ -120,5 +158,11 @@ def _validated(table: object, text: TomlText) -> Settings:
 #: The keys of ``[tool.pyfrc]`` and of the tables in it.
 _KEYS: dict[KeyPath, list[str]] = {
     path: [key.name for key in fields(table)]
-    for path, table in {(): Settings, ("match",): MatchSettings, ("test",): TestSettings}.items()
+    for path, table in {
+        (): Settings,
+        ("match",): MatchSettings,
+        ("test",): TestSettings,
+        ("deploy",): DeploySettings,
+        ("fuzz",): FuzzSettings,
+    }.items()
 }

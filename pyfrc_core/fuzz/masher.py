@@ -14,7 +14,7 @@ from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.targets import MODE
 from .dashboard import Dashboard, find_dashboard
 from .gamepads import find_gamepads
-from .inputs import find_controls, find_sensors
+from .inputs import Input, find_controls, find_sensors
 from .match_plan import plan_match
 from .sensors import Sensors
 from .sticks import Sticks
@@ -58,6 +58,8 @@ class MatchMasher:
         settings: MatchSettings | None = None,
         game_messages: Sequence[str] = (),
     ) -> None:
+        #: What it has found to mash, by target.
+        self.inputs: dict[str, Input] = {}
         self._chance = chance
         self._run = run
         self._hal_data = run.hal_data
@@ -130,11 +132,17 @@ class MatchMasher:
         self._find_us += _SECOND_US
         if now_us <= _GAMEPADS_UNTIL_US and not self._sticks.unplugged:  # those have no controls
             gamepads = find_gamepads(self._run.robot)
-            self._sticks.know(find_controls(self._hal_data, gamepads), gamepads)
+            controls = list(find_controls(self._hal_data, gamepads))
+            self._sticks.know(controls, gamepads)
+            self._remember(controls)
         sensors = sorted(find_sensors(self._hal_data))
+        self._remember(sensors)
         self._sensors.know(sensors)
         self._sensors.left_alone = {each.device for each in sensors if each.target in self._driven}
         self._dashboard.know(sorted(find_dashboard()))
+
+    def _remember(self, inputs: list[Input]) -> None:
+        self.inputs |= {each.target: each for each in inputs}
 
     def _look_for_physics(self, now_us: int) -> None:
         self._look_us += _LOOK_EVERY_US

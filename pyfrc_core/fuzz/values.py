@@ -127,7 +127,18 @@ def nearest(kind: Kind, value: float) -> float:
     """The nearest value that this kind of input may have, with no more digits than a person reads."""
     span = SPANS[kind]
     inside = min(max(value, span.low), span.high)
-    return round(inside) if span.whole else round(inside, _DIGITS)
+    return round(inside) if span.whole else round(float(inside), _DIGITS)
+
+
+def simpler(kind: Kind, value: Any) -> list[float]:
+    """Values of this kind that are shorter to read, the shortest first; of kinds without numbers, none."""
+    span = SPANS.get(kind)
+    if span is None or isinstance(value, bool) or not isinstance(value, int | float):
+        return []
+    rounded = [round(value, digits) for digits in (1, 2)]
+    found: list[float] = [nearest(kind, each) for each in (span.low, span.high, value, *rounded, *span.typical)]
+    found = [each for each in dict.fromkeys(found) if len(repr(each)) < len(repr(value))]
+    return sorted(found, key=lambda each: (len(repr(each)), abs(each - value)))
 
 
 def can_be(kind: Kind, value: Any, options: tuple[Any, ...] = ()) -> bool:

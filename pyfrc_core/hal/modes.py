@@ -121,6 +121,16 @@ def is_enabled() -> bool:
     return bool(getDriverStationEnabled()) and bool(getDriverStationDsAttached()) and not getDriverStationEStop()
 
 
+def is_attached() -> bool:
+    """Whether a driver station is there."""
+    return bool(getDriverStationDsAttached())
+
+
+def is_stopped() -> bool:
+    """Whether the emergency stop was pressed."""
+    return bool(getDriverStationEStop())
+
+
 def set_match_time(seconds_left: float) -> None:
     """The time left in the current period, in seconds: `DriverStation.getMatchTime` in robot code."""
     setDriverStationMatchTime(seconds_left)

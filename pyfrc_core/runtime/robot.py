@@ -51,11 +51,14 @@ class RobotRun:
         self.recorder: Recorder | None = None
         #: What moves the robot's sensors, if the project has physics.
         self.physics: object = None
+        #: What robot code draws on the field with, where there is a field to be seen.
+        self.renderer: object = None
         #: Threads that did not stop when the run ended.
         self.still_running: list[RobotThread] = []
         #: Whether the robot's code is being run; while it is not, it cannot be what takes long.
         self.in_motion = False
-        self._own_loop: RobotThread | None = None
+        #: The thread of a robot that has a loop of its own.
+        self.own_loop: RobotThread | None = None
         self._started = self._ended = False
         self._closing = contextlib.ExitStack()
 
@@ -127,7 +130,7 @@ class RobotRun:
         """Whether the robot program has started and has neither ended nor failed."""
         if not self._started or self._ended or self.threads.failure is not None:
             return False
-        return self._own_loop is None or not self._own_loop.finished
+        return self.own_loop is None or not self.own_loop.finished
 
     @property
     def started(self) -> bool:
@@ -141,7 +144,7 @@ class RobotRun:
             if _has_loop_of_its_own(self.robot):
                 thread = threading.Thread(target=self._compete, name="robot", daemon=True)
                 cooperative.start_in_robot_time(thread)
-                self._own_loop = cooperative.record_of(thread)
+                self.own_loop = cooperative.record_of(thread)
                 self.clock.run_until(self.clock.now_us)
             else:
                 self.timed_loop.begin(self.robot)

@@ -55,6 +55,8 @@ class TimedLoop:
         self._in_place = False
         self._alarm_us = _NEVER
         self.stopped = False
+        #: Called after each callback, for whoever wants to know how long it took: it began at `loop_start_us`.
+        self.after_call: Callable[[Periodic], None] | None = None
         #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
         self.loop_start_us = 0
 
@@ -113,6 +115,8 @@ class TimedLoop:
         while callback.due_us <= woken_us and not self.stopped:
             self.loop_start_us = clock.now_us
             callback.call()
+            if self.after_call is not None:
+                self.after_call(callback)
             callback.move_on(woken_us)
             callback = self._next()
         return callback

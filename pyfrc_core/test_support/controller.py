@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..config.settings import MatchSettings
 from ..hal import modes
+from ..replay import judged_if_kept
 from ..runtime.clock import to_us
 from ..runtime.endings import TestEnded
 from ..runtime.scripts.player import Player
@@ -137,18 +138,22 @@ class TestController:
     def replay(self, path: str | Path) -> None:
         """Run the robot as an input script says, from its start to the script's end.
 
-        :param path: the script, such as one that ``pyfrc test --record`` has written
+        A script that `pyfrc fuzz` has kept fails also when the robot does, without an exception, what that looks for.
+
+        :param path: the script, such as one that ``pyfrc test --record`` or ``pyfrc fuzz`` has written
         :raises ScriptError: when it is not one, or does not fit this robot; with its line
         :raises RuntimeError: when the robot has run already in this test
         """
         __tracebackhide__ = True
         self._begin("replay")
         script = load_script(Path(path))
-        seed_generators(script.seed)
-        try:
+        if script.seed != self.seed:  # else they have begun with it, before the robot was constructed
+            seed_generators(script.seed)
+        with ExitStack() as closing:
+            if self.project is not None:
+                closing.enter_context(judged_if_kept(self._run, self.project, script))
+            closing.callback(self._run.end)
             Player(script, self._run).play()
-        finally:
-            self._run.end()
 
     # -- running, as today ------------------------------------------------------------------------------------
 

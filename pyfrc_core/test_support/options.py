@@ -50,7 +50,7 @@ class TestOptions:
         jobs = jobs or settings.jobs
         return cls(
             seed=DEFAULT_SEED if seed is None else seed,
-            jobs=_usable_processors() if jobs == "auto" else jobs,
+            jobs=usable_processors() if jobs == "auto" else jobs,
             isolation=isolation or settings.isolation,
             trace_directory=trace_directory,
             record_directory=record_directory,
@@ -58,7 +58,8 @@ class TestOptions:
         )
 
 
-def _usable_processors() -> int:
+def usable_processors() -> int:
+    """How many processes this one may keep busy."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

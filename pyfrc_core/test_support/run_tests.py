@@ -13,8 +13,8 @@ import pytest
 from .. import tests as ready_made
 from ..errors import PyfrcError
 from ..project import Project
+from ..runtime.forks import FORK_IS_SAFE
 from .isolation.loop import IsolatedTests
-from .isolation.processes import FORK_IS_SAFE
 from .isolation.spare import Spare
 from .options import TestOptions
 from .pytest_plugin import PyFrcPlugin

@@ -1,7 +1,7 @@
 """Mashes the buttons and switches in random ways, to find the control situations that nobody thinks of.
 
-Its random numbers start from the run's seed. What a failing match was told is kept as an input script: ``pyfrc replay``
-has it fail again.
+Its random numbers start from the run's seed. The shortest way to what made the robot fail is kept as an input script:
+``pyfrc replay`` has it fail again.
 """
 
 from __future__ import annotations
@@ -12,12 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from ..fuzz.masher import MatchMasher
+from ..fuzz.mashing import Mashing
 from ..fuzz.match_plan import seconds_of
 from ..hal import HalData, modes
 from ..project import Project, find_project
-from ..runtime.clock import PACKET_US
-from ..runtime.scripts.script import InputScript, Step
-from ..runtime.scripts.targets import Targets
+from ..runtime.scripts.script import InputScript
 from ..test_support.controller import TestController
 from ..test_support.fake_time import FakeTime
 
@@ -25,6 +24,9 @@ __all__ = ["test_fuzz"]
 
 #: Where scripts of failing matches are kept, in the project.
 _KEPT = Path(".pyfrc", "fuzz")
+
+#: How many robots are run at most to make a script short.
+_MOST_RUNS = 300
 
 
 def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, robot: Any) -> None:
@@ -38,43 +40,30 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
         settings=project.settings.match,
         game_messages=project.game_specific_messages,
     )
-    targets, steps = Targets(hal_data), list[Step]()
-
-    def write() -> None:
-        writes = masher.writes(clock.now_us)
-        if writes:
-            steps.append(Step(clock.now_us, writes))
-        for target, value in writes.items():
-            targets.write(target, value, clock.now_us)
-
-    def on_step(now: float) -> bool:
-        write()
-        targets.count_down(clock.now_us)
-        return not masher.over(clock.now_us)
-
-    write()
+    mashing = Mashing(fake_time.run, masher)
+    mashing.write()
     try:
-        control.run_test(on_step)
-    except Exception:
-        script = InputScript(tuple(steps), clock.now_us + PACKET_US, robot=project.main_file.name, seed=seed)
-        _tell(_keep(script, project), script, clock.now)
+        control.run_test(mashing.on_packet)
+    except Exception as error:
+        print(f"The robot failed at {clock.now:.2f} s of a match with everything mashed, in {modes.mode_name()} mode.")
+        _keep(project, mashing.script(project.main_file.name, seed), masher, error)
         raise
 
 
-def _keep(script: InputScript, project: Project) -> Path:
-    """Write it where a next run with the same seed finds it, out of version control."""
+def _keep(project: Project, script: InputScript, masher: MatchMasher, error: Exception) -> None:
+    """Write it where a next run with the same seed finds it, out of version control; as short as it can be made."""
+    from ..fuzz.failure import failure_of
+    from ..fuzz.shrink_apart import shrunk_apart
+
+    shrunk = shrunk_apart(project, script, failure_of(error, project.files), masher.inputs, _MOST_RUNS)
     file = project.root / _KEPT / f"seed-{script.seed}.jsonl"
-    script.save(file)
+    (shrunk.script or script).save(file)
     ignored = project.root / _KEPT.parts[0] / ".gitignore"
     if not ignored.exists():
         ignored.write_text("*\n", encoding="utf-8")
-    return file
-
-
-def _tell(file: Path, script: InputScript, now: float) -> None:
     shown = os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
-    print(
-        f"The robot failed at {now:.2f} s of a match with everything mashed, in {modes.mode_name()} mode.\n"
-        f"What it was told, {len(script.steps)} changes from seed {script.seed}, is kept. To have it fail again:\n\n"
-        f"    pyfrc replay {shown}\n"
-    )
+    if shrunk.script is not None:
+        print("The shortest way there:\n", *(f"    {line}" for line in shrunk.story), sep="\n")
+    else:
+        print(f"What it was told, {len(script.steps)} changes from seed {script.seed}, is kept: {shrunk.why_not}.")
+    print(f"\nTo have it fail again:\n\n    pyfrc replay {shown}\n")

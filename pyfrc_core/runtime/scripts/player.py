@@ -36,6 +36,16 @@ class Player:
         :raises ScriptError: when something cannot be written, or the robot has no such device
         """
         __tracebackhide__ = True
+        self.start()
+        end_us = self._script.end_us if until_us is None else min(until_us, self._script.end_us)
+        if end_us > self._run.clock.now_us:
+            self._run.run_until(end_us - 1)
+        if end_us == self._script.end_us:
+            self.see_that_all_were_there()
+
+    def start(self) -> None:
+        """Start the robot; from then on the clock writes what is due."""
+        __tracebackhide__ = True
         run, script = self._run, self._script
         run.clock.limit_us = max(run.clock.limit_us, script.end_us)
         run.clock.before_packet.append(self._on_packet)
@@ -43,11 +53,6 @@ class Player:
             run.run_until(script.start_us)
         self._write_until(script.start_us)
         run.start()
-        end_us = script.end_us if until_us is None else min(until_us, script.end_us)
-        if end_us > run.clock.now_us:
-            run.run_until(end_us - 1)
-        if end_us == script.end_us:
-            self._see_that_all_were_there()
 
     def _on_packet(self, now: float) -> None:
         self._targets.count_down(self._run.clock.now_us)
@@ -61,8 +66,11 @@ class Player:
         if self._next is not None:
             self._run.clock.at(self._next.at_us, INPUT, lambda: self._write_until(self._run.clock.now_us))
 
-    def _see_that_all_were_there(self) -> None:
-        """A device that the robot has not made takes what is written to it, and nobody reads it."""
+    def see_that_all_were_there(self) -> None:
+        """Look, at the end, for what was written to devices that the robot has not made: nobody reads that.
+
+        :raises ScriptError: naming the first such line
+        """
         for step in self._script.steps:
             with self._naming_the_line_of(step):
                 for target in step.writes:

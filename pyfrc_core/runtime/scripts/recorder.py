@@ -86,6 +86,10 @@ class Recorder:
         packages = {name: version(name) for name in _RECORDED_PACKAGES}
         return InputScript(tuple(self._steps), end_us, self._start_us, robot, seed, packages, trace)
 
+    def steps_from(self, index: int) -> tuple[Step, ...]:
+        """What was recorded, from its step with this number on. The last step may still change."""
+        return tuple(self._steps[index:])
+
     def _look(self) -> dict[str, Any]:
         found: dict[str, Any] = {MODE: modes.mode_name()}
         for port, stick in enumerate(self._hal_data["joysticks"]):

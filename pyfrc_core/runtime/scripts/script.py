@@ -58,6 +58,8 @@ class InputScript:
     :param seed: what random generators start from
     :param packages: the versions of what it was recorded with
     :param trace: the hash of what the robot did when this was recorded
+    :param story: of a script that fuzzing has kept, what happens in it, for people; whoever replays it then looks
+        for all that fuzzing takes for a failure
     :param file: where it was read from, for errors
     """
 
@@ -68,6 +70,7 @@ class InputScript:
     seed: int = 0
     packages: Mapping[str, str] = field(default_factory=dict)
     trace: str | None = None
+    story: tuple[str, ...] = ()
     file: str = field(default="script", compare=False)
 
     def lines(self) -> Iterator[str]:
@@ -78,7 +81,9 @@ class InputScript:
         header |= {"end": self.end_us / 1_000_000, "packages": dict(self.packages)}
         if self.trace is not None:
             header["trace"] = self.trace
-        yield json.dumps(header)
+        if self.story:
+            header["story"] = list(self.story)
+        yield json.dumps(header, ensure_ascii=False)
         for step in self.steps:
             yield json.dumps({"t": step.at_us / 1_000_000, "set": dict(step.writes)}, ensure_ascii=False)
 
@@ -149,6 +154,7 @@ def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
         header.of_type("seed", int, "a whole number", 0),
         header.of_type("packages", dict, "an object of versions", {}),
         header.of_type("trace", str, "text", ""),
+        header.texts("story"),
         name,
     )
 
@@ -182,6 +188,13 @@ class _Line:
                 where=self.where,
             )
         return value
+
+    def texts(self, key: str) -> tuple[str, ...]:
+        """A list of texts, which may be missing."""
+        found = self.of_type(key, list, "a list of texts", [])
+        if not all(isinstance(each, str) for each in found):
+            raise ScriptError(f'"{key}" must be a list of texts', where=self.where)
+        return tuple(found)
 
     def time(self, key: str, default: float | None = None) -> int:
         """A time in seconds, as microseconds."""

@@ -20,10 +20,10 @@ from typing import Any
 
 import pytest
 
+from ...runtime.forks import FORK_IS_SAFE, left_behind
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from .messages import decode, replay
-from .processes import FORK_IS_SAFE, ForkedTest, SpawnedTest, TestProcess, wait_for_any
-from .spare import left_behind
+from .processes import ForkedTest, SpawnedTest, TestProcess, wait_for_any
 
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
 _ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})

@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import pickle
-import selectors
 import signal
 import subprocess
 import sys
 import tempfile
-import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
 import pytest
 
 from ...measure.coverage import save_here
+from ...runtime import forks
 from ...runtime.own_process import LastWords, end_processes_of_the_robot, exit_now, explain_end, write_all
 from ..pytest_plugin import PyFrcPlugin
 from .messages import Teller
-
-#: macOS has fork, but its system libraries do not survive it; Windows has none.
-FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
-
-# How long to wait before looking whether a process is gone without a word. Decides nothing else.
-_LOOK_SECONDS = 0.05
 
 
 class TestProcess(ABC):
@@ -84,21 +76,10 @@ class TestProcess(ABC):
         return explain_end(words, self._status, self._files, "in the middle of the test")
 
 
-@contextlib.contextmanager
-def forking_quietly() -> Iterator[None]:
-    """Python warns of forking where other threads are; the ones here (numpy's) are made for it."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)
-        yield
-
-
 def wait_for_any(processes: list[TestProcess]) -> None:
     """Return when at least one of these has something new, or may have ended."""
-    with selectors.DefaultSelector() as selector:
-        for process in processes:
-            if not process.finished and (number := process.fileno()) is not None:
-                selector.register(number, selectors.EVENT_READ)
-        selector.select(_LOOK_SECONDS)
+    numbers = [process.fileno() for process in processes if not process.finished]
+    forks.wait_for_any([number for number in numbers if number is not None])
     for process in processes:
         if not process.finished:
             process.poll()
@@ -109,53 +90,29 @@ class ForkedTest(TestProcess):
 
     def __init__(self, item: pytest.Item, plugin: PyFrcPlugin) -> None:
         super().__init__(item, plugin)
-        self._pipe, writing_end = os.pipe()
-        os.set_blocking(self._pipe, False)
-        sys.stdout.flush()
-        sys.stderr.flush()
-        with forking_quietly():
-            self._pid = os.fork()
-        if self._pid == 0:
-            _become_the_test(
+        self._fork = forks.Fork(
+            lambda send: _become_the_test(
                 item,
                 plugin,
-                lambda data: write_all(writing_end, data),
+                send,
                 self._last_words.fileno(),
                 (self._captured[0].fileno(), self._captured[1].fileno()),
             )
-        os.close(writing_end)
+        )
 
     def fileno(self) -> int | None:
-        return self._pipe
+        return self._fork.fileno()
 
     def poll(self) -> None:
-        # Asked before the pipe is read to its end: what an ended process wrote is there by now.
-        ended = self._reap(os.WNOHANG)
-        while True:
-            try:
-                data = os.read(self._pipe, 1 << 20)
-            except BlockingIOError:
-                break
-            if not data:
-                ended = ended or self._reap(0)
-                break
-            self._message += data
-        if ended:
-            self.finished = True
-            os.close(self._pipe)
-
-    def _reap(self, how: int) -> bool:
-        pid, status = os.waitpid(self._pid, how)
-        if pid:
-            self._status = os.waitstatus_to_exitcode(status)
-        return bool(pid)
+        self._fork.poll()
+        self._take_over()
 
     def kill(self) -> None:
-        if not self.finished:
-            os.kill(self._pid, signal.SIGKILL)
-            self._reap(0)
-            self.finished = True
-            os.close(self._pipe)
+        self._fork.kill()
+        self._take_over()
+
+    def _take_over(self) -> None:
+        self.finished, self._status, self._message = self._fork.finished, self._fork.status, self._fork.message
 
 
 class SpawnedTest(TestProcess):

@@ -13,10 +13,8 @@ import sys
 import threading
 from collections.abc import Callable
 
-from ...hal import devices_exist
 from ...measure.coverage import save_here
-from ...runtime.cooperative import scope
-from .processes import forking_quietly
+from ...runtime.forks import forking_quietly, left_behind
 
 
 class Spare:
@@ -69,11 +67,3 @@ class Spare:
                 return os.waitstatus_to_exitcode(os.waitpid(self._pid, 0)[1])
             except KeyboardInterrupt:
                 continue  # the spare has got it too, and says what it makes of it
-
-
-def left_behind(python_threads: int) -> bool:
-    """Whether this process has threads or devices that a fork of it would lack, and wait for.
-
-    :param python_threads: how many there were when all was well
-    """
-    return bool(scope.waiting_to_begin) or threading.active_count() > python_threads or devices_exist()

@@ -1,0 +1,134 @@
+"""`pyfrc fuzz`."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .project_options import chosen_project, project_options
+
+if TYPE_CHECKING:
+    from pyfrc_core.fuzz.campaign import Found, Progress
+
+_DEFAULT_SECONDS = 60.0
+
+#: Seconds between two lines about the progress, on a terminal and elsewhere.
+_ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
+
+
+@click.command("fuzz", context_settings={"help_option_names": ["-h", "--help"]})
+@project_options
+@click.option(
+    "--time",
+    "seconds",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="SECONDS",
+    help=f"Begin no more matches after so long. Default: {_DEFAULT_SECONDS:g}.",
+)
+@click.option("--runs", type=click.IntRange(min=1), metavar="N", help="Play so many matches instead.")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    metavar="N",
+    default=0,
+    show_default=True,
+    help="What all chance comes from: with --runs, the same seed does the same.",
+)
+@click.option(
+    "-j",
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="How many robots run at the same time. Default: as many as there are processors.",
+)
+def command(
+    directory: Path | None,
+    main: Path | None,
+    robot_class: str | None,
+    seconds: float | None,
+    runs: int | None,
+    seed: int,
+    jobs: int | None,
+) -> None:
+    """Play many matches with everything mashed, and keep the shortest way to each failure.
+
+    What is found is kept as tests/fuzz/NAME.jsonl, for pyfrc replay, and tests/test_fuzz_regressions.py fails until it
+    is repaired.
+
+    \b
+    Exit codes: 0 nothing was found; 1 something was found, or failed as it did before; 2 wrong usage, no such project.
+    """
+    if seconds is not None and runs is not None:
+        raise click.UsageError("--time and --runs exclude each other.")
+    from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
+    from pyfrc_core.test_support.options import usable_processors
+
+    project = chosen_project(directory, main, robot_class)
+    if seconds is None and runs is None:
+        seconds = _DEFAULT_SECONDS
+    teller = _Teller()
+    campaign = run_campaign(project, CampaignOptions(seed, runs, seconds, jobs or usable_processors()), teller)
+    teller.end(campaign.progress)
+    if campaign.interrupted:
+        click.echo("interrupted")
+    if not campaign.found:
+        click.echo("Nothing was found.")
+    sys.exit(1 if campaign.found else 0)
+
+
+class _Teller:
+    """Tells how it goes: in one line that changes, or, where that cannot be, in one now and then."""
+
+    def __init__(self) -> None:
+        self._on_terminal = sys.stdout.isatty()
+        self._told = time.monotonic()
+
+    def on_progress(self, progress: Progress) -> None:
+        now = time.monotonic()
+        if now - self._told < (_ON_TERMINAL if self._on_terminal else _ELSEWHERE):
+            return
+        self._told = now
+        if self._on_terminal:
+            click.echo(f"\r\033[K{_line(progress)}", nl=False)
+        else:
+            click.echo(_line(progress))
+
+    def on_found(self, found: Found) -> None:
+        self._clear()
+        click.secho(found.failure.text, fg="red")
+        if found.kept is None:
+            click.echo("  This did not happen again when it was replayed: nothing is kept.")
+        elif found.known:
+            click.echo(f"  not repaired yet: {found.kept.shown}")
+        else:
+            for line in found.story[:-1]:
+                click.echo(f"  {line}")
+            click.echo(f"  {_count(found.writes, 'write')}, {_count(found.runs, 'run')} of the robot to find them")
+            click.echo(f"  pyfrc replay {found.kept.shown}")
+
+    def end(self, progress: Progress) -> None:
+        self._clear()
+        progress.doing = ""
+        click.echo(_line(progress))
+
+    def _clear(self) -> None:
+        if self._on_terminal:
+            click.echo("\r\033[K", nl=False)
+
+
+def _line(progress: Progress) -> str:
+    parts = [
+        _count(progress.matches, "match", "matches"),
+        f"{progress.simulated / 3600:.2f} h of robot time",
+        f"{progress.covered:.0%} of the robot's lines",
+        _count(progress.crashes, "failure"),
+    ]
+    return ", ".join([*parts, *([progress.doing] if progress.doing else [])])
+
+
+def _count(number: int, what: str, many: str | None = None) -> str:
+    return f"{number:,} {what if number == 1 else many or what + 's'}"

@@ -1,0 +1,217 @@
+"""A campaign: many matches, steered by the lines they reach; each different failure once, made short, and kept.
+
+Matches are made up and learned from in batches, in the order of their numbers. So what a campaign does follows from
+its seed alone, in however many processes it runs.
+"""
+
+from __future__ import annotations
+
+import time
+from contextlib import closing
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from ..project import Project
+from .describe import story_of
+from .failure import Failure
+from .kept import Kept, KeptScripts
+from .lines import Line, share
+from .match import Follow, Mash, Played
+from .recipes import Recipes
+from .robots import Robots, robots_of
+from .shrink import Shrinker
+
+_BATCH = 32
+
+
+@dataclass(frozen=True)
+class CampaignOptions:
+    """How a campaign was asked for.
+
+    :param seed: what all its chance comes from
+    :param runs: how many matches, or None
+    :param seconds: for how long, in real time, or None; what was found by then is made short all the same
+    :param jobs: how many robots at a time
+    """
+
+    seed: int
+    runs: int | None
+    seconds: float | None
+    jobs: int
+
+
+@dataclass
+class Progress:
+    """How far a campaign has come.
+
+    :param simulated: robot time, in seconds
+    :param covered: how much of the robot's lines was reached, from 0 to 1
+    :param crashes: how many different failures there are
+    :param doing: what it does now
+    """
+
+    matches: int = 0
+    simulated: float = 0.0
+    covered: float = 0.0
+    crashes: int = 0
+    doing: str = ""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A failure, for people.
+
+    :param story: what happens, moment by moment; the failure last
+    :param kept: where the way there is; None when it did not fail in the same way again
+    :param known: whether an earlier campaign had kept it
+    :param runs: how many robots were run to make it short
+    :param writes: how many things the shortest way writes
+    """
+
+    failure: Failure
+    story: tuple[str, ...]
+    kept: Kept | None
+    known: bool = False
+    runs: int = 0
+    writes: int = 0
+
+
+@dataclass
+class Campaign:
+    """What came of a campaign.
+
+    :param interrupted: whether somebody has ended it
+    """
+
+    progress: Progress = field(default_factory=Progress)
+    found: list[Found] = field(default_factory=list)
+    interrupted: bool = False
+
+
+class Listener(Protocol):
+    """Whoever is told how a campaign goes."""
+
+    def on_progress(self, progress: Progress) -> None: ...
+
+    def on_found(self, found: Found) -> None: ...
+
+
+def run_campaign(project: Project, options: CampaignOptions, listener: Listener) -> Campaign:
+    """Run a campaign to its end, or until Ctrl-C: then what it has found is kept, too.
+
+    :raises RobotCodeError: when the robot's code cannot be imported
+    :raises ScriptError: when a script that was kept before is none
+    """
+    deadline = None if options.seconds is None else time.monotonic() + options.seconds
+    with robots_of(project, options.jobs) as robots:
+        runner = _Runner(robots, options, deadline, listener)
+        try:
+            with robots.interruptible():
+                runner.look_at_kept()
+                runner.run()
+        except KeyboardInterrupt:
+            runner.campaign.interrupted = True
+            runner.keep_the_rest()
+        return runner.campaign
+
+
+class _Runner:
+    def __init__(self, robots: Robots, options: CampaignOptions, deadline: float | None, listener: Listener) -> None:
+        self.campaign = Campaign()
+        self._robots = robots
+        self._options = options
+        self._deadline = deadline
+        self._listener = listener
+        self._kept = KeptScripts(robots.project)
+        self._recipes = Recipes(options.seed)
+        self._all_lines = robots.lines
+        self._reached: frozenset[Line] = frozenset()
+        self._failures: list[Failure] = []
+        #: Found, and not made short yet.
+        self._waiting: list[Played] = []
+        self._shrinking: Shrinker | None = None
+
+    def look_at_kept(self) -> None:
+        """What earlier campaigns have found, and is not repaired, is not found anew."""
+        scripts = list(self._kept.all())
+        with closing(self._robots.play(Follow(kept.script) for kept in scripts)) as results:
+            for kept, played in zip(scripts, results, strict=True):
+                if played.failure is not None and self._is_new(played.failure):
+                    self._tell(Found(played.failure, story_of(kept.script, played.failure), kept, known=True))
+
+    def run(self) -> None:
+        """Play batch after batch."""
+        number = 0
+        while not self._over(number):
+            size = _BATCH if self._options.runs is None else min(_BATCH, self._options.runs - number)
+            self._play(range(number, number + size))
+            number += size
+            while self._waiting:
+                self._keep(self._waiting[0])
+                self._waiting.pop(0)
+            self.campaign.progress.doing = ""
+
+    def _over(self, number: int) -> bool:
+        if self._deadline is not None and time.monotonic() >= self._deadline:
+            return True
+        return self._options.runs is not None and number >= self._options.runs
+
+    def _play(self, numbers: range) -> None:
+        progress = self.campaign.progress
+        recipes = [self._recipes.recipe(number) for number in numbers]
+        known = self._reached
+        with closing(self._robots.play(Mash(recipe, known) for recipe in recipes)) as results:
+            for recipe, played in zip(recipes, results, strict=True):
+                new = {line: at_us for line, at_us in played.reached.items() if line not in self._reached}
+                self._recipes.learn(recipe, new)
+                self._reached |= new.keys()
+                progress.matches += 1
+                progress.simulated += played.script.end_us / 1e6
+                progress.covered = share(self._reached, self._all_lines)
+                if played.failure is not None and self._is_new(played.failure):
+                    self._waiting.append(played)
+                    progress.crashes = len(self._failures)
+                self._listener.on_progress(progress)
+                if self._over(0):
+                    return
+
+    def _is_new(self, failure: Failure) -> bool:
+        if any(failure.same_as(other) for other in self._failures):
+            return False
+        self._failures.append(failure)
+        return True
+
+    # -- keeping -----------------------------------------------------------------------------------------------
+
+    def _keep(self, played: Played) -> None:
+        assert played.failure is not None
+        progress = self.campaign.progress
+
+        def tell(runs: int) -> None:
+            progress.doing = f"making it short: run {runs}"
+            self._listener.on_progress(progress)
+
+        shrinker = Shrinker(self._robots, played.script, played.failure, played.inputs, tell=tell)
+        self._shrinking = shrinker
+        shrinker.shrink()
+        self._write(shrinker, repeats=shrinker.repeats and shrinker.play_again())
+        self._shrinking = None
+
+    def keep_the_rest(self) -> None:
+        """Somebody has ended the campaign: what it has found is kept as it is now."""
+        for played in self._waiting:
+            assert played.failure is not None
+            shrinker, self._shrinking = self._shrinking, None
+            self._write(shrinker or Shrinker(self._robots, played.script, played.failure, {}), repeats=True)
+        self._waiting.clear()
+
+    def _write(self, shrinker: Shrinker, repeats: bool) -> None:
+        script, failure = shrinker.script, shrinker.failure
+        kept = self._kept.keep(script, failure) if repeats else None
+        writes = sum(len(step.writes) for step in script.steps)
+        self._tell(Found(failure, story_of(script, failure), kept, runs=shrinker.runs, writes=writes))
+
+    def _tell(self, found: Found) -> None:
+        self.campaign.found.append(found)
+        self.campaign.progress.crashes = len(self._failures)
+        self._listener.on_found(found)

@@ -1,0 +1,84 @@
+"""What robot code tells its motors: heard where it calls, since WPILib makes 0 of NaN, and 1 of more than that."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import wpilib
+import wpilib.drive
+import wpilib.interfaces
+
+#: Called with the name of what was called, its numbers, and whether they are a motor's power from -1 to 1.
+Hear = Callable[[str, tuple[float, ...], bool], None]
+
+_DRIVES = (
+    (wpilib.drive.DifferentialDrive, ("arcadeDrive", "curvatureDrive", "tankDrive")),
+    (wpilib.drive.MecanumDrive, ("driveCartesian", "drivePolar")),
+)
+
+
+@contextmanager
+def heard(hear: Hear) -> Iterator[None]:
+    """While this lasts, `hear` is told of every call; the robot's modules are imported by then."""
+    before = []
+    for owner, name, wrapped in list(_wrapped(hear)):
+        before.append((owner, name, vars(owner)[name]))
+        setattr(owner, name, wrapped)
+    try:
+        yield
+    finally:
+        for owner, name, original in before:
+            setattr(owner, name, original)
+
+
+def _wrapped(hear: Hear) -> Iterator[tuple[type, str, Callable[..., Any]]]:
+    for owner in _with_derived(wpilib.interfaces.MotorController):
+        for name, wrap in (("set", _set), ("setVoltage", _set_voltage)):
+            if name in vars(owner):
+                yield owner, name, wrap(vars(owner)[name], hear)
+    for drive, names in _DRIVES:
+        for name in names:
+            yield drive, name, _drive(vars(drive)[name], name, hear)
+
+
+def _with_derived(base: type[Any]) -> Iterator[type[Any]]:
+    yield base
+    subclasses: list[type[Any]] = base.__subclasses__()
+    for derived in subclasses:
+        yield from _with_derived(derived)
+
+
+# The functions must have the names of what they stand for: called from one of that name, the bindings take a call for
+# one of `super()`, as it is where a robot's own class overrides the method.
+
+
+def _set(real: Callable[..., Any], hear: Hear) -> Callable[..., Any]:
+    def set(self: Any, *args: Any, **kwargs: Any) -> Any:
+        hear("set", _numbers(args, kwargs), True)
+        return real(self, *args, **kwargs)
+
+    return set
+
+
+def _set_voltage(real: Callable[..., Any], hear: Hear) -> Callable[..., Any]:
+    def setVoltage(self: Any, *args: Any, **kwargs: Any) -> Any:
+        hear("setVoltage", _numbers(args, kwargs), False)
+        return real(self, *args, **kwargs)
+
+    return setVoltage
+
+
+def _drive(real: Callable[..., Any], name: str, hear: Hear) -> Callable[..., Any]:
+    def drive(self: Any, *args: Any, **kwargs: Any) -> Any:
+        hear(name, _numbers(args, kwargs), False)
+        return real(self, *args, **kwargs)
+
+    return drive
+
+
+def _numbers(args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[float, ...]:
+    return tuple(
+        each for each in (*args, *kwargs.values()) if isinstance(each, float | int) and not isinstance(each, bool)
+    )

@@ -1,0 +1,94 @@
+"""A script as a person tells it: "at 21.34 s in teleoperated: joystick 0 button 3 pressed while POV 90"."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from ..runtime.clock import PACKET_US
+from ..runtime.scripts.script import InputScript
+from ..runtime.scripts.targets import MATCH_TIME, MODE, NETWORK
+from .failure import Failure
+from .values import NOT_PRESSED
+
+_MODES = {
+    "disabled": "disabled",
+    "autonomous": "autonomous",
+    "teleop": "teleoperated",
+    "test": "test",
+    "disabled autonomous": "disabled before autonomous",
+    "disabled test": "disabled before test",
+}
+
+_CONTROL = re.compile(r"joysticks\[(\d)\]\.(axes|buttons|povs)\[(\d+)\]")
+_PLUGGED = re.compile(r"joysticks\[(\d)\]\.plugged")
+_NAMES = {
+    "alliance_station": "alliance station",
+    "event.game_specific_message": "game message",
+    "power.vin_voltage": "battery voltage",
+    "control.dsAttached": "driver station attached",
+    "control.eStop": "emergency stop",
+    "control.fmsAttached": "field attached",
+    MATCH_TIME: "seconds left",
+}
+
+
+def story_of(script: InputScript, failure: Failure) -> tuple[str, ...]:
+    """What happens, a line for each moment; the last says what comes of it."""
+    told = []
+    mode = "disabled"
+    held: dict[str, Any] = {}
+    for step in script.steps:
+        mode = step.writes.get(MODE, mode)
+        name = _MODES.get(mode, mode)
+        now = {target: value for target, value in step.writes.items() if target != MODE}
+        gone = {found[1] for target, value in now.items() if (found := _PLUGGED.fullmatch(target)) and not value}
+        held = {target: value for target, value in held.items() if _stick(target) not in gone}
+        what = ", ".join(_told(target, value) for target, value in now.items())
+        if what and (still := _still_held(held, now)):
+            what += f" while {still}"
+        when = f"{name} begins" if MODE in step.writes else f"in {name}"
+        told.append(f"at {step.at_us / 1e6:.2f} s {when}" + (f": {what}" if what else ""))
+        held |= now
+    failed_us = max(0, script.end_us - PACKET_US)
+    return (*told, f"at {failed_us / 1e6:.2f} s: {failure.text.partition(chr(10))[0]}")
+
+
+def _still_held(held: Mapping[str, Any], now: Mapping[str, Any]) -> str:
+    """The controls that people are still holding, and not doing something else with now."""
+    sticks = {_stick(target) for target in now} - {None}
+    found = []
+    for target, value in held.items():
+        if target not in now and _CONTROL.fullmatch(target) and value not in (False, 0, NOT_PRESSED):
+            text = _told(target, value).removesuffix(" pressed")
+            # Of the joystick that is spoken of, its number has been said.
+            found.append(text.split(" ", 2)[2] if sticks == {_stick(target)} else text)
+    return " and ".join(found)
+
+
+def _stick(target: str) -> str | None:
+    """The number of the joystick that a control is on."""
+    control = _CONTROL.fullmatch(target)
+    return control[1] if control is not None else None
+
+
+def _told(target: str, value: Any) -> str:
+    control = _CONTROL.fullmatch(target)
+    if control is not None:
+        stick, sort, number = control.groups()
+        if sort == "buttons":
+            return f"joystick {stick} button {number} {'pressed' if value else 'let go'}"
+        if sort == "povs":
+            return f"joystick {stick} POV {'let go' if value == NOT_PRESSED else value}"
+        return f"joystick {stick} axis {number} at {_number(value)}"
+    plugged = _PLUGGED.fullmatch(target)
+    if plugged is not None:
+        return f"joystick {plugged[1]} {'plugged in' if value else 'unplugged'}"
+    if target.startswith(NETWORK):
+        return f"{target.removeprefix(NETWORK)} set to {value!r}"
+    return f"{_NAMES.get(target, target)} {value!r}"
+
+
+def _number(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float | int) else repr(value)

@@ -1,0 +1,133 @@
+"""Watches a run for what no robot should do and no exception tells; what it finds ends the run like an exception."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from types import FrameType
+
+from ..config.settings import FuzzSettings
+from ..hal import modes
+from ..robot_files import RobotFiles
+from ..runtime.robot import RobotRun
+from ..runtime.timed_loop import Periodic
+from .commands import heard
+from .failure import Misbehaved, place_of, user_frame
+from .hal_reports import HalReports, hal_reports
+
+#: So long after it was disabled, a robot may still tell its motors to move: its loop has to come round.
+_STOPS_WITHIN_US = 500_000
+#: So long after the driver station has asked for another mode, a robot may still be in the one before.
+_LEAVES_WITHIN_US = 3_000_000
+#: More than 1 by so little is how floating-point numbers are added.
+_ROUNDING = 1e-6
+#: A power that moves no motor.
+_NOTHING = 0.02
+
+
+@contextmanager
+def judged(run: RobotRun, files: RobotFiles, settings: FuzzSettings) -> Iterator[None]:
+    """Watch a run, which is open and has not started, while this lasts."""
+    with ExitStack() as closing:
+        judge = _Judge(run, files, settings, closing.enter_context(hal_reports()) if settings.hal_errors else None)
+        if settings.not_a_number or settings.out_of_range or settings.motors_while_disabled:
+            closing.enter_context(heard(judge.hear))
+        if settings.slow_loops:
+            run.timed_loop.after_call = judge.after_call
+        run.clock.before_packet.append(judge.before_packet)
+        run.observe(judge.look)
+        yield
+
+
+class _Judge:
+    def __init__(self, run: RobotRun, files: RobotFiles, settings: FuzzSettings, reports: HalReports | None) -> None:
+        self._run = run
+        self._files = files
+        self._settings = settings
+        self._reports = reports
+        self._mode = ""
+        self._mode_since_us = 0
+        #: When the robot was last in the mode that it is to be in.
+        self._agreed_us = 0
+        #: Where the robot's code was waiting when a packet came in the middle of it.
+        self._waiting_at = ("", "")
+
+    def _misbehaved(self, what: str, kind: str, place: tuple[str, str]) -> None:
+        threads = self._run.threads
+        if threads.failure is None and not threads.ending:
+            where = f"\n  (Switch this off with {kind} = false under [tool.pyfrc.fuzz] in pyproject.toml.)"
+            threads.fail(Misbehaved(what + where, kind, *place))
+
+    # -- motors ------------------------------------------------------------------------------------------------
+
+    def hear(self, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
+        """Robot code calls a motor, or a drive."""
+        settings = self._settings
+        for number in numbers:
+            if number != number:  # NaN
+                if settings.not_a_number:
+                    self._misbehaved(f"{name}() is given NaN", "not_a_number", self._caller())
+            elif is_power and abs(number) > 1 + _ROUNDING:
+                if settings.out_of_range:
+                    what = f"{name}() is given a power of {'more than 1' if number > 0 else 'less than -1'}"
+                    self._misbehaved(what, "out_of_range", self._caller())
+            elif abs(number) > _NOTHING and settings.motors_while_disabled and self._is_long_disabled():
+                self._misbehaved(
+                    f"{name}() is to move a motor while the robot is disabled", "motors_while_disabled", self._caller()
+                )
+
+    def _is_long_disabled(self) -> bool:
+        return (
+            self._run.started
+            and self._mode == "disabled"
+            and self._run.clock.now_us - self._mode_since_us > _STOPS_WITHIN_US
+        )
+
+    def _caller(self) -> tuple[str, str]:
+        return place_of(user_frame(sys._getframe(2), self._files), self._files)
+
+    # -- each packet --------------------------------------------------------------------------------------------
+
+    def before_packet(self, now: float) -> None:
+        """Everything that a packet brings has been written."""
+        mode: str = modes.get_mode() if modes.is_attached() else "disabled"
+        if mode != self._mode:
+            self._mode, self._mode_since_us = mode, self._run.clock.now_us
+
+    def look(self, now: float) -> None:
+        """A packet has come, and the robot has done its part, or is in the middle of something longer."""
+        frame = user_frame(sys._getframe(1), self._files)
+        if frame is not None:
+            self._waiting_at = place_of(frame, self._files)
+        if self._reports is not None and (report := self._reports.error()) is not None:
+            self._misbehaved(f"the HAL reports an error: {report}", "hal_errors", ("", ""))
+        if self._settings.stuck_modes:
+            self._look_for_stuck_mode(frame)
+
+    def _look_for_stuck_mode(self, frame: FrameType | None) -> None:
+        run = self._run
+        if run.started and not run.alive:
+            self._misbehaved("the robot program has ended by itself", "stuck_modes", ("", ""))
+            return
+        state = run.hal_data["user_program_state"]
+        if state == self._mode or state not in modes.MODES or modes.is_stopped():
+            self._agreed_us = run.clock.now_us
+        elif run.clock.now_us - self._agreed_us > _LEAVES_WITHIN_US:
+            place = place_of(frame, self._files) if frame is not None else self._place_of_own_loop()
+            what = f"the robot is still in {state} mode, {_LEAVES_WITHIN_US / 1e6:g} s after that was over"
+            self._misbehaved(what, "stuck_modes", place)
+
+    def _place_of_own_loop(self) -> tuple[str, str]:
+        thread = self._run.own_loop
+        frame = sys._current_frames().get(thread.ident) if thread is not None and thread.ident is not None else None
+        return place_of(user_frame(frame, self._files), self._files)
+
+    # -- loops --------------------------------------------------------------------------------------------------
+
+    def after_call(self, callback: Periodic) -> None:
+        """A callback of a `TimedRobot` has returned."""
+        took_us = self._run.clock.now_us - self._run.timed_loop.loop_start_us
+        if took_us > callback.period_us:
+            what = f"a loop of {callback.period_us / 1e6:g} s waits here, for longer than that"
+            self._misbehaved(what, "slow_loops", self._waiting_at)

@@ -1,0 +1,123 @@
+"""Which of the robot's lines a match is the first to reach: what steers a campaign.
+
+Not `coverage`, which measures whole processes for reports: here the lines that no match has reached yet are of
+interest, and when; lines that are known cost nothing. Lines count that are in functions: the others run on import.
+"""
+
+from __future__ import annotations
+
+import gc
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from types import CodeType, FrameType, FunctionType
+from typing import Any
+
+from ..robot_files import RobotFiles
+
+#: A file, relative to the project, and the number of a line.
+Line = tuple[str, int]
+
+#: One of the numbers that `sys.monitoring` leaves to whoever comes first; debuggers and coverage have theirs.
+_TOOL = 4
+
+
+class RobotLines:
+    """The lines of the robot's functions. Its modules are imported by then, and `gc.freeze` is yet to be called."""
+
+    def __init__(self, files: RobotFiles) -> None:
+        self._by_code: dict[CodeType, dict[int, Line]] = {}
+        for thing in gc.get_objects():
+            if isinstance(thing, FunctionType) and files.is_robot_code(thing.__code__.co_filename):
+                self._take(thing.__code__, files)
+
+    def _take(self, code: CodeType, files: RobotFiles) -> None:
+        if code not in self._by_code:
+            name = files.relative(code.co_filename)
+            self._by_code[code] = {line: (name, line) for _, _, line in code.co_lines() if line}
+            # Its first line is that of `def`, which runs when it is called but holds nothing.
+            self._by_code[code].pop(code.co_firstlineno, None)
+            for constant in code.co_consts:
+                if isinstance(constant, CodeType):
+                    self._take(constant, files)
+
+    def all(self) -> frozenset[Line]:
+        """Every one of them."""
+        return frozenset(line for lines in self._by_code.values() for line in lines.values())
+
+    @contextmanager
+    def watched(self, known: frozenset[Line], now_us: Callable[[], int]) -> Iterator[dict[Line, int]]:
+        """While this lasts, take down which lines are reached that are not known, and when they first are.
+
+        Code that another tool traces in Python before 3.12 is not watched.
+        """
+        wanted = {
+            code: {number: line for number, line in lines.items() if line not in known}
+            for code, lines in self._by_code.items()
+        }
+        wanted = {code: lines for code, lines in wanted.items() if lines}
+        reached: dict[Line, int] = {}
+        watch = _monitored if sys.version_info >= (3, 12) else _traced
+        with watch(wanted, reached, now_us):
+            yield reached
+
+
+@contextmanager
+def _monitored(
+    wanted: Mapping[CodeType, Mapping[int, Line]], reached: dict[Line, int], now_us: Callable[[], int]
+) -> Iterator[None]:
+    monitoring: Any = sys.monitoring  # type: ignore[attr-defined,unused-ignore]
+
+    def on_line(code: CodeType, number: int) -> Any:
+        line = wanted[code].get(number)
+        if line is not None:
+            reached.setdefault(line, now_us())
+        return monitoring.DISABLE
+
+    monitoring.use_tool_id(_TOOL, "pyfrc fuzz")
+    monitoring.register_callback(_TOOL, monitoring.events.LINE, on_line)
+    for code in wanted:
+        monitoring.set_local_events(_TOOL, code, monitoring.events.LINE)
+    try:
+        yield
+    finally:
+        monitoring.free_tool_id(_TOOL)
+
+
+@contextmanager
+def _traced(
+    wanted: Mapping[CodeType, Mapping[int, Line]], reached: dict[Line, int], now_us: Callable[[], int]
+) -> Iterator[None]:
+    if sys.gettrace() is not None or not wanted:
+        yield
+        return
+
+    left = {code: set(lines) for code, lines in wanted.items()}
+
+    def on_call(frame: FrameType, event: str, argument: object) -> Any:
+        return on_event if frame.f_code in left else None
+
+    def on_event(frame: FrameType, event: str, argument: object) -> Any:
+        lines = left.get(frame.f_code)
+        if lines is None:
+            return None
+        if event == "line" and frame.f_lineno in lines:
+            lines.discard(frame.f_lineno)
+            reached.setdefault(wanted[frame.f_code][frame.f_lineno], now_us())
+            if not lines:
+                del left[frame.f_code]
+        return on_event
+
+    threading.settrace(on_call)
+    sys.settrace(on_call)
+    try:
+        yield
+    finally:
+        sys.settrace(None)
+        threading.settrace(None)  # type: ignore[arg-type, unused-ignore]
+
+
+def share(reached: Iterable[Line], all_lines: frozenset[Line]) -> float:
+    """How much of the lines was reached, from 0 to 1."""
+    return len(all_lines.intersection(reached)) / len(all_lines) if all_lines else 1.0

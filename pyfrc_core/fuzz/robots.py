@@ -1,0 +1,247 @@
+"""Where matches are played: processes forked from one that has imported everything, or new ones where fork is not safe.
+
+What a match makes of its process matters to nobody: each has its own, and that may crash, hang and print as it likes.
+"""
+
+from __future__ import annotations
+
+import gc
+import signal
+import tempfile
+import threading
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import closing, contextmanager
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
+
+from ..errors import RobotCodeError
+from ..project import Project
+from ..runtime.apart import run_apart
+from ..runtime.clock import to_us
+from ..runtime.forks import FORK_IS_SAFE, left_behind, wait_for_any
+from ..runtime.own_process import LastWords
+from ..runtime.scripts.script import InputScript
+from .failure import HANGS, PROCESS_ENDED, Failure
+from .forked_work import ForkedWork
+from .lines import Line
+from .mashing import steps_in
+from .match import ROBOT_SEED, Follow, Mash, Played, Task, play, robot_lines
+
+Answer = TypeVar("Answer")
+
+# How long to wait before looking whether somebody has ended the campaign.
+_LOOK_SECONDS = 0.1
+
+_MEANWHILE = "in the middle of the match"
+
+
+class Robots(ABC):
+    """Plays matches of one project.
+
+    :param jobs: how many at a time
+    :param directory: for files that nobody else needs
+    """
+
+    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
+        self.project = project
+        self.jobs = jobs
+        #: Set by whoever wants it to end: what plays then raises `KeyboardInterrupt`. (An exception out of a signal's
+        #: handler would be lost if it came while a process is being forked.)
+        self.interrupted = False
+        self._directory = directory
+        self._diaries = 0
+
+    @property
+    @abstractmethod
+    def lines(self) -> frozenset[Line]:
+        """The lines of the robot's functions."""
+
+    @abstractmethod
+    def play(self, tasks: Iterable[Task]) -> Generator[Played, None, None]:
+        """What came of each, in their order, as soon as it is known; those that nobody asks for any more are ended."""
+
+    def follow(self, script: InputScript) -> Played:
+        """Run the robot as a script says."""
+        (played,) = self.play([Follow(script)])
+        return played
+
+    @contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """While this lasts, Ctrl-C, and what else ends a process gently, interrupts what plays."""
+
+        def interrupt(signum: int, frame: object) -> None:
+            self.interrupted = True
+
+        before = {number: signal.signal(number, interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    def _see_whether_interrupted(self) -> None:
+        if self.interrupted:
+            raise KeyboardInterrupt
+
+    @contextmanager
+    def _diary(self, task: Task) -> Iterator[None]:
+        """While this lasts, what it notes may be read."""
+        try:
+            yield
+        finally:
+            if isinstance(task, Mash) and task.diary is not None:
+                task.diary.unlink(missing_ok=True)
+
+    def _with_diary(self, task: Task) -> Task:
+        if isinstance(task, Follow):
+            return task
+        self._diaries += 1
+        return replace(task, diary=self._directory / str(self._diaries))
+
+    def _died(self, task: Task, text: str) -> Played:
+        """A process has ended without an answer; what is known of that."""
+        headline = text.partition("\n")[0]
+        place, _, what = headline.partition(": ")
+        if not what:
+            place = ""
+        failure = Failure(HANGS if " hangs here" in headline else PROCESS_ENDED, place, "", headline)
+        if isinstance(task, Follow):
+            return Played(failure, task.script)
+        steps = tuple(steps_in(task.diary)) if task.diary is not None else ()
+        end_us = to_us(self.project.settings.fuzz.match_seconds)
+        return Played(failure, InputScript(steps, end_us, robot=self.project.main_file.name, seed=ROBOT_SEED))
+
+
+@contextmanager
+def robots_of(project: Project, jobs: int) -> Iterator[Robots]:
+    """Where this project's matches are played.
+
+    :raises RobotCodeError: when the robot's code cannot be imported
+    """
+    with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary:
+        if project.settings.test.isolation == "spawn" or not FORK_IS_SAFE:
+            yield SpawnedRobots(project, jobs, Path(temporary))
+            return
+        with closing(ForkedRobots(project, jobs, Path(temporary))) as robots:
+            yield robots
+
+
+class SpawnedRobots(Robots):
+    """Each match in a new interpreter."""
+
+    @property
+    def lines(self) -> frozenset[Line]:
+        return run_apart(_all_lines, self.project, "while it was imported")
+
+    def play(self, tasks: Iterable[Task]) -> Generator[Played, None, None]:
+        with ThreadPoolExecutor(self.jobs) as pool:
+            waiting: deque[tuple[Task, Future[Played]]] = deque()
+            try:
+                for task in map(self._with_diary, tasks):
+                    waiting.append((task, pool.submit(run_apart, partial(_play, task=task), self.project, _MEANWHILE)))
+                    if len(waiting) >= self.jobs:
+                        yield self._result(*waiting.popleft())
+                while waiting:
+                    yield self._result(*waiting.popleft())
+            finally:
+                for _, future in waiting:
+                    future.cancel()
+
+    def _result(self, task: Task, future: Future[Played]) -> Played:
+        with self._diary(task):
+            while not future.done():
+                wait([future], _LOOK_SECONDS)
+                self._see_whether_interrupted()
+            self._see_whether_interrupted()  # which may have ended that process, too
+            try:
+                return future.result()
+            except RobotCodeError as ended:
+                return self._died(task, str(ended))
+
+
+def _play(project: Project, words: LastWords, task: Task) -> Played:
+    return play(project, task, words)
+
+
+def _all_lines(project: Project, words: LastWords) -> frozenset[Line]:
+    return robot_lines(project).all()
+
+
+class ForkedRobots(Robots):
+    """Each match in a fork of this process, which has imported the robot, unless that would leave threads behind."""
+
+    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
+        super().__init__(project, jobs, directory)
+        self._running: list[ForkedWork[Played]] = []
+        threads = threading.active_count()
+
+        def survey() -> tuple[bool, frozenset[Line]]:
+            lines = robot_lines(project).all()
+            return left_behind(threads), lines
+
+        # In a process of its own first: what importing does cannot be taken back.
+        imports_late, self._lines = self._do(survey)
+        if not imports_late:
+            robot_lines(project)
+        gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory
+
+    @property
+    def lines(self) -> frozenset[Line]:
+        return self._lines
+
+    def play(self, tasks: Iterable[Task]) -> Generator[Played, None, None]:
+        waiting: deque[tuple[Task, ForkedWork[Played]]] = deque()
+        left = map(self._with_diary, tasks)
+        try:
+            more = True
+            while more or waiting:
+                self._see_whether_interrupted()
+                while more and sum(not work.finished for _, work in waiting) < self.jobs:
+                    task = next(left, None)
+                    if task is None:
+                        more = False
+                    else:
+                        waiting.append((task, self._begin(task)))
+                if not waiting:
+                    return
+                if waiting[0][1].finished:
+                    yield self._result(*waiting.popleft())
+                else:
+                    wait_for_any([work.fileno() for _, work in waiting if not work.finished])
+                    for _, work in waiting:
+                        work.poll()
+        finally:
+            for _, work in waiting:
+                work.close()
+                self._running.remove(work)
+
+    def close(self) -> None:
+        """End what still runs."""
+        for work in self._running:
+            work.close()
+
+    def _begin(self, task: Task) -> ForkedWork[Played]:
+        work = ForkedWork(lambda words: play(self.project, task, words))
+        self._running.append(work)
+        return work
+
+    def _result(self, task: Task, work: ForkedWork[Played]) -> Played:
+        self._running.remove(work)
+        with self._diary(task), closing(work):
+            try:
+                return work.answer(self.project, _MEANWHILE)
+            except RobotCodeError as ended:
+                return self._died(task, str(ended))
+
+    def _do(self, what: Callable[[], Answer]) -> Answer:
+        work = ForkedWork(lambda words: what())
+        with closing(work):
+            while not work.finished:
+                wait_for_any([work.fileno()])
+                work.poll()
+            return work.answer(self.project, "while it was imported")

@@ -1,0 +1,408 @@
+"""`pyfrc fuzz`: what it finds and keeps, that it repeats itself, and that what it keeps fails until it is repaired."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Generator, Iterable
+from pathlib import Path
+from typing import Any, get_args
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pyfrc_core.fuzz.describe import story_of
+from pyfrc_core.fuzz.failure import Failure
+from pyfrc_core.fuzz.match import Follow, Played, Task
+from pyfrc_core.fuzz.recipes import Recipes
+from pyfrc_core.fuzz.robots import Robots
+from pyfrc_core.fuzz.shrink import Shrinker
+from pyfrc_core.fuzz.values import SPANS, Kind, can_be, nearest, simpler
+from pyfrc_core.project import Project
+from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
+
+ROBOTS = Path(__file__).parent / "robots"
+REGRESSIONS = "tests/test_fuzz_regressions.py"
+
+SHORT_MATCHES = """
+    [tool.pyfrc.fuzz]
+    match_seconds = {}
+    {}
+    """
+
+
+def copy_of(
+    robot: str, make_project: Callable[[dict[str, str]], Any], seconds: float = 10.0, settings: str = ""
+) -> Any:
+    """A project with one of the sample robots, without its tests, and with short matches."""
+    project = make_project({"pyproject.toml": SHORT_MATCHES.format(seconds, settings)})
+    left_out = shutil.ignore_patterns("__pycache__", "tests", "crash.jsonl", "pyproject.toml")
+    shutil.copytree(ROBOTS / robot, project.path, dirs_exist_ok=True, ignore=left_out)
+    return project
+
+
+def kept(project: Any) -> dict[str, bytes]:
+    """The files that a campaign has written, with what is in them."""
+    tests = project.path / "tests"
+    files = (file for file in tests.rglob("*") if file.is_file() and "__pycache__" not in file.parts)
+    return {file.relative_to(tests).as_posix(): file.read_bytes() for file in sorted(files)}
+
+
+# -- what is found ---------------------------------------------------------------------------------------------------
+
+
+def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(make_project) -> None:
+    project = copy_of("buggy/chord", make_project)
+    result = project.run("fuzz", "--seed", "1", "--runs", "32")
+    assert result.code == 1, result.output
+    place = project.place("robot.py", "# the bug")
+    assert f"{place}: IndexError: tuple index out of range\n" in result.stdout
+    assert re.search(
+        r"^32 matches, 0\.\d\d h of robot time, 100% of the robot's lines, 1 failure$", result.stdout, re.M
+    )
+    file = "tests/fuzz/indexerror-robot-pull.jsonl"
+    assert f"pyfrc replay {file}\n" in result.stdout
+    script = load_script(project.path / file)
+    (step,) = script.steps
+    assert {target: abs(value) if "axes" in target else value for target, value in step.writes.items()} == {
+        "mode": "teleop",
+        "joysticks[0].buttons[5]": True,
+        "joysticks[0].buttons[6]": True,
+        "joysticks[0].axes[5]": 1.0,
+    }
+    assert script.story[-1].endswith(f"{place}: IndexError: tuple index out of range")
+
+    replayed = project.run("replay", file)
+    assert (replayed.code, f"then {place}: IndexError" in replayed.output) == (1, True), replayed.output
+    tested = project.run("test", "--", "-v")
+    assert tested.outcomes() == {f"{REGRESSIONS}::test_it_is_repaired[indexerror-robot-pull]": "FAILED"}
+
+    before = kept(project)
+    again = project.run("fuzz", "--seed", "1", "--runs", "8")
+    assert again.code == 1
+    assert f"not repaired yet: {file}" in again.output
+    assert kept(project).keys() == before.keys()
+
+    robot = project.path / "robot.py"
+    robot.write_text(robot.read_text().replace("0.65, 0.8, 1.0)", "0.65, 0.8, 1.0, 1.0)"))
+    assert project.run("replay", file).code == 0
+    assert project.run("test").code == 0
+
+
+def test_the_same_campaign_writes_the_same_files_in_however_many_processes(make_shared_project) -> None:
+    found = []
+    for jobs in ("1", "2"):
+        project = copy_of("buggy/chord", make_shared_project, seconds=8.0)
+        # More than one batch: the second goes on from where the first has come to.
+        result = project.run("fuzz", "--seed", "1", "--runs", "40", "-j", jobs)
+        assert result.code == 1, result.output
+        found.append((result.stdout.splitlines()[-1], kept(project)))
+    assert found[0] == found[1]
+    assert "fuzz/indexerror-robot-pull.jsonl" in found[0][1]
+
+
+def test_in_a_robot_without_a_fault_nothing_is_found(make_project) -> None:
+    project = copy_of("timed", make_project, seconds=5.0)
+    result = project.run("fuzz", "--runs", "16")
+    assert result.code == 0, result.output
+    assert "Nothing was found." in result.stdout
+    assert not kept(project)
+
+
+#: What robots must not do: what it is called, the code of `autonomousPeriodic`, and what is told.
+FAULTS = {
+    "slow_loops": ("wpilib.wait(0.05)", "robot.py:{}: a loop of 0.02 s waits here, for longer than that"),
+    "not_a_number": ("self.motor.set(math.nan)", "robot.py:{}: set() is given NaN"),
+    "out_of_range": ("self.motor.set(1.5)", "robot.py:{}: set() is given a power of more than 1"),
+    "hal_errors": (
+        'hal.sendError(True, 1, False, "too hot", "Motor", "", True)',
+        "the HAL reports an error: Motor: too hot",
+    ),
+    "stuck_modes": (
+        "while True: wpilib.wait(0.02)",
+        "robot.py:{}: the robot is still in autonomous mode, 3 s after that was over",
+    ),
+    "hangs": ("while True: pass", "robot.py:{}: autonomousPeriodic() hangs"),
+    "process_ended": ("os._exit(3)", "robot.py:{}: the robot's process ended itself with exit code 3"),
+    "ZeroDivisionError": ("1 / self.motor.get()", "robot.py:{}: ZeroDivisionError: float division by zero"),
+}
+
+FAULTY = """
+    import math
+    import os
+    import hal
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.motor = wpilib.PWMSparkMax(0)
+            self.switch = wpilib.DigitalInput(0)
+
+        def autonomousPeriodic(self):
+            {}
+    """
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+def test_what_is_a_failure(kind: str, make_project) -> None:
+    code, told = FAULTS[kind]
+    slow = "hang_seconds = 0.2"
+    project = make_project({"robot.py": FAULTY.format(code), "pyproject.toml": SHORT_MATCHES.format(6, slow)})
+    result = project.run("fuzz", "--runs", "4")
+    assert result.code == 1, result.output
+    line = project.line("robot.py", "def autonomousPeriodic" if kind == "hangs" else code)
+    assert told.format(line) in result.stdout, result.output
+    (file,) = (project.path / "tests/fuzz").iterdir()
+    assert file.name.startswith(kind.lower())
+    assert sum(len(step.writes) for step in load_script(file).steps) <= 2
+    replayed = project.run("replay", file)
+    assert replayed.code == 1
+    assert ("the robot code hangs here" if kind == "hangs" else f"then {told.format(line)}") in replayed.output
+    if kind in ("hal_errors", "not_a_number", "process_ended", "stuck_modes"):
+        assert project.run("test").code == 1
+
+
+@pytest.mark.parametrize("kind", [kind for kind in FAULTS if kind.islower() and kind not in ("hangs", "process_ended")])
+def test_what_can_be_switched_off(kind: str, make_project) -> None:
+    code, _ = FAULTS[kind]
+    off = "slow_loops = false" + ("" if kind == "slow_loops" else f"\n    {kind} = false")
+    project = make_project({"robot.py": FAULTY.format(code), "pyproject.toml": SHORT_MATCHES.format(6, off)})
+    result = project.run("fuzz", "--runs", "2")
+    assert result.code == 0, result.output
+
+
+def test_motors_that_drive_on_their_own_are_heard_through_the_drive(make_project) -> None:
+    robot = """
+        import wpilib
+        import wpilib.drive
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.left, self.right = wpilib.PWMSparkMax(0), wpilib.PWMSparkMax(1)
+                self.drive = wpilib.drive.DifferentialDrive(self.left, self.right)
+
+            def disabledPeriodic(self):
+                self.drive.arcadeDrive(0.5, 0.0)
+        """
+    project = make_project({"robot.py": robot, "pyproject.toml": SHORT_MATCHES.format(20, "")})
+    result = project.run("fuzz", "--runs", "2")
+    assert (
+        f"{project.place('robot.py', 'arcadeDrive')}: arcadeDrive() is to move a motor while the robot is dis"
+        in result.stdout
+    )
+
+
+def test_a_robot_whose_import_makes_devices_is_fuzzed_too(make_project) -> None:
+    robot = """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            motor = wpilib.PWMSparkMax(0)
+
+            def teleopInit(self):
+                raise RuntimeError("no")
+        """
+    project = make_project({"robot.py": robot, "pyproject.toml": SHORT_MATCHES.format(4, "")})
+    result = project.run("fuzz", "--runs", "2")
+    assert f"{project.place('robot.py', 'raise')}: RuntimeError: no" in result.stdout, result.output
+
+
+def test_where_processes_cannot_be_forked_new_ones_find_the_same(make_project) -> None:
+    robot = """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                raise RuntimeError("no")
+        """
+    project = make_project({"robot.py": robot})
+    assert project.run("fuzz", "--runs", "1").code == 1
+    forked = kept(project)
+    shutil.rmtree(project.path / "tests")
+    project.write({"pyproject.toml": "[tool.pyfrc.test]\nisolation = 'spawn'\n"})
+    assert project.run("fuzz", "--runs", "1").code == 1
+    assert kept(project) == forked
+    assert forked
+
+
+# -- the command -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("--time", "5", "--runs", "5"), "exclude each other"),
+        (("--runs", "0"), "0 is not in the range"),
+        (("--time", "0"), "0"),
+        (("--project", "nowhere"), "there is no directory nowhere"),
+    ],
+)
+def test_wrong_usage(arguments: tuple[str, ...], told: str, make_project) -> None:
+    result = make_project({"robot.py": FAULTY.format("pass")}).run("fuzz", *arguments)
+    assert result.code == 2
+    assert told in result.stderr
+    assert "Traceback" not in result.output
+
+
+def test_a_robot_that_cannot_be_imported_is_told(make_project) -> None:
+    project = make_project({"robot.py": "import wpilib\n1 / 0\n"})
+    result = project.run("fuzz", "--runs", "1")
+    assert (result.code, result.first_error) == (1, "robot.py:2: ZeroDivisionError: division by zero")
+
+
+def test_unknown_settings_are_told(make_project) -> None:
+    project = make_project(
+        {"robot.py": FAULTY.format("pass"), "pyproject.toml": SHORT_MATCHES.format(3, "slow_loop = false")}
+    )
+    result = project.run("fuzz", "--runs", "1")
+    assert result.code == 2
+    assert "slow_loops" in result.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
+def test_ctrl_c_keeps_what_was_found(make_project) -> None:
+    project = make_project({"robot.py": FAULTY.format("1 / self.motor.get()")})
+    environment = {**os.environ, "PYTHONHASHSEED": "0"}
+    command = [sys.executable, "-m", "pyfrc", "fuzz", "--time", "1000"]
+    with subprocess.Popen(command, cwd=project.path, env=environment, stdout=subprocess.PIPE, text=True) as campaign:
+        assert campaign.stdout is not None
+        lines = []
+        for line in campaign.stdout:
+            lines.append(line)
+            if "pyfrc replay" in line:
+                campaign.send_signal(signal.SIGINT)
+    assert campaign.returncode == 1
+    assert lines[-1] == "interrupted\n"
+    assert "fuzz/zerodivisionerror-robot-autonomousperiodic.jsonl" in kept(project)
+
+
+# -- recipes ---------------------------------------------------------------------------------------------------------
+
+
+def test_recipes_follow_from_the_seed_and_what_was_learned() -> None:
+    def recipes(seed: int) -> list[object]:
+        made = Recipes(seed)
+        found = [made.recipe(number) for number in range(10)]
+        made.learn(found[3], {("robot.py", 12): 4_000_000})
+        return [*found, *(made.recipe(number) for number in range(10, 40))]
+
+    assert recipes(1) == recipes(1) != recipes(2)
+    continued = [recipe for recipe in recipes(1) if len(recipe.turns) == 2]  # type: ignore[attr-defined]
+    assert 5 < len(continued) < 25
+    for recipe in continued:
+        assert recipe.turns[0] == (0, "fuzz 1 3")  # type: ignore[attr-defined]
+        assert 4_000_000 <= recipe.turns[1][0] < 5_000_000  # type: ignore[attr-defined]
+
+
+CONTINUED = """
+    from pyfrc_core.fuzz.match import Mash
+    from pyfrc_core.fuzz.recipes import Recipe
+    from pyfrc_core.fuzz.robots import robots_of
+    from pyfrc_core.project import find_project
+
+    with robots_of(find_project(), 1) as robots:
+        recipes = Recipe(((0, "a"),)), Recipe(((0, "a"), (3_000_000, "b")))
+        one, other = (played.script.steps for played in robots.play(map(Mash, recipes)))
+    same = [step for step in one if step.at_us < 3_000_000]
+    assert len(same) > 20
+    assert same == [step for step in other if step.at_us < 3_000_000]
+    assert one != other
+    """
+
+
+def test_a_match_that_goes_on_from_another_is_the_same_until_then(make_project) -> None:
+    project = copy_of("magic", make_project)
+    project.write({"continued.py": CONTINUED})
+    result = project.run(program="continued")
+    assert result.code == 0, result.output
+
+
+# -- shrinking -------------------------------------------------------------------------------------------------------
+
+
+class Imagined(Robots):
+    """Robots that fail when, of what they are told, these come together."""
+
+    def __init__(self, needed: frozenset[str]) -> None:
+        super().__init__(Project(Path("robot.py")), 1, Path())
+        self._needed = needed
+
+    @property
+    def lines(self) -> frozenset[tuple[str, int]]:
+        return frozenset()
+
+    def play(self, tasks: Iterable[Task]) -> Generator[Played, None, None]:
+        for task in tasks:
+            assert isinstance(task, Follow)
+            told: set[str] = set()
+            failure, end_us = None, task.script.end_us
+            for step in task.script.steps:
+                told |= step.writes.keys()
+                if self._needed <= told:
+                    failure, end_us = (
+                        Failure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3"),
+                        step.at_us + 20_000,
+                    )
+                    break
+            yield Played(failure, InputScript(task.script.steps, end_us))
+
+
+@given(count=st.integers(1, 300), needed=st.sets(st.integers(0, 299), max_size=4))
+def test_only_what_is_needed_is_left(count: int, needed: set[int]) -> None:
+    targets = frozenset(f"dio[{number % count}].value" for number in needed)
+    steps = tuple(Step(20_000 * number, {f"dio[{number}].value": True}) for number in range(count))
+    failure = Failure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3")
+    shrinker = Shrinker(Imagined(targets), InputScript(steps, 20_000 * count), failure, {})
+    shrinker.shrink()
+    if not targets:  # it fails with its first step, whatever that is
+        return
+    assert shrinker.repeats
+    assert {target for step in shrinker.script.steps for target in step.writes} == targets
+    assert [step.at_us for step in shrinker.script.steps] == [0]
+    assert shrinker.runs < 2_000
+
+
+def test_no_more_robots_are_run_than_allowed() -> None:
+    steps = tuple(Step(20_000 * number, {f"dio[{number}].value": True}) for number in range(100))
+    failure = Failure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3")
+    needed = frozenset({"dio[3].value", "dio[60].value", "dio[90].value"})
+    shrinker = Shrinker(Imagined(needed), InputScript(steps, 2_000_000), failure, {}, most_runs=10)
+    shrinker.shrink()
+    assert shrinker.runs <= 10
+    assert needed <= {target for step in shrinker.script.steps for target in step.writes}
+
+
+@given(kind=st.sampled_from(sorted(set(get_args(Kind)) & SPANS.keys())), value=st.floats(-1e6, 1e6))
+def test_simpler_values_can_be_and_are_shorter(kind: Kind, value: float) -> None:
+    value = nearest(kind, value)
+    for each in simpler(kind, value):
+        assert can_be(kind, each)
+        assert len(json.dumps(each)) < len(json.dumps(value))
+
+
+# -- what is told ----------------------------------------------------------------------------------------------------
+
+
+def test_the_story_is_one_that_people_tell() -> None:
+    steps = (
+        Step(0, {"mode": "disabled", "alliance_station": "red2"}),
+        Step(500_000, {"mode": "teleop"}),
+        Step(1_000_000, {"joysticks[0].povs[0]": 90, "joysticks[1].axes[4]": -0.5}),
+        Step(21_340_000, {"joysticks[0].buttons[3]": True}),
+        Step(21_400_000, {"joysticks[0].plugged": False, "dio[2].value": True}),
+    )
+    failure = Failure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3\nmore")
+    assert story_of(InputScript(steps, 22_020_000), failure) == (
+        "at 0.00 s disabled begins: alliance station 'red2'",
+        "at 0.50 s teleoperated begins",
+        "at 1.00 s in teleoperated: joystick 0 POV 90, joystick 1 axis 4 at -0.5",
+        "at 21.34 s in teleoperated: joystick 0 button 3 pressed while POV 90 and joystick 1 axis 4 at -0.5",
+        "at 21.40 s in teleoperated: joystick 0 unplugged, dio[2].value True while joystick 1 axis 4 at -0.5",
+        "at 22.00 s: robot.py:3: KeyError: 3",
+    )
