@@ -379,6 +379,29 @@ def test_dashboards_see_where_the_robot_is(options: list[str], make_project) -> 
     passes(make_project, WATCHED, test.format("one") + test.format("two"), *options)
 
 
+def test_without_isolation_each_robot_starts_where_the_first_did(make_project) -> None:
+    """What dashboards have seen of the robot before outlives it."""
+    passes(
+        make_project,
+        WATCHED,
+        """
+        import pytest
+
+        ways = []
+
+        @pytest.mark.parametrize("number", [1, 2])
+        def test_it(number, control, robot, physics_controller):
+            way = []
+            control.set_operator_control()
+            control.run_test(lambda tm: way.append(physics_controller.get_position()) or tm < 1)
+            assert way[0] != way[-1]
+            ways.append(way)
+            assert ways == [ways[0]] * number
+        """,
+        "--no-isolation",
+    )
+
+
 @pytest.mark.parametrize(("physics", "x", "y"), [(WATCHED, 0, 0), (MADE, 0, 54.25)])
 def test_without_a_config_each_starts_at_its_own_origin(physics: str, x: float, y: float, make_project) -> None:
     """The documentation's is the top left corner; that of WPILib's field is the bottom left one."""

@@ -124,7 +124,9 @@ class Physics:
     def _make_engine(self) -> None:
         __tracebackhide__ = True
         module, run = self._module, self._run
-        wpilib.SmartDashboard.putData("Field", self.controller.field)
+        field, pose = self.controller.field, self.controller.get_pose()
+        wpilib.SmartDashboard.putData("Field", field)
+        field.setRobotPose(pose)  # else, without isolation, the dashboard's from the run before would be taken over
         self.engine = module.engine_class(self.controller, *([run.robot] if module.takes_robot else []))
         initialize = getattr(self.engine, "initialize", None)
         if initialize is not None:

@@ -45,15 +45,16 @@ class MotorSafetyCheck:
 
     def on_packet(self) -> None:
         """Stop, with WPILib's own message, each motor that was not fed in time."""
-        self._packets += 1
-        if self._packets % _PACKETS_BETWEEN_CHECKS:
+        enabled = getDriverStationEnabled() and getDriverStationDsAttached()
+        # Counted as WPILib does: a robot that has just been enabled has three packets to feed its motors.
+        self._packets = self._packets + 1 if enabled else 1
+        if enabled and self._packets < _PACKETS_BETWEEN_CHECKS:
             return
         # Again and again, since the thread subscribes to packets when it gets to it.
         hal.removeNewDataEventHandle(self._event)
-        if getDriverStationEnabled() and getDriverStationDsAttached():
-            wpilib.MotorSafety.checkMotors()
-        else:
+        if enabled:
             self._packets = 0
+            wpilib.MotorSafety.checkMotors()
 
 
 def _start_its_thread() -> int:
