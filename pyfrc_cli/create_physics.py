@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import click
 
-from .project_options import chosen_project, project_options
+from .project_options import chosen_project, from_here, project_options
 
 
 @click.command("create-physics", context_settings={"help_option_names": ["-h", "--help"]})
@@ -36,19 +35,11 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
     for note in done.notes:
         click.echo(f"note: {note}")
     for file, mistake in done.left_alone.items():
-        click.echo(f"left alone: {_from_here(file)} (exists)")
+        click.echo(f"left alone: {from_here(file)} (exists)")
         if mistake:
             click.secho(f"warning: what is there is not valid: {mistake}", fg="yellow", err=True)
     for file in done.written:
-        click.echo(f"wrote {_from_here(file)}")
+        click.echo(f"wrote {from_here(file)}")
     if project.physics_file in done.written:
-        physics = _from_here(project.physics_file)
+        physics = from_here(project.physics_file)
         click.echo(f"\nChange the numbers at the top of {physics} to your robot's; pyfrc test uses it from now on.")
-
-
-def _from_here(file: Path) -> str:
-    """`file` as the user's shell finds it."""
-    try:
-        return Path(os.path.relpath(file)).as_posix()
-    except ValueError:  # on Windows: on another drive
-        return str(file)

@@ -7,17 +7,51 @@ from pathlib import Path
 
 import click
 
+from pyfrc_core.scaffold import DEFAULT, TEMPLATES, create_project
+
+
+def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) -> None:
+    """List the templates, and end."""
+    if not wanted or ctx.resilient_parsing:
+        return
+    width = max(map(len, TEMPLATES))
+    for name, template in TEMPLATES.items():
+        default = " (default)" if name == DEFAULT else ""
+        click.echo(f"{name:{width}}  {template.description}{default}")
+        if template.packages:
+            click.echo(f"{'':{width}}  needs {', '.join(template.packages)}")
+    ctx.exit()
+
 
 @click.command("init", context_settings={"help_option_names": ["-h", "--help"]})
 @click.argument("directory", type=click.Path(path_type=Path), default=Path())
-def command(directory: Path) -> None:
-    """Make a new robot project in DIRECTORY (default: here): a tank-drive robot with tests.
+@click.option(
+    "-t",
+    "--template",
+    type=click.Choice(list(TEMPLATES)),
+    default=DEFAULT,
+    show_default=True,
+    help="What kind of robot it is.",
+)
+@click.option("--team", type=int, metavar="N", help="Your team's number.")
+@click.option(
+    "--list",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_templates,
+    help="Show the templates, and what each is.",
+)
+def command(directory: Path, template: str, team: int | None) -> None:
+    """Make a new robot project in DIRECTORY (default: here), with tests and a simulation.
 
     Nothing that is there is overwritten.
     """
-    from pyfrc_core.scaffold import create_project
-
-    for file in create_project(directory, Path(__file__).parent):
+    for file in create_project(directory, Path(__file__).parent, template, team):
         click.echo(f"wrote {directory / file}")
     place = "" if directory == Path() else f"cd {shlex.quote(str(directory))} && "
+    if missing := TEMPLATES[template].missing:
+        click.echo(f"\nIt needs what is not installed here: {', '.join(missing)}")
+        click.echo(f"Install it with: {place}python -m pip install -r requirements.txt")
     click.echo(f"\nTest it with: {place}pyfrc test")
+    click.echo(f"Drive it with: {place}pyfrc sim")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -45,3 +46,11 @@ def chosen_project(directory: Path | None, main: Path | None, robot_class: str |
     from pyfrc_core.project import find_project
 
     return find_project(directory, main, robot_class)
+
+
+def from_here(file: Path) -> str:
+    """`file` as the user's shell finds it."""
+    try:
+        return Path(os.path.relpath(file)).as_posix()
+    except ValueError:  # on Windows: on another drive
+        return str(file)

@@ -1,16 +1,115 @@
-"""New robot projects, made from the templates."""
+"""New robot projects, made from the templates: what all have in common (`base`), and what each has of its own."""
 
 from __future__ import annotations
 
-import shutil
-from pathlib import Path
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from string import Template as Text
+from typing import TYPE_CHECKING
 
 from .errors import UsageError
+from .text_files import write_whole
 
-#: A template's files whose names would be in the way in this repository: name there to name in the project.
-_RENAMED = {"gitignore": ".gitignore"}
+if TYPE_CHECKING:
+    from .project import Project
 
-_LEFT_OUT = {"__pycache__", ".pytest_cache"}
+
+@dataclass(frozen=True)
+class Template:
+    """A kind of robot project.
+
+    :param description: what it is, for people who choose
+    :param packages: what its code imports besides wpilib, as pip's requirements
+    :param extras: those of robotpy's own extras that bring these packages onto the robot
+    """
+
+    description: str
+    packages: tuple[str, ...] = ()
+    extras: tuple[str, ...] = ()
+
+    @property
+    def missing(self) -> list[str]:
+        """Those of `packages` that are not installed here."""
+        return [package for package in self.packages if not _is_installed(package)]
+
+
+TEMPLATES = {
+    "tank": Template("tank drive: four motors, two joysticks, encoders"),
+    "timed": Template("the smallest robot that drives; the rest is yours"),
+    "mecanum": Template("mecanum drive: moves sideways, steered as seen from the field"),
+    "swerve": Template("swerve drive: four wheels that turn, and odometry"),
+    "command": Template(
+        "command-based: subsystems, commands, an autonomous chooser",
+        packages=("robotpy-commands-v2~=2026.2",),
+        extras=("commands2",),
+    ),
+    "magic": Template(
+        "MagicRobot: components, and state machines for shooting and autonomous",
+        packages=("robotpy-wpilib-utilities~=2026.1",),
+    ),
+    "elevator-arm": Template("an elevator with an arm on it, driven to heights and angles"),
+}
+DEFAULT = "tank"
+
+#: What every project has.
+_BASE = "base"
+
+#: The test module that `pyfrc add-tests` adds, and where it stands in a project.
+READY_MADE_TESTS = PurePosixPath("tests/pyfrc_test.py")
+
+#: Names that would be in the way in this repository: name there to name in the project.
+_RENAMED = {"gitignore": ".gitignore", "github": ".github", "vscode": ".vscode"}
+
+#: Files whose ``$names`` are filled in.
+_FILLED_IN = ".template"
+
+_LEFT_OUT = {"__pycache__", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
+
+_NOT_ON_WINDOWS = re.compile(r'[<>:"|?*\\\x00-\x1f]|[. ]$|^(con|prn|aux|nul|com[1-9]|lpt[1-9])(\..*)?$', re.IGNORECASE)
+
+
+def create_project(
+    directory: Path, installed: Path, template: str = DEFAULT, team: int | None = None
+) -> list[PurePosixPath]:
+    """Make a project of a template; answers the files written, relative to `directory`.
+
+    :param installed: the package that carries the templates when it is installed
+    :raises UsageError: when one of its files is there already, or the directory's name or the team's number is not
+        one; nothing is written then
+    """
+    _check_name(directory)
+    texts = _texts(templates_directory(installed), template, team)
+    if directory.exists() and not directory.is_dir():
+        raise UsageError(f"{directory} is a file, not a directory")
+    taken = sorted({str(place) for target in texts if (place := _taken(directory, target)) is not None})
+    if taken:
+        raise UsageError(
+            f"nothing was written: {', '.join(taken)} exist{'s' if len(taken) == 1 else ''} already",
+            where=directory,
+            remedy="Name a new directory, as in: pyfrc init my-robot",
+        )
+    for target, text in texts.items():
+        write_whole(directory / target, text)
+    return list(texts)
+
+
+def add_tests(project: Project, installed: Path) -> tuple[Path, bool]:
+    """Write the ready-made tests into the project's directory of tests.
+
+    :returns: the file, and whether it was written: not when it was there already
+    :raises UsageError: when something else is where the directory has to be
+    """
+    directory = next((each for each in project.test_directories if each.is_dir()), project.test_directories[0])
+    file = directory / READY_MADE_TESTS.name
+    if os.path.lexists(directory) and not directory.is_dir():
+        raise UsageError(f"{directory.name} is a file, where the directory of the tests has to be")
+    if os.path.lexists(file):
+        return file, False
+    write_whole(file, (templates_directory(installed) / _BASE / READY_MADE_TESTS).read_text("utf-8"))
+    return file, True
 
 
 def templates_directory(installed: Path) -> Path:
@@ -22,27 +121,72 @@ def templates_directory(installed: Path) -> Path:
     return inside if inside.is_dir() else beside
 
 
-def create_project(directory: Path, installed: Path, template: str = "tank") -> list[Path]:
-    """Copy a template; answers the files written, relative to `directory`.
+def _texts(templates: Path, name: str, team: int | None) -> dict[PurePosixPath, str]:
+    """The project's files, and what stands in each."""
+    from .config.sim_schema import sim_config_schema
 
-    :raises UsageError: when one of its files is there already; nothing is written then
-    """
-    source = templates_directory(installed) / template
-    files = {
-        file: Path(*(_RENAMED.get(part, part) for part in file.relative_to(source).parts))
-        for file in sorted(source.rglob("*"))
-        if file.is_file() and not _LEFT_OUT.intersection(file.parts)
+    values = _values(TEMPLATES[name], team)
+    texts = {PurePosixPath("sim/config.schema.json"): sim_config_schema() + "\n"}
+    for source in (templates / _BASE, templates / name):
+        for file in sorted(source.rglob("*")):
+            if file.is_file() and not _LEFT_OUT.intersection(file.parts):
+                target = PurePosixPath(*(_RENAMED.get(part, part) for part in file.relative_to(source).parts))
+                text = file.read_text("utf-8")
+                if target.suffix == _FILLED_IN:
+                    target, text = target.with_suffix(""), Text(text).substitute(values)
+                texts[target] = text
+    return dict(sorted(texts.items()))
+
+
+def _values(template: Template, team: int | None) -> Mapping[str, str]:
+    """What the ``$names`` in the base's files stand for."""
+    if team is None:
+        number = "# team_number = 9999  # your team's, for: pyfrc deploy"
+    else:
+        from .deploy.team import MOST
+
+        if not 1 <= team <= MOST:
+            raise UsageError(f"{team} is no team number: one is from 1 to {MOST}", where="--team")
+        number = f"team_number = {team}"
+    by_extras = template.packages if template.extras else ()
+    return {
+        "robotpy_extras": _toml_array(template.extras),
+        "requires": _toml_array([package for package in template.packages if package not in by_extras]),
+        "packages": "\n".join(("pyfrc", *template.packages)),
+        "team_number": number,
     }
-    if directory.exists() and not directory.is_dir():
-        raise UsageError(f"{directory} is a file, not a directory")
-    taken = [str(target) for target in files.values() if (directory / target).exists()]
-    if taken:
+
+
+def _toml_array(texts: tuple[str, ...] | list[str]) -> str:
+    return "[" + ", ".join(f'"{text}"' for text in texts) + "]"
+
+
+def _check_name(directory: Path) -> None:
+    """See that a directory that is to be made has a name that every computer of the team can have."""
+    if directory.exists():
+        return
+    name = directory.name
+    if name.startswith("-") or _NOT_ON_WINDOWS.search(name):
         raise UsageError(
-            f"nothing was written: {', '.join(taken)} exist{'s' if len(taken) == 1 else ''} already",
-            where=directory,
-            remedy="Name a new directory, as in: pyfrc init my-robot",
+            f"{name!r} is no name for a directory on every computer",
+            remedy='Leave out < > : " | ? * \\ and what Windows keeps for itself; do not begin it with -, '
+            "nor end it with a dot or a space.",
         )
-    for file, target in files.items():
-        (directory / target).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(file, directory / target)
-    return list(files.values())
+
+
+def _taken(directory: Path, target: PurePosixPath) -> PurePosixPath | None:
+    """What is in the way of a file: itself, or a file where one of its directories has to be."""
+    for place in reversed(target.parents[:-1]):
+        if os.path.lexists(directory / place) and not (directory / place).is_dir():
+            return place
+    return target if os.path.lexists(directory / target) else None
+
+
+def _is_installed(requirement: str) -> bool:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        version(re.split(r"[~<>=!]", requirement)[0])
+    except PackageNotFoundError:
+        return False
+    return True

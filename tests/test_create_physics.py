@@ -275,6 +275,8 @@ def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
     """Its own tests go on passing, and it drives; autonomous resets the encoders, and they count on from there."""
     project = make_project({})
     assert project.run("init").code == 0
+    (project.path / "physics.py").unlink()
+    shutil.rmtree(project.path / "sim")
     told = create(project)
     assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in told
     project.write(

@@ -35,6 +35,8 @@ def test_the_wheel_carries_the_packages_their_types_and_the_templates(tmp_path: 
         ["--help"],
         ["test", "--help"],
         ["init", "--help"],
+        ["init", "--list"],
+        ["add-tests", "--help"],
         ["config", "--help"],
         ["create-physics", "--help"],
         ["--version"],

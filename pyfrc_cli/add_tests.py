@@ -1,0 +1,27 @@
+"""`pyfrc add-tests`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from .project_options import chosen_project, from_here, project_options
+
+
+@click.command("add-tests", context_settings={"help_option_names": ["-h", "--help"]})
+@project_options
+def command(directory: Path | None, main: Path | None, robot_class: str | None) -> None:
+    """Add the ready-made tests to the robot project, as tests/pyfrc_test.py.
+
+    They run the robot through its modes and a practice match, to find out whether its code crashes. A file that is
+    there already is left alone.
+
+    \b
+    Exit codes: 0 the file is there, written now or before, 2 wrong usage.
+    """
+    from pyfrc_core.scaffold import add_tests
+
+    file, written = add_tests(chosen_project(directory, main, robot_class), Path(__file__).parent)
+    click.echo(f"wrote {from_here(file)}" if written else f"left alone: {from_here(file)} (exists)")
+    click.echo("\nRun the tests with: pyfrc test")

@@ -1,0 +1,1 @@
+"""What the robot can do, where that takes more than a line."""

@@ -1,0 +1,1 @@
+"""The parts of the robot that can do only one thing at a time."""

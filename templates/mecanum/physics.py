@@ -1,0 +1,35 @@
+"""What the robot's surroundings are in tests and in the simulator: mecanum wheels on the floor, and a gyro.
+
+The numbers are those of a common robot: put in your own.
+"""
+
+from pyfrc.physics.core import PhysicsInterface
+from pyfrc.physics.drivetrains import MecanumDrivetrain
+from pyfrc.physics.units import units
+from wpilib.simulation import PWMSim
+
+from robot import MyRobot
+
+TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right ones
+WHEEL_BASE = 24 * units.inch  # from the rear wheels to the front ones
+MAX_SPEED = 10 * units.fps  # at full power
+
+
+class PhysicsEngine:
+    """Made when the robot's robotInit is over; moves the robot as its motors say."""
+
+    def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
+        self.physics_controller = physics_controller
+        # In the order in which calculate() takes them.
+        self.motors = [
+            PWMSim(motor.getChannel())
+            for motor in (robot.front_left, robot.rear_left, robot.front_right, robot.rear_right)
+        ]
+        self.drivetrain = MecanumDrivetrain(x_wheelbase=TRACK_WIDTH, y_wheelbase=WHEEL_BASE, speed=MAX_SPEED)
+        physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")  # turns with the robot
+
+    def update_sim(self, now: float, tm_diff: float) -> None:
+        """Called every 20 ms; `tm_diff` is the time since the last call, in seconds."""
+        front_left, rear_left, front_right, rear_right = (motor.getSpeed() for motor in self.motors)
+        speeds = self.drivetrain.calculate(front_left, rear_left, front_right, rear_right)
+        self.physics_controller.drive(speeds, tm_diff)

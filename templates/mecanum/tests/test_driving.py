@@ -1,0 +1,70 @@
+"""Where does the robot go when the driver does this?
+
+`physics_controller` knows where the robot is: x and y in metres (y grows to the left), its rotation counter-clockwise.
+"""
+
+import pytest
+from wpilib.simulation import XboxControllerSim
+
+
+def drive(control, seconds):
+    control.step_timing(seconds=seconds, autonomous=False, enabled=True)
+
+
+def test_the_left_stick_moves_without_turning(control, robot, physics_controller):
+    start = physics_controller.get_pose()
+    gamepad = XboxControllerSim(0)
+    with control.run_robot():
+        gamepad.setLeftY(-0.7)  # forward
+        gamepad.setLeftX(0.7)  # to the right
+        drive(control, 1)
+        moved = physics_controller.get_pose().relativeTo(start)
+    assert moved.X() > 0.5
+    assert moved.Y() == pytest.approx(-moved.X(), abs=0.01)
+    assert moved.rotation().degrees() == pytest.approx(0, abs=0.1)
+
+
+@pytest.mark.parametrize("as_seen_from_the_robot", [False, True])
+def test_forward_after_a_quarter_turn(control, robot, physics_controller, as_seen_from_the_robot):
+    gamepad = XboxControllerSim(0)
+    with control.run_robot():
+        gamepad.setRightX(-0.5)
+        while physics_controller.get_pose().rotation().degrees() < 90:
+            drive(control, 0.02)
+        gamepad.setRightX(0)
+        drive(control, 0.1)
+        assert robot.gyro.getAngle() == pytest.approx(-95, abs=10)  # clockwise
+
+        start = physics_controller.get_pose().translation()
+        gamepad.setLeftY(-1.0)
+        gamepad.setLeftBumperButton(as_seen_from_the_robot)
+        drive(control, 1)
+        moved = physics_controller.get_pose().translation() - start
+    along, across = (moved.Y(), moved.X()) if as_seen_from_the_robot else (moved.X(), moved.Y())
+    assert along > 1
+    assert abs(across) < 0.3 * along
+
+
+def test_the_back_button_makes_this_way_forward(control, robot):
+    gamepad = XboxControllerSim(0)
+    with control.run_robot():
+        gamepad.setRightX(0.5)
+        drive(control, 0.5)
+        assert robot.gyro.getAngle() > 20
+        gamepad.setRightX(0)
+        gamepad.setBackButton(True)
+        drive(control, 0.1)
+        assert robot.gyro.getAngle() == pytest.approx(0, abs=1)
+
+
+def test_autonomous_goes_forward_then_right(control, robot, physics_controller):
+    start = physics_controller.get_pose()
+    with control.run_robot():
+        control.step_timing(seconds=2, autonomous=True, enabled=True)
+        half_way = physics_controller.get_pose().relativeTo(start)
+        assert half_way.X() > 2
+        assert abs(half_way.Y()) < 0.05
+        control.step_timing(seconds=3, autonomous=True, enabled=True)
+        moved = physics_controller.get_pose().relativeTo(start)
+        assert moved.X() == pytest.approx(half_way.X(), abs=0.1)
+        assert moved.Y() < -1.5

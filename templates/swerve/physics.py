@@ -1,0 +1,62 @@
+"""What the robot's surroundings are in tests and in the simulator: four wheels on the floor, their encoders, a gyro.
+
+The numbers are those of a common robot: put in your own.
+"""
+
+import math
+
+from pyfrc.physics.core import PhysicsInterface
+from wpilib.simulation import AnalogEncoderSim, EncoderSim, PWMSim
+from wpimath.geometry import Rotation2d
+from wpimath.kinematics import SwerveModuleState
+
+from robot import MyRobot
+from swervemodule import MAX_SPEED, SwerveModule
+
+MAX_WHEEL_TURNING = 4 * math.pi  # how fast a module turns its wheel at full power, in rad/s
+
+
+class ModulePhysics:
+    """What one module's motors do to its wheel, and the wheel to its encoders."""
+
+    def __init__(self, module: SwerveModule) -> None:
+        self.drive_motor = PWMSim(module.drive_motor.getChannel())
+        self.turn_motor = PWMSim(module.turn_motor.getChannel())
+        self.drive_encoder = EncoderSim(module.drive_encoder)
+        self.angle_encoder = AnalogEncoderSim(module.angle_encoder)
+        self.angle = 0.0  # in radians, counter-clockwise
+        self.rolled = 0.0  # in metres
+
+    def move(self, tm_diff: float) -> SwerveModuleState:
+        """Turn and roll on for some time; answers how the wheel moved."""
+        speed = self.drive_motor.getSpeed() * MAX_SPEED
+        self.angle += self.turn_motor.getSpeed() * MAX_WHEEL_TURNING * tm_diff
+        self.rolled += speed * tm_diff
+        self.drive_encoder.setDistance(self.rolled)
+        self.angle_encoder.set(self.angle % math.tau)
+        return SwerveModuleState(speed, Rotation2d(self.angle))
+
+
+class PhysicsEngine:
+    """Made when the robot's robotInit is over; moves the robot as its wheels do."""
+
+    def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
+        self.physics_controller = physics_controller
+        self.kinematics = robot.drivetrain.kinematics
+        self.front_left, self.front_right, self.rear_left, self.rear_right = map(
+            ModulePhysics, robot.drivetrain.modules
+        )
+        physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")  # turns with the robot
+
+    def update_sim(self, now: float, tm_diff: float) -> None:
+        """Called every 20 ms; `tm_diff` is the time since the last call, in seconds."""
+        # Four wheels that do not quite agree slip; WPILib finds the movement that fits them best.
+        speeds = self.kinematics.toChassisSpeeds(
+            (
+                self.front_left.move(tm_diff),
+                self.front_right.move(tm_diff),
+                self.rear_left.move(tm_diff),
+                self.rear_right.move(tm_diff),
+            )
+        )
+        self.physics_controller.drive(speeds, tm_diff)

@@ -1,0 +1,63 @@
+"""One swerve module: a wheel with a motor that drives it and a motor that turns it to a direction."""
+
+import math
+
+import wpilib
+from wpimath.controller import PIDController
+from wpimath.geometry import Rotation2d
+from wpimath.kinematics import SwerveModulePosition, SwerveModuleState
+
+MAX_SPEED = 4.0  # of the wheel at full power, in m/s
+WHEEL_DIAMETER = 0.10  # in metres
+DRIVE_GEARING = 6.75  # turns of the drive motor for one of the wheel
+COUNTS_PER_TURN = 1024  # of the encoder on the drive motor
+
+
+class SwerveModule:
+    """A wheel that can be told its speed and its direction."""
+
+    def __init__(self, drive: int, turn: int, drive_encoder: tuple[int, int], angle_encoder: int) -> None:
+        self.drive_motor = wpilib.PWMSparkMax(drive)
+        self.turn_motor = wpilib.PWMSparkMax(turn)
+
+        self.drive_encoder = wpilib.Encoder(*drive_encoder)
+        self.drive_encoder.setDistancePerPulse(math.pi * WHEEL_DIAMETER / DRIVE_GEARING / COUNTS_PER_TURN)
+
+        # Tells the wheel's direction in radians, also after the robot has been off. When the wheel looks forward and
+        # this is not 0, put what it is into the last number.
+        self.angle_encoder = wpilib.AnalogEncoder(angle_encoder, math.tau, 0.0)
+
+        self.angle_controller = PIDController(1.0, 0.0, 0.0)  # full power for a radian
+        self.angle_controller.enableContinuousInput(-math.pi, math.pi)  # a turn further is the same direction
+
+    @property
+    def angle(self) -> Rotation2d:
+        """The direction in which the wheel looks, counter-clockwise from the robot's front."""
+        return Rotation2d(self.angle_encoder.get())
+
+    @property
+    def position(self) -> SwerveModulePosition:
+        """How far the wheel has rolled, in metres, and its direction."""
+        return SwerveModulePosition(self.drive_encoder.getDistance(), self.angle)
+
+    def set(self, state: SwerveModuleState) -> None:
+        """Drive the wheel at a speed, in a direction."""
+        if abs(state.speed) < 0.01:
+            self.stop()  # and leave the wheel as it is: there is nowhere to go
+            return
+        wanted = SwerveModuleState(state.speed, state.angle)
+        wanted.optimize(self.angle)  # backwards, where that is less far to turn
+        wanted.cosineScale(self.angle)  # slowly, as long as it looks the wrong way
+        turn = self.angle_controller.calculate(self.angle.radians(), wanted.angle.radians())
+        self.drive_motor.set(within_full_power(wanted.speed / MAX_SPEED))
+        self.turn_motor.set(within_full_power(turn))
+
+    def stop(self) -> None:
+        """Stop both motors."""
+        self.drive_motor.set(0)
+        self.turn_motor.set(0)
+
+
+def within_full_power(power: float) -> float:
+    """What a motor can be told: from -1 to 1."""
+    return max(-1.0, min(1.0, power))

@@ -1,0 +1,62 @@
+"""What the robot's surroundings are in tests and in the simulator: its weight, its wheels, and its encoders' shafts.
+
+The numbers are those of a common robot: put in your own.
+"""
+
+import wpilib
+from pyfrc.physics import motor_cfgs, tankmodel
+from pyfrc.physics.core import PhysicsInterface
+from pyfrc.physics.units import units
+from wpilib.simulation import EncoderSim, PWMSim
+
+from robot import MyRobot
+
+METRES_PER_FOOT = 0.3048
+MASS = 110 * units.lbs  # with battery and bumpers
+TRACK_WIDTH = 24 * units.inch  # from the left wheels to the right ones
+
+
+class EncoderShaft:
+    """Turns an encoder; like a real one, it counts on from where the robot's reset() has put it."""
+
+    def __init__(self, encoder: wpilib.Encoder) -> None:
+        self.encoder = EncoderSim(encoder)
+        self.counts = 0
+
+    def turn_to(self, feet: float) -> None:
+        """Turn it as far as a wheel turns that has rolled so far."""
+        counts = round(feet * METRES_PER_FOOT / self.encoder.getDistancePerPulse())
+        self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
+        self.counts = counts
+
+
+class PhysicsEngine:
+    """Made when the robot's robotInit is over; moves the robot as its motors say."""
+
+    def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
+        self.physics_controller = physics_controller
+        # The two motors of a side are geared together: one tells for both.
+        self.left_motor = PWMSim(robot.left_motor.getChannel())
+        self.right_motor = PWMSim(robot.right_motor.getChannel())
+        self.left_encoder = EncoderShaft(robot.left_encoder)
+        self.right_encoder = EncoderShaft(robot.right_encoder)
+
+        self.drivetrain = tankmodel.TankModel.theory(
+            motor_cfgs.MOTOR_CFG_CIM,
+            robot_mass=MASS,
+            gearing=10.71,  # turns of a motor for one of the wheels
+            nmotors=2,  # on each side
+            x_wheelbase=TRACK_WIDTH,
+            robot_width=27 * units.inch,  # with bumpers
+            robot_length=33 * units.inch,
+            wheel_diameter=15 * units.cm,
+        )
+        # With this moment of inertia the robot turns as far as its encoders say: its wheels never slip.
+        self.drivetrain.inertia = MASS * TRACK_WIDTH**2 / 2
+
+    def update_sim(self, now: float, tm_diff: float) -> None:
+        """Called every 20 ms; `tm_diff` is the time since the last call, in seconds."""
+        moved = self.drivetrain.calculate(self.left_motor.getSpeed(), self.right_motor.getSpeed(), tm_diff)
+        self.physics_controller.move_robot(moved)
+        self.left_encoder.turn_to(self.drivetrain.l_position)
+        self.right_encoder.turn_to(self.drivetrain.r_position)

@@ -1,0 +1,23 @@
+"""Where does the robot go? `physics.py` says, by its motors; `physics_controller` knows."""
+
+import pytest
+
+
+def test_the_encoders_measure_how_far_autonomous_drives(control, robot, physics_controller):
+    start = physics_controller.get_pose()
+    with control.run_robot():
+        control.step_timing(seconds=5, autonomous=True, enabled=True)
+        driven = physics_controller.get_pose().relativeTo(start).X()
+        assert 2 < driven < 4
+        assert robot.left_encoder.getDistance() == pytest.approx(driven, abs=0.01)
+        assert robot.right_encoder.getDistance() == pytest.approx(driven, abs=0.01)
+
+
+def test_one_stick_turns_the_robot(control, hal_data, robot, physics_controller):
+    start = physics_controller.get_pose()
+    hal_data["joysticks"][0]["axes"][1] = -1.0  # the left side forward
+    control.set_operator_control(enabled=True)
+    control.run_test(lambda tm: tm < 0.5)
+
+    turned = physics_controller.get_pose().relativeTo(start).rotation().degrees()
+    assert turned < -10  # clockwise

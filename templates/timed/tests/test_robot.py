@@ -1,0 +1,35 @@
+"""Tests of our own: where does the robot go when the driver does this?
+
+`hal_data` holds everything the robot is connected to, `control` is the driver station, and `physics_controller` knows
+where the robot is: x and y in metres, its rotation counter-clockwise.
+"""
+
+
+def test_autonomous_leaves_the_starting_line(control, robot, physics_controller):
+    start = physics_controller.get_pose()
+    control.set_autonomous(enabled=True)
+    control.run_test(lambda tm: tm < 3)  # for three seconds of robot time
+
+    moved = physics_controller.get_pose().relativeTo(start)
+    assert 1.0 < moved.X() < 2.0
+    assert abs(moved.Y()) < 0.01
+
+
+def test_the_right_stick_turns_on_the_spot(control, hal_data, robot, physics_controller):
+    start = physics_controller.get_pose()
+    hal_data["joysticks"][0]["axes"][4] = -0.5  # half way to the left
+    control.set_operator_control(enabled=True)
+    control.run_test(lambda tm: tm < 0.5)
+
+    moved = physics_controller.get_pose().relativeTo(start)
+    assert moved.rotation().degrees() > 30
+    assert abs(moved.X()) < 0.01
+
+
+def test_a_disabled_robot_stands_still(control, hal_data, robot):
+    hal_data["joysticks"][0]["axes"][1] = -1.0
+    with control.run_robot():
+        control.step_timing(seconds=1, autonomous=False, enabled=True)
+        assert hal_data["pwm"][0]["value"] > 0.9
+        control.step_timing(seconds=0.1, autonomous=False, enabled=False)
+        assert hal_data["pwm"][0]["value"] == 0

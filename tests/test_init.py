@@ -1,0 +1,232 @@
+"""`pyfrc init`: templates, team numbers, names, what is in the way. `pyfrc add-tests`: the ready-made tests, once."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from click.testing import CliRunner
+from conftest import MakeProject
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+import pyfrc_cli
+from pyfrc_core.errors import UsageError
+from pyfrc_core.scaffold import DEFAULT, TEMPLATES, Template, create_project
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROBOT = "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+
+
+def files_in(directory: Path) -> dict[str, bytes]:
+    return {
+        file.relative_to(directory).as_posix(): file.read_bytes() for file in directory.rglob("*") if file.is_file()
+    }
+
+
+# -- templates ------------------------------------------------------------------------------------------------------
+
+
+def test_the_list_tells_each_template_and_what_it_needs(make_project: MakeProject) -> None:
+    project = make_project({})
+    shown = project.run("init", "--list")
+    assert shown.code == 0
+    listed = re.findall(r"^(\S+)  +(\S.*)$", shown.stdout, re.MULTILINE)
+    assert [name for name, _ in listed] == list(TEMPLATES)
+    for (name, text), template in zip(listed, TEMPLATES.values(), strict=True):
+        assert template.description in text
+        assert text.endswith("(default)") == (name == DEFAULT)
+    assert "robotpy-commands-v2" in shown.stdout
+    assert files_in(project.path) == {}
+
+
+def test_without_a_template_it_is_the_default(make_project: MakeProject) -> None:
+    project = make_project({})
+    assert project.run("init", "one").code == 0
+    assert project.run("init", "two", "--template", DEFAULT).code == 0
+    assert files_in(project.path / "one") == files_in(project.path / "two")
+
+
+def test_a_template_that_there_is_not_is_told_with_those_there_are(make_project: MakeProject) -> None:
+    project = make_project({})
+    result = project.run("init", "--template", "tnak")
+    assert result.code == 2
+    assert all(name in result.stderr for name in TEMPLATES)
+    assert files_in(project.path) == {}
+
+
+def test_what_is_not_installed_is_told_with_how_to_install_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from pyfrc_cli.init import command
+
+    needy = Template("needs something", packages=("no-such-package-for-robots~=1.0", "click>=1"))
+    monkeypatch.setitem(TEMPLATES, DEFAULT, needy)
+    shown = CliRunner().invoke(command, [str(tmp_path / "robot")])
+    assert shown.exit_code == 0, shown.output
+    assert "not installed here: no-such-package-for-robots~=1.0\n" in shown.output
+    assert f"cd {tmp_path / 'robot'} && python -m pip install -r requirements.txt" in shown.output
+    assert "no-such-package-for-robots~=1.0\nclick>=1\n" in (tmp_path / "robot/requirements.txt").read_text("utf-8")
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_what_the_templates_need_is_installed_for_these_tests(name: str) -> None:
+    assert TEMPLATES[name].missing == []
+
+
+# -- the team's number ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("team", [1, 4711, 25599])
+def test_the_teams_number_is_where_deploys_and_todays_tools_look(make_project: MakeProject, team: int) -> None:
+    from pyfrc_core.deploy.team import find_target
+    from pyfrc_core.project import find_project
+
+    project = make_project({})
+    assert project.run("init", "--team", str(team)).code == 0
+    project_settings = tomllib.loads((project.path / "pyproject.toml").read_text("utf-8"))
+    assert project_settings["tool"]["robotpy"]["team_number"] == team
+    assert find_target(find_project(project.path)).team == team
+
+
+def test_without_a_number_nothing_claims_one(make_project: MakeProject) -> None:
+    from pyfrc_core.deploy.team import find_target
+    from pyfrc_core.project import find_project
+
+    project = make_project({})
+    assert project.run("init").code == 0
+    with pytest.raises(UsageError, match="No team number"):
+        find_target(find_project(project.path))
+
+
+@pytest.mark.parametrize("team", ["0", "-3", "25600"])
+def test_a_number_that_no_team_can_have_is_refused(make_project: MakeProject, team: str) -> None:
+    project = make_project({})
+    result = project.run("init", f"--team={team}")
+    assert result.code == 2
+    assert result.first_error == f"--team: {team} is no team number: one is from 1 to 25599"
+    assert files_in(project.path) == {}
+
+
+# -- names and places -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["a:b", "what?", "con", "LPT1.txt", "robot.", "robot ", "a\tb", 'a"b', "a|b"])
+def test_a_name_that_not_every_computer_can_have_is_refused(make_project: MakeProject, name: str) -> None:
+    project = make_project({})
+    result = project.run("init", name)
+    assert result.code == 2
+    assert f"{name!r} is no name for a directory" in result.first_error
+    assert list(project.path.iterdir()) == []
+
+
+def test_a_name_that_looks_like_an_option_is_refused(make_project: MakeProject) -> None:
+    project = make_project({})
+    assert project.run("init", "--", "-robot").code == 2
+    assert list(project.path.iterdir()) == []
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.text(st.characters(exclude_categories=["Cs"], exclude_characters="/\x00"), min_size=1, max_size=20))
+@example("équipe 4711")
+@example("console")
+@example("aux.py")
+def test_a_name_is_taken_or_refused_and_nothing_of_it_is_left(name: str) -> None:
+    assume(name not in (".", ".."))
+    reserved = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10))}
+    refused = (
+        bool(set(name) & set('<>:"|?*\\'))
+        or min(name) < " "
+        or name[0] == "-"
+        or name[-1] in ". "
+        or name.partition(".")[0].lower() in reserved
+    )
+    with TemporaryDirectory() as temporary:
+        if refused:
+            with pytest.raises(UsageError, match="no name for a directory"):
+                create_project(Path(temporary, name), Path(pyfrc_cli.__path__[0]), "timed")
+            assert list(Path(temporary).iterdir()) == []
+        else:
+            create_project(Path(temporary, name), Path(pyfrc_cli.__path__[0]), "timed")
+            assert (Path(temporary, name) / "robot.py").is_file()
+
+
+@pytest.mark.parametrize("place", ["tests", "sim", ".github", ".vscode"])
+def test_a_file_where_a_directory_has_to_be_is_in_the_way(make_project: MakeProject, place: str) -> None:
+    project = make_project({place: "mine\n"})
+    result = project.run("init")
+    assert result.code == 2
+    assert f"nothing was written: {place} exists already" in result.stderr
+    assert files_in(project.path) == {place: b"mine\n"}
+
+
+def test_other_files_in_the_directory_are_left_alone(make_project: MakeProject) -> None:
+    project = make_project({"notes.txt": "mine\n", "tests/notes.txt": "mine too\n"})
+    result = project.run("init", "--template", "timed")
+    assert result.code == 0, result.output
+    assert {"notes.txt": b"mine\n", "tests/notes.txt": b"mine too\n"}.items() <= files_in(project.path).items()
+
+
+def test_every_file_that_is_there_is_named(make_project: MakeProject) -> None:
+    project = make_project({"physics.py": "", "sim/config.json": "{}", ".gitignore": ""})
+    before = files_in(project.path)
+    result = project.run("init")
+    assert result.code == 2
+    assert ".gitignore, physics.py, sim/config.json exist already" in result.stderr
+    assert files_in(project.path) == before
+
+
+# -- pyfrc add-tests ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("command", ["add-tests", "create-tests"])
+def test_add_tests_writes_the_documented_file_once(make_project: MakeProject, command: str) -> None:
+    project = make_project({"robot.py": ROBOT, "deeper/notes.txt": ""})
+    first = project.run(command, cwd=project.path / "deeper")
+    assert first.code == 0, first.output
+    assert first.stdout.startswith("wrote ../tests/pyfrc_test.py\n")
+    assert "from pyfrc.tests import *" in (project.path / "tests/pyfrc_test.py").read_text("utf-8")
+
+    (project.path / "tests/pyfrc_test.py").write_text("# mine\n")
+    second = project.run(command)
+    assert second.code == 0
+    assert second.stdout.startswith("left alone: tests/pyfrc_test.py (exists)\n")
+    assert (project.path / "tests/pyfrc_test.py").read_text() == "# mine\n"
+
+
+def test_the_added_tests_run_the_robot(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT})
+    assert project.run("add-tests").code == 0
+    result = project.run("test", "--", "-v")
+    assert result.code == 0, result.output
+    assert {"test_autonomous", "test_disabled", "test_operator_control", "test_practice", "test_fuzz"} == {
+        re.sub(r"\[.*\]", "", test.partition("::")[2]) for test in result.outcomes()
+    }
+
+
+def test_add_tests_goes_where_the_tests_are(make_project: MakeProject) -> None:
+    project = make_project({"src/robot.py": ROBOT, "tests/test_mine.py": "def test_it():\n    pass\n"})
+    assert project.run("add-tests", cwd=project.path / "src").code == 0
+    assert (project.path / "tests/pyfrc_test.py").is_file()
+    assert not (project.path / "src/tests").exists()
+
+
+def test_add_tests_does_not_take_a_file_for_a_directory(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "tests": "a file\n"})
+    result = project.run("add-tests")
+    assert result.code == 2
+    assert "tests is a file" in result.first_error
+    assert (project.path / "tests").read_text() == "a file\n"
+
+
+def test_add_tests_needs_a_project(make_project: MakeProject) -> None:
+    project = make_project({})
+    result = project.run("add-tests")
+    assert result.code == 2
+    assert "no robot project found" in result.first_error
+    assert list(project.path.iterdir()) == []

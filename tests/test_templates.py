@@ -1,0 +1,217 @@
+"""Each template is a project that passes what we ask of robots: its tests, its workflow, types, style."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import json
+import re
+import shlex
+import shutil
+import sys
+from collections import defaultdict
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+import yaml
+from conftest import MakeProject, RobotProject
+from roborio import Roborio, require_roborio
+
+from pyfrc_cli.main import COMMANDS
+from pyfrc_core.scaffold import TEMPLATES
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+SOURCES = Path(__file__).parents[1] / "templates"
+
+#: What the templates import on a robot, and what that imports.
+ON_THE_ROBOT = (
+    *("wpilib", "hal", "wpimath", "wpiutil", "wpinet", "ntcore", "native", "numpy"),
+    *("commands2", "typing_extensions", "magicbot", "robotpy_ext", "toposort"),
+)
+
+#: A function as long as this is nothing that two robots happen to have both.
+LONG_FUNCTION = 6
+
+
+@pytest.fixture(scope="module")
+def project(make_shared_project: MakeProject, request: pytest.FixtureRequest) -> RobotProject:
+    """A new project of the template at hand."""
+    project = make_shared_project({})
+    made = project.run("init", "--template", request.param)
+    assert made.code == 0, made.output
+    return project
+
+
+@pytest.fixture
+def template(request: pytest.FixtureRequest) -> str:
+    """The template at hand."""
+    return str(request.node.callspec.params["project"])
+
+
+every_template = pytest.mark.parametrize("project", TEMPLATES, indirect=True)
+
+
+@every_template
+def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject) -> None:
+    """Installing, checking the config, and the tests with more than 80 % of the robot's lines run."""
+    workflow = yaml.safe_load((project.path / ".github/workflows/test.yml").read_text("utf-8"))
+    commands = [step["run"] for job in workflow["jobs"].values() for step in job["steps"] if "run" in step]
+    assert commands[-1] == "python -m pyfrc test --coverage --fail-under 80"
+    for command in commands:
+        python, option, module, *arguments = shlex.split(command)
+        assert (python, option) == ("python", "-m")
+        result = project.run(*arguments, program=module, env={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})
+        assert result.code == 0, result.output
+        assert "Downloading" not in result.output  # all of it is installed here
+    own_tests = [file for file in project.path.glob("tests/test_*.py") if f"tests/{file.name} ." in result.stdout]
+    assert own_tests, result.stdout
+    assert "tests/pyfrc_test.py ....." in result.stdout
+
+
+@every_template
+def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, template: str) -> None:
+    result = project.run("sim", "--ui", "none", "--mode", "practice")
+    assert result.code == 0, result.output
+    driven = re.search(r"distance driven: .* \(([0-9.]+) m\)", result.stdout)
+    assert driven is not None, result.output
+    assert (float(driven[1]) > 1) == (template != "elevator-arm")  # which has no wheels
+
+
+@pytest.mark.parametrize("project", ["timed", "command", "magic"], indirect=True)
+def test_mashing_everything_finds_nothing(project: RobotProject) -> None:
+    """In a robot of each kind; a match of the others is mashed among their own tests."""
+    result = project.run("fuzz", "--runs", "1", "--seed", "7", "--jobs", "1")
+    assert result.code == 0, result.output
+    assert "Nothing was found." in result.stdout
+
+
+def test_every_template_starts_on_a_robot(make_shared_project: MakeProject) -> None:
+    """On a look-alike with the real WPILib; one after the other, as releases of one robot."""
+    require_roborio()
+    with Roborio(wpilib=version("wpilib"), disk_size="1g") as robot:
+        _install_real_packages(robot.disk / "usr/local/lib/python3.14/site-packages")
+        for template in TEMPLATES:
+            project = make_shared_project({})
+            assert project.run("init", "--template", template).code == 0
+            result = project.run("deploy", "--robot", robot.where, "--skip-tests")
+            assert result.code == 0, f"{template}: {result.output}"
+            assert "the program runs" in result.output
+
+
+def _install_real_packages(there: Path) -> None:
+    """Put what the templates import into the look-alike, instead of its own stand-in for wpilib."""
+    shutil.rmtree(there / "wpilib")
+    (there / "sitecustomize.py").unlink()  # the packages look at Python's version
+    for name in ON_THE_ROBOT:
+        spec = importlib.util.find_spec(name)
+        assert spec is not None, name
+        for directory in spec.submodule_search_locations or ():
+            shutil.copytree(directory, there / name, ignore=shutil.ignore_patterns("__pycache__", "tests"))
+        if not spec.submodule_search_locations:
+            assert spec.origin is not None
+            shutil.copy(spec.origin, there)
+    numpy = importlib.util.find_spec("numpy")
+    assert numpy is not None
+    assert numpy.origin is not None
+    libraries = Path(numpy.origin).parents[1] / "numpy.libs"
+    if libraries.is_dir():
+        shutil.copytree(libraries, there / libraries.name)
+
+
+def test_types_and_style_are_clean(tmp_path: Path, make_shared_project: MakeProject) -> None:
+    for template in TEMPLATES:
+        project = make_shared_project({})
+        assert project.run("init", "--template", template).code == 0
+        # The cache, of wpilib's types, is theirs together.
+        for program, *arguments in (
+            ("mypy", "--cache-dir", str(tmp_path), "."),
+            ("ruff", "check", "--no-cache", "."),
+            ("ruff", "format", "--no-cache", "--check", "."),
+        ):
+            result = project.run(*arguments, program=program)
+            assert result.code == 0, f"{template}: {result.output}"
+
+
+@every_template
+def test_todays_tools_and_pip_read_what_it_needs(project: RobotProject, template: str) -> None:
+    settings = tomllib.loads((project.path / "pyproject.toml").read_text("utf-8"))["tool"]["robotpy"]
+    assert re.fullmatch(r"2026\.\d+\.\d+", settings["robotpy_version"])
+    needed = TEMPLATES[template].packages
+    if settings["robotpy_extras"]:
+        assert settings["robotpy_extras"] == ["commands2"]
+        assert settings["requires"] == []
+    else:
+        assert settings["requires"] == list(needed)
+    lines = (project.path / "requirements.txt").read_text("utf-8").splitlines()
+    assert [line for line in lines if not line.startswith("#")] == ["pyfrc", *needed]
+    readme = (project.path / "README.md").read_text("utf-8")
+    for package in needed:
+        assert package.partition("~")[0] in readme
+
+
+def test_the_editor_finds_its_tests_its_schema_and_the_commands(make_project: MakeProject) -> None:
+    project = make_project({})
+    assert project.run("init").code == 0
+    settings, launch, config = (
+        json.loads((project.path / file).read_text("utf-8"))
+        for file in (".vscode/settings.json", ".vscode/launch.json", "sim/config.json")
+    )
+    assert settings["python.testing.pytestEnabled"]
+    assert all((project.path / directory).is_dir() for directory in settings["python.testing.pytestArgs"])
+    (association,) = settings["json.schemas"]
+    assert association["fileMatch"] == ["/sim/config.json"]
+    schema = project.path / association["url"]
+    assert (project.path / "sim" / config["$schema"]).samefile(schema)
+    assert schema.read_text("utf-8").strip() == project.run("config", "schema").stdout.strip()
+    assert {entry["args"][0] for entry in launch["configurations"]} == {"sim", "test", "deploy"}
+    assert all(entry["args"][0] in COMMANDS and entry["module"] == "pyfrc" for entry in launch["configurations"])
+
+
+def overlay(template: str) -> dict[str, str]:
+    """A template's own files."""
+    files = (file for file in (SOURCES / template).rglob("*") if file.is_file() and "__pycache__" not in file.parts)
+    return {file.relative_to(SOURCES / template).as_posix(): file.read_text("utf-8") for file in files}
+
+
+def test_no_two_templates_share_a_file_and_none_replaces_one_of_the_base() -> None:
+    where = defaultdict(list)
+    base = overlay("base")
+    for template in TEMPLATES:
+        own = overlay(template)
+        assert {"robot.py", "physics.py", "sim/config.json", "README.md"} <= own.keys()
+        assert not own.keys() & base.keys()
+        for file, text in own.items():
+            where[text].append(f"{template}/{file}")
+    assert [files for files in where.values() if len(files) > 1] == []
+
+
+def test_no_two_templates_share_a_long_function() -> None:
+    where = defaultdict(set)
+    for template in TEMPLATES:
+        for file, text in overlay(template).items():
+            for node in ast.walk(ast.parse(text)) if file.endswith(".py") else ():
+                if isinstance(node, ast.FunctionDef):
+                    body = node.body[1:] if ast.get_docstring(node) else node.body
+                    lines = "\n".join(map(ast.unparse, body))
+                    if lines.count("\n") + 1 >= LONG_FUNCTION:
+                        where[lines].add(f"{template}/{file}: {node.name}")
+    assert len(where) > 20
+    assert [sorted(places) for places in where.values() if len(places) > 1] == []
+
+
+def test_every_directory_of_templates_is_one() -> None:
+    names = {path.name for path in SOURCES.iterdir() if path.is_dir()}
+    assert names == {"base", *TEMPLATES}
+
+
+def test_the_texts_are_as_python_on_every_computer_reads_them() -> None:
+    for template in ("base", *TEMPLATES):
+        for file, text in overlay(template).items():
+            assert "\r" not in text, file
+            assert text.endswith("\n"), file
+            assert text.isascii() or file.endswith((".py", ".md")), file
