@@ -1,0 +1,30 @@
+"""`pyfrc console`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .project_options import chosen_project, project_options
+from .robot_options import conversation, robot_options
+
+if TYPE_CHECKING:
+    from pyfrc_core.deploy.reach import RobotChoice
+
+
+@click.command("console", context_settings={"help_option_names": ["-h", "--help"]})
+@project_options
+@robot_options
+@click.option("--nc-ds", is_flag=True, help="Also when no Driver Station is connected to the robot.")
+def command(
+    directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice, nc_ds: bool
+) -> None:
+    """Show what the robot program prints, until Ctrl-C; connects again whenever the robot goes away.
+
+    Robots send it while a Driver Station is connected to them; --nc-ds makes the robot believe that one is.
+    """
+    from pyfrc_core.deploy.session import show_console
+
+    show_console(chosen_project(directory, main, robot_class), choice, conversation(), nc_ds)

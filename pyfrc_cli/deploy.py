@@ -1,0 +1,106 @@
+"""`pyfrc deploy`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .project_options import chosen_project, project_options
+from .robot_options import conversation, json_option, robot_options, told_as_json
+
+if TYPE_CHECKING:
+    from pyfrc_core.deploy.reach import RobotChoice
+
+
+@click.command("deploy", context_settings={"help_option_names": ["-h", "--help"]})
+@project_options
+@robot_options
+@click.option("--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own.")
+@click.option("--skip-tests", is_flag=True, help="Run no tests before.")
+@click.option("--large", is_flag=True, help="Upload files over 250,000 bytes, too.")
+@click.option(
+    "-n", "--no-version-check", is_flag=True, help="Deploy to a robot with another wpilib, or with an old image, too."
+)
+@click.option("--nonstandard", is_flag=True, help="Let the main file have another name than robot.py.")
+@click.option("--debug", is_flag=True, help="Start the program with debugging on: asserts run, and it logs more.")
+@click.option(
+    "--in-place",
+    is_flag=True,
+    help="Overwrite the files of the program that runs; delete nothing, do not restart. Cannot be rolled back.",
+)
+@click.option("--dry-run", is_flag=True, help="Only show what would be added, changed and removed.")
+@click.option("--auto-rollback", is_flag=True, help="Go back to the program before if the new one ends at once.")
+@click.option(
+    "--rollback",
+    metavar="[ID]",
+    is_flag=False,
+    flag_value="",
+    help="Deploy nothing: start an earlier release again, the one before or the one named.",
+)
+@click.option("--nc", "--netconsole", "netconsole", is_flag=True, help="Then show what the program prints.")
+@click.option("--nc-ds", is_flag=True, help="The same, also when no Driver Station is connected to the robot.")
+@json_option
+def command(
+    directory: Path | None,
+    main: Path | None,
+    robot_class: str | None,
+    choice: RobotChoice,
+    builtin: bool,
+    skip_tests: bool,
+    large: bool,
+    no_version_check: bool,
+    nonstandard: bool,
+    debug: bool,
+    in_place: bool,
+    dry_run: bool,
+    auto_rollback: bool,
+    rollback: str | None,
+    netconsole: bool,
+    nc_ds: bool,
+    as_json: bool,
+) -> None:
+    """Bring the robot program onto the robot, and start it there.
+
+    Only what has changed is sent, beside the program that is there; that goes on until the new one is
+    whole. Whatever happens on the way, the robot has a whole program to start.
+
+    \b
+    Exit codes: 0 it is there and runs, 1 it is not (the robot has the program it had),
+    2 wrong usage or no project, 3 it is there, but ended as soon as it was started.
+    """
+    if (netconsole or nc_ds) and (as_json or dry_run):
+        raise click.UsageError(f"--netconsole and {'--json' if as_json else '--dry-run'} cannot both be.")
+    if in_place and auto_rollback:
+        raise click.UsageError("--in-place and --auto-rollback cannot both be: nothing is restarted.")
+    if rollback is not None and (in_place or dry_run or auto_rollback):
+        raise click.UsageError("--rollback deploys nothing: it takes no --in-place, --dry-run or --auto-rollback.")
+    if rollback and not rollback.isdecimal():
+        raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
+    with told_as_json(as_json):
+        project = chosen_project(directory, main, robot_class)
+        from pyfrc_core.deploy import session
+
+        talk = conversation(as_json)
+        if rollback is not None:
+            release = int(rollback) if rollback else None
+            host = session.rollback(project, choice, release, talk)
+        else:
+            options = session.DeployOptions(
+                choice=choice,
+                builtin=builtin,
+                skip_tests=skip_tests,
+                large=large,
+                check_versions=not no_version_check,
+                nonstandard=nonstandard,
+                debug=debug,
+                in_place=in_place,
+                dry_run=dry_run,
+                auto_rollback=auto_rollback,
+            )
+            host = session.deploy(project, options, talk)
+    if netconsole or nc_ds:
+        from pyfrc_core.deploy.console import follow_console
+
+        follow_console(host, without_driver_station=nc_ds)

@@ -1,0 +1,32 @@
+"""`pyfrc deploy-info`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from .project_options import chosen_project, project_options
+from .robot_options import conversation, json_option, robot_options, told_as_json
+
+if TYPE_CHECKING:
+    from pyfrc_core.deploy.reach import RobotChoice
+
+
+@click.command("deploy-info", context_settings={"help_option_names": ["-h", "--help"]})
+@project_options
+@robot_options
+@json_option
+def command(
+    directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice, as_json: bool
+) -> None:
+    """Show what is on the robot: who deployed it, when, from which commit; and the earlier releases that are kept.
+
+    \b
+    Exit codes: 0 shown, 1 the robot cannot be asked, 2 wrong usage or no project.
+    """
+    with told_as_json(as_json):
+        from pyfrc_core.deploy.telling import show_info
+
+        show_info(chosen_project(directory, main, robot_class), choice, conversation(as_json))

@@ -1,0 +1,100 @@
+"""Where things are on a roboRIO, what a failure is called, and the lock that a deploy holds."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TextIO
+
+HOME = "/home/lvuser"
+CODE = HOME + "/py"
+COMMAND, DEBUG_COMMAND = "robotCommand", "robotDebugCommand"
+#: Seconds in which a lock may still be let go by the agent of a deploy that was cut a moment ago.
+_GRACE = 2.0
+
+
+class Refusal(Exception):
+    """What was asked for cannot be done; nothing has been changed.
+
+    :param kind:   a word for programs: ``locked``, ``space``, ...
+    :param remedy: what the user can do about it
+    """
+
+    def __init__(self, kind: str, message: str, remedy: str = "", **details: Any) -> None:
+        super().__init__(message)
+        self.kind = kind
+        self.remedy = remedy
+        self.details = details
+
+
+class Places:
+    """The robot's directories and files.
+
+    :param root: what stands before all of them; on a robot ``/``
+    """
+
+    def __init__(self, root: str = "/") -> None:
+        self.root = Path(root)
+        self.home = self.of(HOME)
+        #: What the robot starts; a link to a release, or a directory that another tool has made.
+        self.code = self.of(CODE)
+        self.own = self.home / ".pyfrc"
+        self.releases = self.own / "releases"
+        #: Where the next release is put together.
+        self.incoming = self.own / "incoming"
+        self.debug_flag = self.of("/tmp/frcdebug")
+
+    def of(self, path: str) -> Path:
+        """A path of the robot's, as it is to be opened here."""
+        return self.root / path.lstrip("/")
+
+
+class Lock:
+    """Held by whoever changes the robot's programs; it is let go when its process ends, however that ends."""
+
+    def __init__(self, places: Places, who: str) -> None:
+        self._file = places.own / "lock"
+        self._who = who
+        self._stream: TextIO | None = None
+
+    def __enter__(self) -> None:
+        self._file.parent.mkdir(parents=True, exist_ok=True)
+        stream = self._file.open("a+", encoding="utf-8")
+        give_up = time.monotonic() + _GRACE
+        while True:
+            try:
+                fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except OSError:
+                if time.monotonic() > give_up:
+                    stream.seek(0)
+                    holder = _holder(stream.read())
+                    stream.close()
+                    raise Refusal(
+                        "locked",
+                        f"{holder} is deploying to this robot right now",
+                        "Wait until that is done; a laptop that is gone loses its turn after 20 seconds.",
+                        holder=holder,
+                    ) from None
+            time.sleep(0.02)
+        self._stream = stream
+        stream.truncate(0)
+        stream.write(json.dumps({"who": self._who}))
+        stream.flush()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        if self._stream is not None:
+            self._stream.truncate(0)
+            self._stream.close()
+
+
+def _holder(text: str) -> str:
+    try:
+        return str(json.loads(text)["who"])
+    except (ValueError, KeyError, TypeError):
+        return "somebody else"

@@ -1,0 +1,277 @@
+"""Finding the robot: all of its addresses are tried at once, the first that answers as SSH servers do is taken."""
+
+from __future__ import annotations
+
+import json
+import queue
+import socket
+import struct
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from ..errors import UsageError
+from .errors import OnTheFieldError, RobotNotFoundError
+
+#: Where the Driver Station, on the same computer, tells which robot it is connected to.
+DRIVER_STATION = ("127.0.0.1", 1742)
+
+#: Seconds until an address counts as not answering: enough for a radio that loses packets.
+CONNECT_SECONDS = 5.0
+#: Seconds for looking names up; systems without a fast "no" take up to this.
+RESOLVE_SECONDS = 5.0
+#: Seconds that the Driver Station gets to answer; Windows takes long to say that nobody listens.
+DRIVER_STATION_SECONDS = 1.0
+
+_BANNER = b"SSH-"
+
+
+@dataclass(frozen=True)
+class Address:
+    """Where an SSH server may be."""
+
+    host: str
+    port: int = 22
+
+    def __str__(self) -> str:
+        if self.port == 22:
+            return self.host
+        return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
+
+    @property
+    def is_name(self) -> bool:
+        """Whether it has to be looked up."""
+        for family in (socket.AF_INET, socket.AF_INET6):
+            try:
+                socket.inet_pton(family, self.host.partition("%")[0])
+            except OSError:
+                continue
+            return False
+        return True
+
+
+@dataclass(frozen=True)
+class Tried:
+    """An address, what would be there, and why it was not."""
+
+    address: Address
+    kind: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Found:
+    """The robot that has answered.
+
+    :param address: the address as it was tried: a name stays a name
+    :param connected: to it; what the server has sent is still unread
+    """
+
+    address: Address
+    kind: str
+    connected: socket.socket
+
+
+def parse_address(text: str) -> Address:
+    """``HOST``, ``HOST:PORT``, ``[IPV6]:PORT``.
+
+    :raises UsageError: when it is neither
+    """
+    host, port = text.strip(), ""
+    if host.startswith("["):
+        host, _, port = host[1:].partition("]")
+        port = port.removeprefix(":")
+    elif host.count(":") == 1:
+        host, _, port = host.partition(":")
+    if not host or (port and not (port.isdecimal() and 1 <= int(port) <= 65535)):
+        raise UsageError(f"{text!r} is no address of a robot", remedy="Write HOST or HOST:PORT, as in 10.12.34.2")
+    return Address(host, int(port or 22))
+
+
+def addresses_of(team: int, resolve: bool = True) -> list[tuple[Address, str]]:
+    """The addresses that a team's robot may have, and what each of them is.
+
+    :param resolve: with those that have to be looked up
+    """
+    name = f"roboRIO-{team}-FRC"
+    every = [
+        (Address(f"10.{team // 100}.{team % 100}.2"), "radio or Ethernet"),
+        (Address(f"{name}.local"), "name, by multicast"),
+        (Address("172.22.11.2"), "USB cable"),
+        (Address(name), "name"),
+        (Address(f"{name}.lan"), "name, by the router"),
+        (Address(f"{name}.frc-field.local"), "name, on a field"),
+    ]
+    return [(address, kind) for address, kind in every if resolve or not address.is_name]
+
+
+def find_robot(
+    candidates: Sequence[tuple[Address, str]],
+    whose: str,
+    *,
+    driver_station: tuple[str, int] = DRIVER_STATION,
+    take_its_robot: bool = True,
+) -> Found:
+    """Connect to the first robot that answers.
+
+    :param candidates: addresses, each with what it is
+    :param whose: for the message, such as ``team 1234``
+    :param take_its_robot: try the robot that the Driver Station is connected to, as well
+    :raises OnTheFieldError: when the Driver Station is connected to a competition field
+    :raises RobotNotFoundError: with a table of what was tried, and why each was not it
+    """
+    race = _Race()
+    for address, kind in candidates:
+        race.enter(address, kind)
+    race.ask_driver_station(driver_station, take_its_robot)
+    found = race.winner()
+    if race.on_field:
+        if found is not None:
+            found.connected.close()
+        raise OnTheFieldError(
+            "the Driver Station is connected to a competition field (FMS): robots are not to be changed there",
+            remedy="Deploy when your match is over and the robot is back in your pit.",
+        )
+    if found is None:
+        raise not_found(whose, race.reasons())
+    return found
+
+
+def not_found(whose: str, tried: Sequence[Tried]) -> RobotNotFoundError:
+    """The error, with what was tried as a table."""
+    widths = [max((len(text) for text in column), default=0) for column in zip(*map(_row, tried), strict=True)]
+    table = "".join(
+        "\n  " + "  ".join(text.ljust(width) for text, width in zip(_row(each), widths, strict=True)).rstrip()
+        for each in tried
+    )
+    error = RobotNotFoundError(
+        f"no robot found for {whose}; tried:{table}",
+        remedy="Is the robot on, and this computer on its network or at its USB cable? Is that the right team? "
+        "(--team NUMBER; or name the robot's address with --robot HOST)",
+    )
+    error.tried = tuple(tried)
+    return error
+
+
+def _row(tried: Tried) -> tuple[str, str, str]:
+    return str(tried.address), tried.kind, tried.why
+
+
+@dataclass
+class _Race:
+    """All the attempts, each on a thread of its own; this one looks at what comes of them."""
+
+    tried: list[Tried] = field(default_factory=list)
+    on_field: bool = False
+    _results: queue.Queue[Any] = field(default_factory=queue.Queue)
+    _running: int = 0
+    _over: threading.Event = field(default_factory=threading.Event)
+    #: The addresses, each with what it is, in the order in which they were named.
+    _entered: dict[Address, str] = field(default_factory=dict)
+    _station_answered: bool = False
+
+    def enter(self, address: Address, kind: str) -> None:
+        if address in self._entered:
+            return
+        self._entered[address] = kind
+        self._start(self._resolve, address, kind)
+
+    def ask_driver_station(self, where: tuple[str, int], take_its_robot: bool) -> None:
+        self._start(self._driver_station, where, take_its_robot)
+
+    def winner(self) -> Found | None:
+        found: Found | None = None
+        end = time.monotonic() + RESOLVE_SECONDS + CONNECT_SECONDS
+        # The Driver Station has its say even when a robot was quicker.
+        while self._running and (found is None or not self._station_answered):
+            try:
+                result = self._results.get(timeout=max(end - time.monotonic(), 0))
+            except queue.Empty:
+                break
+            self._running -= 1
+            if isinstance(result, Found) and found is None:
+                found = result
+            elif isinstance(result, Found):
+                result.connected.close()
+            elif isinstance(result, Tried):
+                self.tried.append(result)
+            else:
+                for next_step in result:
+                    next_step()
+        self._over.set()
+        while not self._results.empty():
+            if isinstance(late := self._results.get(), Found):
+                late.connected.close()
+        return found
+
+    def reasons(self) -> list[Tried]:
+        """What was tried and failed, in the order in which it was named."""
+        answered = {tried.address for tried in self.tried}
+        late = f"no answer within {RESOLVE_SECONDS + CONNECT_SECONDS:g} s"
+        silent = [Tried(address, kind, late) for address, kind in self._entered.items() if address not in answered]
+        order = list(self._entered)
+        return sorted([*self.tried, *silent], key=lambda tried: order.index(tried.address))
+
+    def _start(self, function: Any, *arguments: Any) -> None:
+        self._running += 1
+        threading.Thread(target=lambda: self._finish(function(*arguments)), daemon=True).start()
+
+    def _finish(self, result: Any) -> None:
+        if isinstance(result, Found) and self._over.is_set():
+            result.connected.close()
+            return
+        self._results.put(result)
+
+    def _resolve(self, address: Address, kind: str) -> Any:
+        """What is to be tried next, or why there is nothing."""
+        try:
+            infos = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_STREAM)
+        except (OSError, UnicodeError):
+            return Tried(address, kind, "the name is not known here")
+        places = dict.fromkeys((family, place) for family, _, _, _, place in infos)
+        return [partial(self._start, self._connect, address, kind, family, place) for family, place in places]
+
+    def _connect(self, address: Address, kind: str, family: int, place: Any) -> Any:
+        connected = socket.socket(family, socket.SOCK_STREAM)
+        try:
+            connected.settimeout(CONNECT_SECONDS)
+            connected.connect(place)
+            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            banner = connected.recv(len(_BANNER), socket.MSG_PEEK)
+        except OSError as error:
+            connected.close()
+            return Tried(address, kind, _why(error))
+        if banner and _BANNER.startswith(banner):
+            return Found(address, kind, connected)
+        connected.close()
+        return Tried(address, kind, "something answers, but no SSH server" if banner else "closed the connection")
+
+    def _driver_station(self, where: tuple[str, int], take_its_robot: bool) -> Any:
+        following: list[Any] = []
+        try:
+            with socket.create_connection(where, timeout=DRIVER_STATION_SECONDS) as station:
+                station.settimeout(DRIVER_STATION_SECONDS)
+                with station.makefile("rb") as lines:
+                    said = json.loads(lines.readline(10_000))
+            self.on_field = said.get("FMS Connected") is True
+            robot = said.get("robotIP")
+            if take_its_robot and isinstance(robot, int) and 0 < robot < 1 << 32:
+                address = Address(socket.inet_ntoa(struct.pack("!I", robot)))
+                following = [partial(self.enter, address, "the Driver Station's robot")]
+        except (OSError, ValueError, AttributeError):
+            pass  # mostly there is none on this computer
+        self._station_answered = True
+        return following
+
+
+def _why(error: OSError) -> str:
+    if isinstance(error, TimeoutError):
+        return f"no answer within {CONNECT_SECONDS:g} s"
+    if isinstance(error, ConnectionRefusedError):
+        return "refused: a computer is there, but no SSH server"
+    if isinstance(error, ConnectionError):
+        return "closed the connection"
+    return (error.strerror or str(error)).lower()

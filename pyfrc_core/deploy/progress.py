@@ -1,0 +1,170 @@
+"""How a deploy is told while it goes on: to a person at a terminal, in plain lines, or as JSON lines for tools."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import IO, TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..errors import PyfrcError
+
+_NAME_WIDTH = 10
+_DETAIL_WIDTH = 58
+
+
+@dataclass(frozen=True)
+class Questions:
+    """How the user can be asked: for a text, and whether."""
+
+    text: Callable[[str], str]
+    yes: Callable[[str], bool]
+
+
+class Phase:
+    """One step of a deploy, while it goes on."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        #: What came of it, for its line.
+        self.detail = ""
+
+    def bytes(self, done: int, total: int) -> None:
+        """So many bytes of the phase's are done."""
+
+
+class Progress:
+    """Plain lines: one for each phase, when it is over."""
+
+    def __init__(self, stream: IO[str] | None = None) -> None:
+        self._stream = stream or sys.stdout
+
+    @property
+    def child_output(self) -> IO[str]:
+        """Where the output of programs that a phase runs may go."""
+        return self._stream
+
+    @contextmanager
+    def phase(self, name: str, own_output: bool = False) -> Iterator[Phase]:
+        """A phase, told with its time when it is over.
+
+        :param own_output: whether something prints on the terminal meanwhile
+        """
+        began = time.monotonic()
+        with self._shown(Phase(name), own_output) as phase:
+            yield phase
+        self._over(phase, time.monotonic() - began)
+
+    def note(self, text: str) -> None:
+        """Something to know."""
+        self._print(text)
+
+    def warning(self, text: str) -> None:
+        """Something that may be wrong, but hinders nothing."""
+        self._print(f"warning: {text}")
+
+    def output(self, text: str) -> None:
+        """What the robot program printed."""
+        self._print("".join(f"  | {line}\n" for line in text.splitlines()).rstrip("\n"))
+
+    def result(self, result: Mapping[str, Any], text: str) -> None:
+        """What came of it all."""
+        self._print(text)
+
+    @contextmanager
+    def _shown(self, phase: Phase, own_output: bool) -> Iterator[Phase]:
+        yield phase
+
+    def _over(self, phase: Phase, seconds: float) -> None:
+        self._print(f"{phase.name:<{_NAME_WIDTH}} {phase.detail:<{_DETAIL_WIDTH}} {seconds:6.2f} s")
+
+    def _print(self, text: str) -> None:
+        print(text, file=self._stream, flush=True)
+
+
+class TerminalProgress(Progress):
+    """The same lines, and meanwhile what is being done, with a bar for bytes."""
+
+    @contextmanager
+    def _shown(self, phase: Phase, own_output: bool) -> Iterator[Phase]:
+        if own_output:
+            yield phase
+            return
+        from rich.console import Console
+        from rich.progress import BarColumn, DownloadColumn, SpinnerColumn, TextColumn
+        from rich.progress import Progress as Bars
+
+        console = Console(file=self._stream)
+        spinning = [SpinnerColumn(), TextColumn("{task.description}")]
+        with Bars(*spinning, console=console, transient=True) as spinner:
+            spinner.add_task(phase.name)
+            bars = Bars(*spinning, BarColumn(), DownloadColumn(), console=console, transient=True)
+            task = bars.add_task(phase.name, total=None)
+
+            def show(done: int, total: int) -> None:
+                if not bars.live.is_started:
+                    spinner.stop()
+                    bars.start()
+                bars.update(task, completed=done, total=total)
+
+            phase.bytes = show  # type: ignore[method-assign]
+            try:
+                yield phase
+            finally:
+                bars.stop()
+
+
+class JsonProgress(Progress):
+    """One JSON object a line; the last is the result, or the error."""
+
+    @property
+    def child_output(self) -> IO[str]:
+        return sys.stderr
+
+    def note(self, text: str) -> None:
+        self._event("note", text=text)
+
+    def warning(self, text: str) -> None:
+        self._event("warning", text=text)
+
+    def output(self, text: str) -> None:
+        self._event("output", text=text)
+
+    def result(self, result: Mapping[str, Any], text: str) -> None:
+        self._event("result", **result)
+
+    def failure(self, error: PyfrcError) -> None:
+        """What went wrong."""
+        self._event(
+            "error",
+            kind=type(error).__name__.removesuffix("Error"),
+            message=error.message,
+            where=error.where,
+            remedy=error.remedy,
+            exit_code=error.exit_code,
+        )
+
+    def _over(self, phase: Phase, seconds: float) -> None:
+        self._event("phase", phase=phase.name, detail=phase.detail, seconds=round(seconds, 3))
+
+    def _event(self, event: str, **fields: Any) -> None:
+        self._print(json.dumps({"event": event, **fields}))
+
+
+@dataclass(frozen=True)
+class Conversation:
+    """With the user: how is told, and how is asked; not at all where there is nobody to ask."""
+
+    progress: Progress
+    ask: Questions | None = None
+
+
+def progress_for(as_json: bool) -> Progress:
+    """What suits where the output goes."""
+    if as_json:
+        return JsonProgress()
+    return TerminalProgress() if sys.stdout.isatty() else Progress()

@@ -1,0 +1,189 @@
+"""A deploy from its beginning to its end; and the other things that are done to the program on a robot."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+from ..errors import UsageError
+from ..project import Project
+from .connection import Connection, load_in_background
+from .console import follow_console
+from .deploy_json import deploy_json
+from .errors import RefusedError
+from .facts import Deployed, DeployRequest, Plan
+from .host_keys import HostKeys
+from .local_checks import ImportCheck, go_on_after, refuse_other_main_files, run_tests
+from .manifest import Manifest, ascii_path, survey
+from .progress import Conversation
+from .reach import RobotChoice, address_to_follow, agent_on, chosen_target, connected, find, robot_of
+from .robot import Robot
+from .robot_checks import MemorySaver, refuse_unfit_robot
+from .starting import go_back, start
+
+
+@dataclass(frozen=True)
+class DeployOptions:
+    """How a deploy was asked for.
+
+    :param builtin: run the ready-made tests when the project has none
+    :param skip_tests: run no tests
+    :param large: upload files over 250,000 bytes, too
+    :param check_versions: refuse robots with another wpilib, or an old image
+    :param nonstandard: whether the main file may have another name than robot.py
+    :param debug: start the program with debugging on
+    :param in_place: overwrite the running program's files, delete nothing, do not restart
+    :param dry_run: only say what would be done
+    :param auto_rollback: go back to the program before when the new one ends at once
+    """
+
+    choice: RobotChoice = field(default_factory=RobotChoice)
+    builtin: bool = False
+    skip_tests: bool = False
+    large: bool = False
+    check_versions: bool = True
+    nonstandard: bool = False
+    debug: bool = False
+    in_place: bool = False
+    dry_run: bool = False
+    auto_rollback: bool = False
+
+
+def deploy(project: Project, options: DeployOptions, talk: Conversation) -> str:
+    """Bring the project's program onto the robot, and start it; the robot's host.
+
+    :raises DeployError: when it is not there in the end; the robot has a whole program all the same
+    :raises ProgramDiedError: when it is there, and has ended as soon as it was started
+    """
+    load_in_background()
+    progress = talk.progress
+    refuse_other_main_files(project, options.nonstandard)
+    target = chosen_target(project, options.choice, talk.ask)
+    importing = None if options.dry_run else _check_program(project, options, talk)
+    with progress.phase("files") as phase:
+        manifest = survey(project.root, project.settings.deploy.exclude, options.large)
+        phase.detail = f"{_count(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
+    found = find(target, options.choice, progress)
+    with connected(project, found, options.choice, progress) as connection, agent_on(connection, progress) as robot:
+        refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
+        if importing is not None:
+            _refuse_unimportable(importing, talk)
+        if options.dry_run:
+            plan = robot.plan(manifest)
+            progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan))
+            return connection.host
+        memory = MemorySaver(robot.facts, connection.address, HostKeys(project.pyproject.parent))
+        deployed = _upload(robot, project, manifest, options, talk)
+        memory.tell(progress)
+        if not options.in_place:
+            start(robot, talk, _before(robot, deployed), options.auto_rollback)
+        _tell_deployed(deployed, connection, options, talk)
+    return connection.host
+
+
+def rollback(project: Project, choice: RobotChoice, release: int | None, talk: Conversation) -> str:
+    """Start an earlier release again: the one with this number, or that before; the robot's host."""
+    with robot_of(project, chosen_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
+        went_back_to = go_back(robot, talk, release)
+        result = {"host": connection.host, "release": went_back_to}
+        talk.progress.result(result, f"The robot runs release {went_back_to} again.")
+    return connection.host
+
+
+def undeploy(project: Project, choice: RobotChoice, talk: Conversation, sure: bool) -> None:
+    """Remove the program from the robot.
+
+    :param sure: whether the user has said already that this is meant
+    """
+    target = chosen_target(project, choice, talk.ask)
+    if not sure:
+        what = "the robot program and all of its releases are removed"
+        if talk.ask is None:
+            raise UsageError(f"{what}: is that meant?", remedy="Say so with --yes.")
+        if not talk.ask.yes(f"{what[:1].upper()}{what[1:]} from the robot. Is that meant?"):
+            raise RefusedError("nothing was removed")
+    with robot_of(project, target, choice, talk.progress) as (connection, robot):
+        with talk.progress.phase("remove"):
+            removed = robot.undeploy()
+        text = "The robot program was removed." if removed else "There was no robot program to remove."
+        talk.progress.result({"host": connection.host, "removed": removed}, text)
+
+
+def show_console(project: Project, choice: RobotChoice, talk: Conversation, without_driver_station: bool) -> None:
+    """Print what the robot program prints, until Ctrl-C."""
+    address = address_to_follow(chosen_target(project, choice, talk.ask), choice, talk.progress)
+    follow_console(address.host, without_driver_station)
+
+
+def _upload(robot: Robot, project: Project, manifest: Manifest, options: DeployOptions, talk: Conversation) -> Deployed:
+    request = DeployRequest(
+        main=project.main_file.name,
+        deploy_json=deploy_json(project.root),
+        debug=options.debug,
+        in_place=options.in_place,
+    )
+    with talk.progress.phase("upload") as phase:
+        # Compiling and switching, too, are told: without a number of bytes.
+        deployed = robot.deploy(manifest, request, lambda _, done, total: phase.bytes(done, total) if total else None)
+        if deployed.unchanged:
+            phase.detail = "nothing has changed"
+        else:
+            phase.detail = f"{_count(deployed.files_sent, 'file')}, {_size(deployed.bytes_sent)}"
+        if deployed.release is not None:
+            phase.detail += f"; release {deployed.release}"
+    if deployed.taken is not None:
+        talk.progress.note(f"  the program that another tool has left there is kept as release {deployed.taken}")
+    return deployed
+
+
+def _before(robot: Robot, deployed: Deployed) -> int | None:
+    """The release to go back to from this one."""
+    if not deployed.unchanged:
+        return deployed.previous
+    return next((each.previous for each in robot.facts.releases if each.number == deployed.release), None)
+
+
+def _tell_deployed(deployed: Deployed, connection: Connection, options: DeployOptions, talk: Conversation) -> None:
+    result = {"host": connection.host, **asdict(deployed), "in_place": options.in_place}
+    text = "Its files were overwritten; the program was not restarted." if options.in_place else "Deployed."
+    talk.progress.result(result, text)
+
+
+def _check_program(project: Project, options: DeployOptions, talk: Conversation) -> ImportCheck | None:
+    """Run the tests; where there are none to run, begin to import the program."""
+    if options.skip_tests or (project.find_tests() is None and not options.builtin):
+        if not options.skip_tests:
+            talk.progress.note("this project has no tests; the ready-made ones run with --builtin")
+        return ImportCheck(project)
+    with talk.progress.phase("tests", own_output=True) as phase:
+        passed = run_tests(project, options.builtin, talk.progress.child_output)
+        phase.detail = "passed" if passed else "failed"
+    if not passed:
+        go_on_after("the tests failed", talk.ask, "Correct what failed, or deploy without tests: --skip-tests")
+    return None
+
+
+def _refuse_unimportable(importing: ImportCheck, talk: Conversation) -> None:
+    error = importing.result()
+    if error is not None:
+        failure = f"the robot program cannot be imported: {error}"
+        go_on_after(failure, talk.ask, "On the robot, it would end at once.", error)
+
+
+def _plan_as_text(plan: Plan) -> str:
+    lines = [
+        f"{sign} {ascii_path(path)}"
+        for sign, paths in (("+", plan.added), ("~", plan.changed), ("-", plan.removed))
+        for path in paths
+    ]
+    counts = f"{len(plan.added)} to add, {len(plan.changed)} to change, {len(plan.removed)} to remove"
+    return "\n".join([*lines, f"{counts}; {_size(plan.bytes_to_send)} to send. Nothing was done."])
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'s' * (number != 1)}"
+
+
+def _size(count: int) -> str:
+    if count < 10_000:
+        return f"{count} bytes"
+    return f"{count / 1000:.0f} kB" if count < 10_000_000 else f"{count / 1e6:.1f} MB"

@@ -1,0 +1,57 @@
+"""What is on a robot, for people and for tools."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+
+from ..project import Project
+from .facts import Release, RobotFacts
+from .progress import Conversation
+from .reach import RobotChoice, chosen_target, robot_of
+
+
+def show_info(project: Project, choice: RobotChoice, talk: Conversation) -> None:
+    """Tell what is on the robot: which program, who has deployed it, and which releases are kept."""
+    with robot_of(project, chosen_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
+        talk.progress.result({"host": connection.host, **asdict(robot.facts)}, _as_text(robot.facts))
+
+
+def _as_text(facts: RobotFacts) -> str:
+    lines = [
+        f"robot      {facts.image or 'unknown image'}, Python {facts.python}, wpilib {facts.wpilib or 'missing'}",
+        f"disk       {facts.free_bytes / 1e6:.1f} MB free",
+    ]
+    if facts.current is None and not facts.other_code:
+        lines.append("program    none")
+    else:
+        by_whom = "deployed by another tool" if facts.current is None else f"release {facts.current}"
+        lines.append(f"program    {by_whom}, {'running' if facts.running else 'not running'}")
+        lines += [f"  {key:<12} {value}" for key, value in _deployed(facts.deploy_json)]
+    lines += [_release_line(release, facts.current) for release in reversed(facts.releases)]
+    return "\n".join(lines)
+
+
+def _release_line(release: Release, current: int | None) -> str:
+    told = dict(_deployed(release.deploy_json))
+    parts = [told.get("date", "date unknown"), told.get("by"), told.get("commit")]
+    parts += ["left by another tool"] if release.taken else []
+    mark = "*" if release.number == current else " "
+    return f"{mark} release {release.number:<4}" + ", ".join(part for part in parts if part)
+
+
+def _deployed(record: Mapping[str, str]) -> list[tuple[str, str]]:
+    """What ``deploy.json`` says, in our words."""
+    rows = []
+    if "deploy-user" in record:
+        rows.append(("by", f"{record['deploy-user']} on {record.get('deploy-host', 'an unknown computer')}"))
+    if "deploy-date" in record:
+        rows.append(("date", record["deploy-date"]))
+    if "code-path" in record:
+        rows.append(("from", record["code-path"]))
+    if "git-desc" in record:
+        description = record["git-desc"]
+        dirty = ", with changes that are not committed" if description.endswith("-dirty") else ""
+        branch = f" on {record['git-branch']}" if "git-branch" in record else ""
+        rows.append(("commit", f"{description.removesuffix('-dirty')}{branch}{dirty}"))
+    return rows

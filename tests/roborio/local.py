@@ -1,0 +1,293 @@
+"""The real agent on a directory of this machine, over a socket pair that can be cut: many deploys without SSH."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import select
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+
+from pyfrc_core.deploy.manifest import Manifest, survey
+from pyfrc_core.deploy.robot import COMMAND, Deployed, DeployRequest, Robot
+
+ROBOT_PY = "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n"
+
+
+class Cut(OSError):
+    """The connection was cut, as it was to be."""
+
+
+class LocalChannel:
+    """A channel to an agent on this machine.
+
+    :param cut_to_robot:   bytes after which the connection is cut, counted on the way to the robot
+    :param cut_from_robot: on the way back
+    """
+
+    def __init__(
+        self,
+        ours: socket.socket,
+        alive: int,
+        process: subprocess.Popen[bytes] | None,
+        cut_to_robot: int | None = None,
+        cut_from_robot: int | None = None,
+    ) -> None:
+        self._socket = ours
+        self._alive = alive
+        self._process = process
+        self._limits = {"to": cut_to_robot, "from": cut_from_robot}
+        self.bytes_to_robot = self.bytes_from_robot = 0
+        #: How many steps on the disk the agent has made, once it has ended by itself.
+        self.steps: int | None = None
+
+    def sendall(self, data: bytes) -> None:
+        """Send, up to the cut."""
+        limit = self._limits["to"]
+        if limit is not None and self.bytes_to_robot + len(data) > limit:
+            self._socket.sendall(data[: limit - self.bytes_to_robot])
+            self.bytes_to_robot = limit
+            self.close()
+            raise Cut("cut")
+        self._socket.sendall(data)
+        self.bytes_to_robot += len(data)
+
+    def recv(self, count: int) -> bytes:
+        """Receive, up to the cut."""
+        limit = self._limits["from"]
+        if limit is not None and self.bytes_from_robot >= limit:
+            self.close()
+            raise Cut("cut")
+        try:
+            piece = self._socket.recv(count if limit is None else min(count, limit - self.bytes_from_robot))
+        except (
+            ConnectionResetError
+        ):  # the agent has ended with something unread: over SSH that is an end like any other
+            return b""
+        self.bytes_from_robot += len(piece)
+        return piece
+
+    def recv_ready(self) -> bool:
+        """Whether something has come."""
+        return bool(select.select([self._socket], [], [], 0)[0])
+
+    def recv_stderr(self, count: int) -> bytes:
+        """What the agent has printed as errors."""
+        return self._process.stderr.read() if self._process is not None and self._process.stderr is not None else b""
+
+    def recv_exit_status(self) -> int:
+        """The agent's, where it is a process of ours."""
+        if self._process is None or self._alive < 0:
+            return -1  # as paramiko says when the link is gone
+        return self._process.wait()
+
+    def peak_memory(self) -> int:
+        """The most that the agent, which is a process of ours and runs, has had in memory; bytes."""
+        assert self._process is not None
+        status = Path(f"/proc/{self._process.pid}/status").read_text()
+        return 1024 * int(status.partition("VmHWM:")[2].split()[0])
+
+    def settimeout(self, seconds: float | None) -> None:
+        """As of a socket."""
+        self._socket.settimeout(seconds)
+
+    def close(self) -> None:
+        """Hang up, and wait until the agent and its children have ended."""
+        if self._alive < 0:
+            return
+        self._socket.close()
+        told = b""
+        while piece := os.read(self._alive, 100):
+            told += piece
+        os.close(self._alive)
+        self._alive = -1
+        self.steps = int(told) if told else None
+        if self._process is not None:
+            self._process.wait()
+            if self._process.stderr is not None:
+                self._process.stderr.close()
+
+
+class LocalRobot:
+    """A robot's disk in a directory, and agents that work on it."""
+
+    address = "local"
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.home = root / "home/lvuser"
+        self._agents: Agents | None = None
+        self._options: dict[str, int | bool | None] = {}
+
+    @classmethod
+    def new(cls, root: Path) -> LocalRobot:
+        """A robot on which nothing was ever deployed."""
+        robot = cls(root)
+        for name in ("home/lvuser", "tmp", "etc/natinst/share", "usr/local/frc/bin", "etc/profile.d"):
+            (root / name).mkdir(parents=True)
+        (root / "etc/natinst/share/scs_imagemetadata.ini").write_text('IMAGEVERSION = "FRC_roboRIO_2026_v2.0"\n')
+        (root / "etc/profile.d/natinst-path.sh").write_text("")
+        script = root / "usr/local/frc/bin/frcKillRobot.sh"
+        script.write_text("#!/bin/sh\n")
+        script.chmod(0o755)
+        return robot
+
+    def copy(self, root: Path) -> LocalRobot:
+        """Another robot with the same on its disk, in the place of what is there."""
+        shutil.rmtree(root, ignore_errors=True)
+        shutil.copytree(self.root, root, symlinks=True)
+        return LocalRobot(root)
+
+    def start(self, agents: Agents, **options: int | bool | None) -> Robot:
+        """An agent on it; for the options see `Agents.channel`."""
+        self._agents, self._options = agents, options
+        return Robot.start(self, hello={"root": str(self.root)})
+
+    def open(self, command: str) -> LocalChannel:
+        """What a connection does: run the agent."""
+        assert command == COMMAND
+        assert self._agents is not None
+        self.channel = self._agents.channel(self.root, **self._options)
+        return self.channel
+
+    def deploy(
+        self,
+        agents: Agents,
+        project: Manifest,
+        *,
+        main: str = "robot.py",
+        debug: bool = False,
+        in_place: bool = False,
+        **options: int | bool | None,
+    ) -> Deployed:
+        """Deploy and hang up."""
+        robot = self.start(agents, **options)
+        try:
+            return robot.deploy(project, DeployRequest(main, {"deploy-user": "somebody"}, debug, in_place))
+        finally:
+            robot.close()
+
+    def startable(self) -> dict[str, bytes] | None:
+        """The files of the program that would be started now, by their names; none: there is no start command."""
+        debug = (self.root / "tmp/frcdebug").exists()
+        command = self.home / ("robotDebugCommand" if debug else "robotCommand")
+        if not command.exists():
+            return None
+        match = re.search(r"--main (/home/lvuser/\S+) (?:-v )?run\n?$", command.read_text())
+        assert match is not None, f"this is no start command: {command.read_text()!r}"
+        main = self.root / match[1].lstrip("/")
+        assert main.is_file(), f"the start command names a file that is not there: {match[1]}"
+        directory = main.parent  # unresolved: seen from outside a look-alike, its root is no plain path
+        return {
+            file.relative_to(directory).as_posix(): file.read_bytes()
+            for file in directory.rglob("*")
+            if file.is_file() and "__pycache__" not in file.parts and file.name != "deploy.json"
+        }
+
+
+class Agents:
+    """Starts agents: forks of one process that waits for the next."""
+
+    def __init__(self) -> None:
+        self._control, theirs = socket.socketpair()
+        self._process = subprocess.Popen(
+            [sys.executable, str(Path(__file__).with_name("zygote.py")), str(theirs.fileno())],
+            pass_fds=[theirs.fileno()],
+        )
+        theirs.close()
+
+    def __enter__(self) -> Agents:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._control.close()
+        self._process.wait()
+
+    def channel(
+        self,
+        root: Path,
+        *,
+        cut_to_robot: int | None = None,
+        cut_from_robot: int | None = None,
+        last_step: int | None = None,
+        loses: bool = False,
+    ) -> LocalChannel:
+        """A new agent.
+
+        :param last_step: it is killed before this step of its on the disk
+        :param loses:     and what was not on the disk yet is lost, as when the power goes
+        """
+        ours, theirs = socket.socketpair()
+        alive, end = os.pipe()
+        message = json.dumps({"root": str(root), "last_step": last_step, "loses": loses}).encode()
+        socket.send_fds(self._control, [message], [theirs.fileno(), end])
+        theirs.close()
+        os.close(end)
+        channel = LocalChannel(ours, alive, None, cut_to_robot, cut_from_robot)
+        _skip_bootstrap(channel)
+        return channel
+
+
+def _skip_bootstrap(channel: LocalChannel) -> None:
+    """Such an agent has its modules already: they are left out of what is sent to it."""
+    from pyfrc_core.deploy.robot import agent_package
+
+    package = agent_package()
+    send = channel.sendall
+
+    def sendall(data: bytes) -> None:
+        send(data[len(package) :] if data.startswith(package) else data)
+
+    channel.sendall = sendall  # type: ignore[method-assign]
+
+
+class Processes:
+    """Starts agents as a robot does: a Python that is sent everything.
+
+    :param python: the Python that serves as the robot's
+    :param shell:  what is run in its place
+    """
+
+    def __init__(self, python: str = sys.executable, shell: str | None = None) -> None:
+        program = COMMAND.partition(" -c '")[2].removesuffix("'")
+        self._command = [python, "-X", "utf8", "-u", "-c", program] if shell is None else ["sh", "-c", shell]
+
+    def channel(
+        self, root: Path, *, cut_to_robot: int | None = None, cut_from_robot: int | None = None
+    ) -> LocalChannel:
+        """A new agent."""
+        ours, theirs = socket.socketpair()
+        alive, end = os.pipe()
+        process = subprocess.Popen(
+            self._command, stdin=theirs, stdout=theirs, stderr=subprocess.PIPE, pass_fds=[end], start_new_session=True
+        )
+        theirs.close()
+        os.close(end)
+        return LocalChannel(ours, alive, process, cut_to_robot, cut_from_robot)
+
+
+@contextmanager
+def directory_in_memory() -> Iterator[Path]:
+    """A directory in memory, where there is such a thing: hundreds of deploys would wait for the disk otherwise."""
+    memory = Path("/dev/shm")
+    with tempfile.TemporaryDirectory(dir=memory if os.access(memory, os.W_OK) else None) as name:
+        yield Path(name)
+
+
+def project_of(directory: Path, files: Mapping[str, str | bytes]) -> Manifest:
+    """A project of these files, ready to be uploaded."""
+    for name, content in files.items():
+        file = directory / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(content.encode() if isinstance(content, str) else content)
+    return survey(directory, large=True)

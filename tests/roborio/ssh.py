@@ -1,0 +1,61 @@
+"""A plain SSH connection to a look-alike, for tests of what goes over it."""
+
+from __future__ import annotations
+
+import socket
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from pyfrc_core.deploy.errors import ConnectionFailedError
+
+if TYPE_CHECKING:
+    import paramiko
+
+
+class SshConnection:
+    """Logged in, until the end of the ``with`` block; nobody asks for host keys here."""
+
+    def __init__(self, host: str, port: int, user: str = "lvuser") -> None:
+        import paramiko
+
+        self.address = f"{host}:{port}"
+        self.transport: paramiko.Transport | None = None
+        try:
+            self.transport = paramiko.Transport(socket.create_connection((host, port), timeout=10))
+            self.transport.banner_timeout = 10
+            self.transport.connect(username=user, password="")
+        except (OSError, EOFError, paramiko.SSHException) as error:
+            self.close()
+            raise ConnectionFailedError(f"no connection: {error}") from error
+
+    def __enter__(self) -> SshConnection:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Hang up."""
+        if self.transport is not None:
+            self.transport.close()
+
+    def open(self, command: str) -> paramiko.Channel:
+        """Run a command."""
+        import paramiko
+
+        assert self.transport is not None
+        try:
+            channel = self.transport.open_session(timeout=10)
+            channel.settimeout(10)
+            channel.exec_command(command)
+        except (OSError, EOFError, paramiko.SSHException) as error:
+            raise ConnectionFailedError(f"no channel: {error}") from error
+        return channel
+
+    def run(self, command: str) -> str:
+        """What a command prints."""
+        channel = self.open(command)
+        channel.set_combine_stderr(True)
+        return channel.makefile().read().decode()

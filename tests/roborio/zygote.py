@@ -1,0 +1,124 @@
+"""Forks agents that have everything imported already: a hundred of them a second. Run by `local`.
+
+Each can be told to end, by SIGKILL, before its n-th step on the disk; and to lose then what was not on the disk yet, as
+in a power cut: every file written since the last flush is empty.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import pathlib
+import signal
+import socket
+import sys
+import traceback
+from typing import Any
+
+from pyfrc_core.deploy.agent import deploying, disk, releases, serve
+
+_CHANGES = {
+    "os.rename",
+    "os.link",
+    "os.symlink",
+    "os.mkdir",
+    "os.remove",
+    "os.rmdir",
+    "os.chmod",
+    "os.truncate",
+    "os.fork",
+}
+_WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT
+
+
+class Steps:
+    """Counts an agent's steps on the disk, and ends it before one of them."""
+
+    def __init__(self, last: int | None, loses: bool, root: str) -> None:
+        self.count = 0
+        self._last = last
+        self._loses = loses
+        self._root = pathlib.Path(root)
+        self._me = os.getpid()
+        self._unsaved: dict[int, int] = {}
+        self._saved_caches: set[int] = set()
+        self._open, self._fsync, self._flush = pathlib.Path.open, os.fsync, disk.flush
+        if loses:
+            # A function, which is bound to the path as the original is; our own method would not be.
+            pathlib.Path.open = lambda path, *args, **options: self._opening(path, *args, **options)  # type: ignore[method-assign,assignment]
+            os.fsync = self._fsyncing
+            for module in (disk, releases, deploying, serve):
+                module.flush = self._flushing  # type: ignore[attr-defined]
+        sys.addaudithook(self._hook)
+
+    def _hook(self, event: str, args: Any) -> None:
+        # "ctypes.dlsym": right before the disk is flushed, and names are exchanged.
+        is_step = event in _CHANGES or event == "ctypes.dlsym" or (event == "open" and (args[2] or 0) & _WRITING)
+        if is_step and os.getpid() == self._me:
+            self.count += 1
+            if self.count == self._last:
+                self._end()
+
+    def _end(self) -> None:
+        if self._loses:
+            for descriptor in self._unsaved.values():
+                os.ftruncate(descriptor, 0)
+            for cache in self._root.rglob("*.pyc"):
+                if cache.stat().st_ino not in self._saved_caches:
+                    os.truncate(cache, 0)
+        os.kill(self._me, signal.SIGKILL)
+
+    def _opening(self, path: pathlib.Path, mode: str = "r", *args: Any, **options: Any) -> Any:
+        stream = self._open(path, mode, *args, **options)
+        if mode[0] in "wax":
+            self._unsaved[os.fstat(stream.fileno()).st_ino] = os.dup(stream.fileno())
+        return stream
+
+    def _fsyncing(self, descriptor: Any) -> None:
+        self._fsync(descriptor)
+        number = descriptor if isinstance(descriptor, int) else descriptor.fileno()
+        self._unsaved.pop(os.fstat(number).st_ino, None)
+
+    def _flushing(self, directory: pathlib.Path) -> None:
+        self._flush(directory)
+        self._unsaved.clear()
+        self._saved_caches = {cache.stat().st_ino for cache in self._root.rglob("*.pyc")}
+
+
+def agent(conversation: int, alive: int, options: dict[str, Any]) -> None:
+    """Be an agent; its steps are told at its end."""
+    os.dup2(conversation, 0)
+    os.dup2(conversation, 1)
+    os.close(conversation)
+    steps = Steps(options.get("last_step"), options.get("loses", False), options["root"])
+    try:
+        serve.main(open(0, "rb", 0))  # noqa: SIM115
+    except SystemExit:
+        pass
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        os.write(alive, b"%d" % steps.count)
+        os._exit(0)
+
+
+def main() -> None:
+    """Fork an agent for each message, with its sockets."""
+    control = socket.socket(fileno=int(sys.argv[1]))
+    serve.processes = set  # this machine's are not looked through each time
+    while True:
+        with contextlib.suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+        message, descriptors, _, _ = socket.recv_fds(control, 65536, 2)
+        if not message:
+            return
+        if os.fork() == 0:
+            control.close()
+            agent(*descriptors, json.loads(message))
+        for each in descriptors:
+            os.close(each)
+
+
+main()

@@ -1,0 +1,200 @@
+"""The agent as a robot runs it: sent to a Python that knows nothing of it, in frames that anything may happen to."""
+
+from __future__ import annotations
+
+import ast
+import io
+import os
+import socket
+import sys
+import zlib
+from collections.abc import Generator
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
+
+from pyfrc_core.deploy import agent
+from pyfrc_core.deploy.agent import program, wire
+from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
+from pyfrc_core.deploy.robot import COMMAND, DeployRequest, Watched, agent_package
+
+SOURCES = sorted(Path(agent.__file__).parent.glob("*.py"))
+
+
+def pythons() -> dict[str, str]:
+    """This Python, and the oldest that a robot may have, where there is one."""
+    versions = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"), "versions")
+    oldest = [str(each) for each in versions.glob("3.9.*/bin/python3.9")] + ["/usr/bin/python3.9"]
+    there = [each for each in oldest if Path(each).exists()]
+    return {"this": sys.executable, **dict.fromkeys(["3.9"] if there else [], there[0] if there else "")}
+
+
+@pytest.fixture
+def robot() -> Generator[LocalRobot]:
+    with directory_in_memory() as directory:
+        yield LocalRobot.new(directory / "robot")
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.stem)
+def test_python_39_and_its_standard_library_are_enough(source: Path) -> None:
+    tree = ast.parse(source.read_text("utf-8"), feature_version=(3, 9))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level == 0:
+            assert node.module is not None
+            assert node.module.split(".")[0] in sys.stdlib_module_names
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 1, "from the agent's own modules only"
+        elif isinstance(node, ast.Import):
+            assert {each.name.split(".")[0] for each in node.names} <= sys.stdlib_module_names
+
+
+@pytest.mark.parametrize("python", pythons().values(), ids=pythons())
+def test_it_runs_as_it_is_sent(robot: LocalRobot, tmp_path: Path, python: str) -> None:
+    agents = Processes(python)
+    project = project_of(tmp_path / "project", {"robot.py": ROBOT_PY, "Ü b/it's.txt": "x"})
+    robot.deploy(agents, project)
+    (robot.home / "py/log.txt").write_text("written")
+    deployed = robot.deploy(agents, project_of(tmp_path / "project", {"robot.py": "# 2\n"}))
+    assert (deployed.release, deployed.files_sent) == (2, 1)
+    assert robot.startable() == {"robot.py": b"# 2\n", "Ü b/it's.txt": b"x", "log.txt": b"written"}
+    session = robot.start(agents)
+    assert session.rollback().release.number == 1
+    session.close()
+
+
+def test_nothing_of_the_user_stands_in_the_command() -> None:
+    assert COMMAND.startswith("/usr/local/bin/python3 -X utf8 -u -c '")
+    assert COMMAND.count("'") == 2
+    assert not set("$`\\!{%") & set(COMMAND)
+    assert len(agent_package()) < 20_000, "it is sent with each deploy"
+
+
+def test_memory(robot: LocalRobot, tmp_path: Path) -> None:
+    """A project of 20 MB, compressible and not, in large files and small: under 40 MB at the highest."""
+    files: dict[str, str | bytes] = {f"data/{number}.bin": os.urandom(50_000) for number in range(200)}
+    files |= {"zeros.bin": bytes(8_000_000), "path.json": b"[1.234567, 2.345678]\n" * 100_000, "robot.py": ROBOT_PY}
+    files |= {f"module{number}.py": f"NUMBER = {number}\n" * 100 for number in range(50)}
+    project = project_of(tmp_path / "project", files)
+    assert project.total_bytes > 20_000_000
+    for files_sent in (len(project.entries), 0, 1):
+        if files_sent == 1:
+            project = project_of(tmp_path / "project", {"path.json": b"[1.234567, 2.345679]\n" * 100_000})
+        session = robot.start(Processes())
+        assert session.deploy(project, DeployRequest("robot.py", {})).files_sent == files_sent
+        peak = robot.channel.peak_memory()
+        session.close()
+        assert peak < 40_000_000
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="an agent runs on Linux")
+def test_a_laptop_that_is_gone_loses_its_turn() -> None:
+    """A radio that is switched off ends no connection: the agent would hold its lock for hours."""
+    ours, theirs = socket.socketpair()
+    with ours, theirs, theirs.makefile("rb", buffering=0) as source:
+        waiting = wire.Wire(source, io.BytesIO(), patience=0.01)
+        waiting.impatient = True
+        ours.sendall(wire.said_frame({"op": "deploy"})[:-1])
+        with pytest.raises(wire.WireError, match=r"nothing has come for 0.01 s"):
+            waiting.hear()
+
+
+SAID = st.dictionaries(st.text(), st.recursive(st.none() | st.integers() | st.text(), st.lists, max_leaves=5))
+
+
+@given(SAID, st.lists(st.binary()), st.data())
+def test_frames_come_as_they_were_sent(said: wire.Said, pieces: list[bytes], data: st.DataObject) -> None:
+    stream = wire.said_frame(said) + b"".join(wire.frame(wire.CONTENT, piece) for piece in pieces)
+    reading = io.BytesIO(stream)
+    assert wire.said_in(*wire.read_frame(reading.read)) == said
+    assert [wire.read_frame(reading.read) for _ in pieces] == [(wire.CONTENT, piece) for piece in pieces]
+    cut = io.BytesIO(stream[: data.draw(st.integers(0, len(stream) - 1))])
+    with pytest.raises(wire.EndedError):
+        [wire.read_frame(cut.read) for _ in range(len(pieces) + 1)]
+
+
+@given(st.binary(max_size=50))
+def test_what_is_no_frame_is_refused(noise: bytes) -> None:
+    with pytest.raises(wire.WireError):
+        wire.said_in(*wire.read_frame(io.BytesIO(noise).read))
+
+
+def test_a_frame_that_unpacks_to_too_much() -> None:
+    bomb = wire.frame(wire.SAID, zlib.compress(b'{"a": "' + bytes(wire.LONGEST) + b'"}'))
+    with pytest.raises(wire.WireError):
+        wire.said_in(*wire.read_frame(io.BytesIO(bomb).read))
+
+
+@pytest.fixture(scope="module")
+def agents() -> Generator[Agents]:
+    with Agents() as agents:
+        yield agents
+
+
+@settings(max_examples=30, deadline=None)
+@given(noise=st.binary(min_size=1, max_size=200))
+def test_noise_changes_nothing_on_the_robot(noise: bytes, agents: Agents) -> None:
+    with directory_in_memory() as directory:
+        robot = LocalRobot.new(directory / "robot")
+        session = robot.start(agents)
+        robot.channel.sendall(noise)
+        session.close()
+        assert list(robot.home.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("request_", "told"),
+    [
+        ({"op": "format"}, "format"),
+        ({"op": "deploy", "main": "robot.py", "files": [["robot.py", "much", "00", False]]}, "much"),
+        ({"op": "watch"}, "seconds"),
+    ],
+)
+def test_what_it_does_not_understand_is_told(
+    robot: LocalRobot, agents: Agents, request_: dict[str, object], told: str
+) -> None:
+    session = robot.start(agents)
+    robot.channel.sendall(wire.said_frame(request_))
+    with pytest.raises(DeployError, match=rf"the agent on the robot has failed: .*{told}.*\n.*old program or the new"):
+        session._answer(20)
+    assert session.info().current is None
+    session.close()
+
+
+def test_a_python_that_cannot_run_it(robot: LocalRobot) -> None:
+    with pytest.raises(DeployError, match="the agent on the robot has ended: old python") as caught:
+        robot.start(Processes(shell="echo 'old python' >&2; exit 1"))
+    assert not isinstance(caught.value, ConnectionFailedError)
+
+
+def test_something_else_that_prints_before(robot: LocalRobot) -> None:
+    """A login script's greeting, say."""
+    with pytest.raises(DeployError, match=r"what the robot sends is not from our agent: .*Welco"):
+        robot.start(Processes(shell="echo 'Welcome to the robot'; exec cat >/dev/null"))
+
+
+def test_the_link_is_cut_while_the_agent_is_sent(robot: LocalRobot) -> None:
+    for place in (1, 8, 9, 1000, len(agent_package())):
+        with pytest.raises(ConnectionFailedError, match=r"the link to the robot was lost"):
+            robot.start(Processes(), cut_to_robot=place)
+        assert list(robot.home.iterdir()) == []
+
+
+def test_console_messages() -> None:
+    """Framed as pynetconsole takes them; each is a line."""
+    text = b"\x0c" + bytes(6) + "Größe".encode()
+    error = b"\x0b" + bytes(13) + b"\0\x05wrong" + b"\0\0" + b"\0\x05stack"
+    assert program.console_text(text) == "Größe\n"
+    assert program.console_text(error) == "wrong stack\n"
+    assert program.console_text(b"\x0d...") == ""
+    assert program.console_text(b"") == ""
+
+
+def test_the_last_traceback_counts() -> None:
+    first = 'Traceback (most recent call last):\n  File "a.py", line 1, in a\nZeroDivisionError: division by zero\n'
+    second = 'Traceback (most recent call last):\n  File "b.py", line 2, in b\n    b()\nKeyError: 1\n'
+    watched = Watched(alive=False, started=False, output=f"{first}\nDuring this:\n\n{second}The end\n")
+    assert watched.traceback == second.rstrip()
+    assert Watched(alive=False, started=False, output="no\n").traceback is None

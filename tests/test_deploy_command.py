@@ -1,0 +1,572 @@
+"""`pyfrc deploy` and its kin as a team uses them, on a look-alike of a roboRIO with a real SSH server."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import io
+import json
+import os
+import re
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from at_terminal import run_at_terminal
+from roborio import Proxy, Roborio, require_roborio
+
+from pyfrc_core.deploy import session
+from pyfrc_core.deploy.progress import Conversation, Phase, Progress
+from pyfrc_core.deploy.reach import RobotChoice
+from pyfrc_core.deploy.session import DeployOptions
+from pyfrc_core.project import find_project
+
+#: As the tool of today has it.
+START_COMMAND = (
+    "env LD_LIBRARY_PATH=/usr/local/frc/lib/ "
+    "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
+)
+
+NewRobot = Callable[..., Roborio]
+
+ROBOT = """\
+import wpilib
+
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        print("we are number {number}")
+"""
+
+#: At the end of robot.py: what has gone wrong is seen on the robot only.
+DIES = """
+
+import os
+
+if os.path.exists("/usr/local/frc"):
+    raise RuntimeError("no such gyro")
+"""
+
+
+def program(number: int = 1, more: str = "") -> dict[str, str]:
+    return {"robot.py": ROBOT.format(number=number) + more}
+
+
+@pytest.fixture
+def new_robot() -> Iterator[NewRobot]:
+    """Makes look-alikes, for one test."""
+    require_roborio()
+    with contextlib.ExitStack() as stack:
+        yield lambda **how: stack.enter_context(Roborio(wpilib=how.pop("wpilib", version("wpilib")), **how))
+
+
+@pytest.fixture
+def robot(new_robot: NewRobot) -> Roborio:
+    return new_robot()
+
+
+def deploy(project, robot: Roborio | Proxy, *args: str, command: str = "deploy"):
+    where = robot.where if isinstance(robot, Roborio) else f"{robot.host}:{robot.port}"
+    skip = ["--skip-tests"] if command == "deploy" else []
+    return project.run(command, *skip, "--robot", where, *args, env={"SSH_AUTH_SOCK": ""})
+
+
+def events(result) -> list[dict]:
+    return [json.loads(line) for line in result.stdout.splitlines()]
+
+
+def code_on(robot: Roborio) -> str:
+    return (robot.home / "py/robot.py").read_text()
+
+
+# -- the way that everybody goes ---------------------------------------------------------------------------------------
+
+
+def alone_on_port(port: int) -> socket.socket:
+    """Listens there, when it is this test's turn: another run of this suite may be at the same test."""
+    for _ in range(600):
+        try:
+            return socket.create_server(("127.0.0.1", port))
+        except OSError:
+            threading.Event().wait(0.1)
+    raise AssertionError(f"somebody listens on port {port} all the time: a Driver Station?")
+
+
+@contextlib.contextmanager
+def driver_station(robot: Roborio) -> Iterator[None]:
+    """A Driver Station on this computer, which is connected to the robot."""
+    number = struct.unpack("!I", socket.inet_aton(robot.host))[0]
+    said = json.dumps({"robotIP": number, "FMS Connected": False}).encode() + b"\n"
+    with alone_on_port(1742) as listener:
+
+        def serve() -> None:
+            with contextlib.suppress(OSError):
+                while True:
+                    with listener.accept()[0] as connected:
+                        connected.sendall(said)
+
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        yield
+        listener.shutdown(socket.SHUT_RDWR)
+        thread.join()
+
+
+def test_a_new_user_comes_to_a_running_program_with_one_command_and_one_question(robot: Roborio, make_project) -> None:
+    if robot.port != 22:
+        pytest.skip("a Driver Station's robot answers on port 22, which this computer's own SSH server has")
+    project = make_project({})
+    assert project.run("init").code == 0
+    with driver_station(robot):
+        code, shown = run_at_terminal(project.path, ["deploy"], [("What is your team number?", "9999")])
+        assert code == 0, shown
+        assert len(re.findall(r"\w\?", shown)) == 1, shown
+        robot.said("Robot program startup complete")
+        assert "SHA256:" in shown
+        assert "passed" in shown  # the template's tests
+        assert json.loads((project.path / ".wpilib/wpilib_preferences.json").read_text()) == {"teamNumber": 9999}
+        again = project.run("deploy", "--skip-tests")
+        assert again.code == 0, again.output
+        assert "nothing has changed" in again.stdout
+        assert "SHA256:" not in again.stdout
+
+
+def test_a_deploy_tells_a_line_a_phase_and_the_program_runs(robot: Roborio, make_project) -> None:
+    project = make_project(program())
+    result = deploy(project, robot)
+    assert result.code == 0, result.output
+    lines = [line.split()[0] for line in result.stdout.splitlines() if line.endswith(" s")]
+    assert lines == ["files", "find", "connect", "look", "upload", "start"]
+    assert "StartupDLLs was switched off" in result.stdout
+    robot.said("we are number 1")
+    record = json.loads((robot.home / "py/deploy.json").read_text())
+    assert record["code-path"] == str(project.path)
+    assert set(record) == {"deploy-host", "deploy-user", "deploy-date", "code-path"}
+    assert (robot.disk / "etc/natinst/share/ni-rt.ini").read_text().count("\n;StartupDLLs") == 1
+
+
+def test_what_was_deployed_from_a_checkout_says_which_commit(robot: Roborio, make_project) -> None:
+    project = make_project(program())
+    git = ["git", "-C", str(project.path), "-c", "user.name=x", "-c", "user.email=x@example.org"]
+    for arguments in (["init", "-q", "-b", "main"], ["add", "robot.py"], ["commit", "-qm", "it works"]):
+        subprocess.run([*git, *arguments], check=True)
+    project.write({"robot.py": ROBOT.format(number=2)})
+    assert deploy(project, robot).code == 0
+    commit = subprocess.run([*git, "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
+    info = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
+    assert info["deploy_json"]["git-hash"] == commit
+    assert info["deploy_json"]["git-branch"] == "main"
+    shown = deploy(project, robot, command="deploy-info").stdout
+    assert f"{commit[:7]} on main, with changes that are not committed" in shown
+    assert f"release {info['current']}, running" in shown
+
+
+def test_the_plan_is_shown_and_nothing_is_done(robot: Roborio, make_project) -> None:
+    project = make_project({**program(), "old.py": "", "same.py": "X = 1\n"})
+    assert deploy(project, robot).code == 0
+    (project.path / "old.py").unlink()
+    project.write({**program(2), "new.py": ""})
+    result = deploy(project, robot, "--dry-run")
+    assert result.code == 0, result.output
+    assert "+ new.py\n~ robot.py\n- old.py\n1 to add, 1 to change, 1 to remove; " in result.stdout
+    assert events(deploy(project, robot, "--dry-run", "--json"))[-1]["plan"] == {
+        "added": ["new.py"],
+        "changed": ["robot.py"],
+        "removed": ["old.py"],
+        "files_to_send": 1 if not (project.path / "new.py").stat().st_size else 2,
+        "bytes_to_send": (project.path / "robot.py").stat().st_size,
+    }
+    assert sorted(file.name for file in (robot.home / "py").glob("*.py")) == ["old.py", "robot.py", "same.py"]
+    assert "number 1" in code_on(robot)
+
+
+def test_in_place_overwrites_and_deletes_nothing(robot: Roborio, make_project) -> None:
+    project = make_project({**program(), "old.py": ""})
+    assert deploy(project, robot).code == 0
+    robot.said("we are number 1")
+    (project.path / "old.py").unlink()
+    project.write(program(2))
+    result = deploy(project, robot, "--in-place")
+    assert result.code == 0, result.output
+    assert "start" not in [line.split()[0] for line in result.stdout.splitlines()]
+    assert "number 2" in code_on(robot)
+    assert (robot.home / "py/old.py").exists()
+    assert "we are number 2" not in robot.said("we are number 1")
+
+
+def test_debugging_is_switched_on_and_off(robot: Roborio, make_project) -> None:
+    project = make_project(program())
+    assert deploy(project, robot, "--debug").code == 0
+    command = (robot.home / "robotDebugCommand").read_text()
+    assert " -O " not in command
+    assert " -v run" in command
+    assert robot.run("stat", "-c", "%U:%G", "/tmp/frcdebug").stdout == "lvuser:ni\n"
+    assert deploy(project, robot).code == 0
+    assert robot.run("test", "-e", "/tmp/frcdebug").returncode == 1
+    assert " -O " in (robot.home / "robotCommand").read_text()
+
+
+def test_for_tools_every_line_is_json(robot: Roborio, make_project) -> None:
+    project = make_project({**program(), "tests/test_it.py": "def test_it(): print('words')\n"})
+    result = project.run("deploy", "--robot", robot.where, "--json")
+    assert result.code == 0, result.output
+    told = events(result)
+    assert [each["phase"] for each in told if each["event"] == "phase"][:2] == ["tests", "files"]
+    assert told[-1]["event"] == "result"
+    assert told[-1]["release"] == 1
+    assert told[-1]["host"] == robot.host
+    assert "1 passed" in result.stderr
+    failed = project.run("deploy", "--skip-tests", "--robot", "127.0.0.1:1", "--json")
+    error = events(failed)[-1]
+    assert failed.code == error["exit_code"] == 1
+    assert (error["event"], error["kind"]) == ("error", "RobotNotFound")
+
+
+# -- programs that die, and going back ---------------------------------------------------------------------------------
+
+
+def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot: Roborio, make_project) -> None:
+    project = make_project(program(1))
+    assert deploy(project, robot).code == 0
+    project.write(program(2, DIES))
+    result = deploy(project, robot)
+    assert result.code == 3
+    assert "| RuntimeError: no such gyro" in result.stdout
+    assert "--rollback" in result.stderr
+    assert "number 2" in code_on(robot)
+    result = deploy(project, robot, "--auto-rollback")
+    assert result.code == 3
+    assert "release 1 runs again" in result.stderr
+    assert "number 1" in code_on(robot)
+
+
+def test_at_a_terminal_the_way_back_is_offered(robot: Roborio, make_project) -> None:
+    project = make_project(program(1))
+    assert deploy(project, robot).code == 0
+    project.write(program(2, DIES))
+    args = ["deploy", "--skip-tests", "--robot", robot.where]
+    code, shown = run_at_terminal(project.path, args, [("Go back to release 1?", "y")])
+    assert code == 3, shown
+    assert "release 1 runs again" in shown
+    assert "number 1" in code_on(robot)
+
+
+def test_a_first_program_that_dies_has_nothing_to_go_back_to(robot: Roborio, make_project) -> None:
+    project = make_project(program(1, DIES))
+    result = deploy(project, robot, "--auto-rollback")
+    assert result.code == 3
+    assert "There is no program before to go back to" in result.stderr
+
+
+def test_rolling_back_goes_to_the_release_before_or_the_one_named(robot: Roborio, make_project) -> None:
+    project = make_project({})
+    for number in (1, 2):
+        project.write(program(number))
+        assert deploy(project, robot).code == 0
+    result = deploy(project, robot, "--rollback")
+    assert result.code == 0, result.output
+    assert "release 1 again" in result.stdout
+    assert "number 1" in code_on(robot)
+    result = deploy(project, robot, "--rollback", "2")
+    assert result.code == 0, result.output
+    assert "number 2" in code_on(robot)
+    result = deploy(project, robot, "--rollback", "77")
+    assert result.code == 1
+    assert "there is no release 77" in result.stderr
+
+
+def test_what_another_tool_has_left_is_kept_and_can_be_gone_back_to(robot: Roborio, make_project) -> None:
+    robot.put("home/lvuser/py/robot.py", ROBOT.format(number=77))
+    robot.put("home/lvuser/py/deploy.json", '{"deploy-user": "kim", "deploy-host": "pit", "deploy-date": "yesterday"}')
+    robot.put("home/lvuser/robotCommand", START_COMMAND + "\n")
+    project = make_project(program())
+    shown = deploy(project, robot, command="deploy-info").stdout
+    assert "program    deployed by another tool" in shown
+    assert "by           kim on pit" in shown
+    result = deploy(project, robot)
+    assert result.code == 0, result.output
+    assert "another tool has left there is kept as release 1" in result.stdout
+    shown = deploy(project, robot, command="deploy-info").stdout
+    assert "release 1   yesterday, kim on pit, left by another tool" in shown
+    result = deploy(project, robot, "--rollback")
+    assert result.code == 0, result.output
+    assert "number 77" in code_on(robot)
+
+
+def test_undeploying_has_to_be_meant(robot: Roborio, make_project) -> None:
+    project = make_project(program())
+    assert deploy(project, robot).code == 0
+    result = deploy(project, robot, command="undeploy")
+    assert (result.code, "--yes" in result.stderr) == (2, True)
+    code, shown = run_at_terminal(project.path, ["undeploy", "--robot", robot.where], [("Is that meant?", "n")])
+    assert (code, "nothing was removed" in shown) == (1, True)
+    assert "number 1" in code_on(robot)
+    result = deploy(project, robot, "--yes", "--json", command="undeploy")
+    assert (result.code, events(result)[-1]["removed"]) == (0, True)
+    assert not (robot.home / "py").exists()
+    assert not (robot.home / "robotCommand").exists()
+    assert "program    none" in deploy(project, robot, command="deploy-info").stdout
+
+
+# -- what is looked at before ------------------------------------------------------------------------------------------
+
+
+def test_a_failing_test_hinders_the_deploy_unless_the_user_says_so(robot: Roborio, make_project) -> None:
+    project = make_project({**program(), "tests/test_it.py": "def test_it(): raise ValueError('crooked')\n"})
+    result = project.run("deploy", "--robot", robot.where)
+    assert result.code == 1
+    assert "crooked" in result.stdout
+    assert "not deployed: the tests failed" in result.stderr
+    assert "--skip-tests" in result.stderr
+    assert not (robot.home / "py").exists()
+    for answer, expected in (("n", 1), ("y", 0)):
+        args = ["deploy", "--robot", robot.where]
+        code, shown = run_at_terminal(project.path, args, [("Deploy all the same?", answer)])
+        assert code == expected, shown
+    assert "number 1" in code_on(robot)
+
+
+def test_a_program_that_cannot_be_imported_is_not_deployed(robot: Roborio, make_project) -> None:
+    project = make_project(program(1, "\nimport no_such_library\n"))
+    result = deploy(project, robot)
+    assert result.code == 1
+    assert "robot.py:8" in result.stderr
+    assert "no_such_library" in result.stderr
+    assert not (robot.home / "py").exists()
+
+
+def test_a_project_without_tests_is_told_of_the_ready_made_ones(robot: Roborio, make_project) -> None:
+    project = make_project(program())
+    result = project.run("deploy", "--robot", robot.where)
+    assert result.code == 0, result.output
+    assert "no tests" in result.stdout
+    assert "--builtin" in result.stdout
+    result = project.run("deploy", "--robot", robot.where, "--builtin")
+    assert result.code == 0, result.output
+    assert " passed in " in result.stdout
+
+
+def test_another_main_file_has_to_be_meant(robot: Roborio, make_project) -> None:
+    project = make_project({"our_robot.py": ROBOT.format(number=5)})
+    result = deploy(project, robot, "--main", "our_robot.py")
+    assert result.code == 1
+    assert "--nonstandard" in result.stderr
+    result = deploy(project, robot, "--main", "our_robot.py", "--nonstandard")
+    assert result.code == 0, result.output
+    assert "/home/lvuser/py/our_robot.py run" in (robot.home / "robotCommand").read_text()
+    robot.said("we are number 5")
+
+
+# -- what can be wrong with a robot ------------------------------------------------------------------------------------
+
+OURS = version("wpilib")
+
+
+@pytest.mark.parametrize(
+    ("how", "what", "remedy"),
+    [
+        ({"password": "secret"}, "refuses lvuser with an empty password", "passwd -d lvuser"),
+        ({"image": None}, "this is no roboRIO", "--robot HOST"),
+        ({"python": None}, "there is no Python on the robot", "install-python"),
+        ({"wpilib": None}, "there is no wpilib", f"install wpilib=={OURS}"),
+        ({"wpilib": "2026.1.1"}, f"the robot has wpilib 2026.1.1, this computer has {OURS}", "--no-version-check"),
+        ({"image": "FRC_roboRIO_2024_v2.1"}, "the robot's image is of 2024", "roboRIO Imaging Tool"),
+        ({"disk_size": "700k"}, "the robot's disk is full", "Remove what the project does not need"),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, dict) else None,
+)
+def test_what_is_wrong_with_a_robot_is_told_with_what_to_do(how, what, remedy, new_robot, make_project) -> None:
+    robot = new_robot(**how)
+    project = make_project({**program(), "noise.txt": os.urandom(500_000).hex() if "disk_size" in how else ""})
+    result = deploy(project, robot, "--large")
+    assert result.code == 1, result.output
+    assert what in result.stderr
+    assert remedy in result.stderr
+    assert "Traceback" not in result.output
+    assert not (robot.home / "py").exists()
+
+
+@pytest.mark.parametrize("how", [{"wpilib": "2026.1.1"}, {"image": "FRC_roboRIO_2024_v2.1"}], ids=["wpilib", "image"])
+def test_versions_are_not_checked_when_the_user_says_so(how, new_robot, make_project) -> None:
+    result = deploy(make_project(program()), new_robot(**how), "-n")
+    assert result.code == 0, result.output
+
+
+def test_a_key_is_taken_from_the_agent_when_the_robot_wants_one(new_robot, make_project, tmp_path: Path) -> None:
+    for name in ("right", "wrong"):
+        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(tmp_path / name)], check=True)
+    robot = new_robot(authorized_key=(tmp_path / "right.pub").read_text().strip())
+    project = make_project(program())
+    result = deploy(project, robot)
+    assert result.code == 1
+    assert "only with a key, and there is none in your SSH agent" in result.stderr
+    agent_socket = tmp_path / "agent"
+    agent = subprocess.Popen(["ssh-agent", "-D", "-a", str(agent_socket)], stdout=subprocess.PIPE, text=True)
+    try:
+        assert agent.stdout is not None
+        agent.stdout.readline()
+        environment = {**os.environ, "SSH_AUTH_SOCK": str(agent_socket)}
+        args = ["deploy", "--skip-tests", "--robot", robot.where]
+        for name, code in (("wrong", 1), ("right", 0)):
+            subprocess.run(["ssh-add", "-q", str(tmp_path / name)], env=environment, check=True)
+            result = project.run(*args, env={"SSH_AUTH_SOCK": str(agent_socket)})
+            assert result.code == code, result.output
+            if code:
+                assert "refuses what was offered: 1 of your SSH agent's keys" in result.stderr
+                assert "ssh-add FILE" in result.stderr
+    finally:
+        agent.terminate()
+        agent.wait()
+        agent.stdout.close()
+
+
+def test_a_changed_host_key_is_refused_until_it_is_accepted(robot: Roborio, make_project) -> None:
+    project = make_project(program())
+    assert deploy(project, robot).code == 0
+    robot.power_off()
+    robot.new_host_key()
+    robot.power_on()
+    result = deploy(project, robot)
+    assert result.code == 1
+    assert "the robot's key has changed" in result.stderr
+    option = result.stderr.split()[-2:]
+    assert option[0] == "--accept-host-key"
+    assert deploy(project, robot, *option).code == 0
+    info = deploy(project, robot, command="deploy-info")
+    assert info.code == 0, info.output
+
+
+def test_a_lost_link_is_told_and_the_next_deploy_needs_no_help(robot: Roborio, make_project) -> None:
+    noise = os.urandom(100_000).hex()
+    project = make_project({**program(), "noise.txt": noise})
+    with Proxy((robot.host, robot.port), cut_to_robot=60_000) as proxy:
+        result = deploy(project, proxy)
+    assert result.code == 1
+    assert "the link to the robot was lost" in result.stderr
+    assert "run the command again" in result.stderr
+    assert "Traceback" not in result.output
+    result = deploy(project, robot)
+    assert result.code == 0, result.output
+
+
+def test_ctrl_c_leaves_all_whole(robot: Roborio, make_project) -> None:
+    project = make_project(program(1))
+    assert deploy(project, robot).code == 0
+    project.write({**program(2), "noise.txt": os.urandom(400_000).hex()})
+    with Proxy((robot.host, robot.port), rate=25_000) as proxy:
+        where = f"{proxy.host}:{proxy.port}"
+        command = [sys.executable, "-m", "pyfrc", "deploy", "--skip-tests", "--large", "--robot", where]
+        with subprocess.Popen(command, cwd=project.path, stderr=subprocess.PIPE, text=True) as process:
+            while proxy.bytes_to_robot < 40_000:  # until it is in the middle of it
+                assert process.poll() is None
+                threading.Event().wait(0.01)
+            process.send_signal(signal.SIGINT)
+            _, said = process.communicate()
+    assert process.returncode == 2
+    assert said.strip() == "interrupted"
+    assert "number 1" in code_on(robot)
+    assert not (robot.home / "py/noise.txt").exists()
+    assert deploy(project, robot, "--large").code == 0
+    assert "number 2" in code_on(robot)
+
+
+class Holding(Progress):
+    """Holds a deploy up in the middle of its contents, for something else to be done."""
+
+    def __init__(self, do: Callable[[], object]) -> None:
+        super().__init__(io.StringIO())
+        self._do = do
+
+    @contextlib.contextmanager
+    def _shown(self, phase: Phase, own_output: bool) -> Iterator[Phase]:
+        def bytes_done(done: int, total: int) -> None:
+            if done < total and not self.done:
+                self.done.append(self._do())
+
+        phase.bytes = bytes_done  # type: ignore[method-assign]
+        yield phase
+
+    @functools.cached_property
+    def done(self) -> list:
+        return []
+
+
+def test_two_deploys_at_once_one_wins_and_the_other_says_so(robot: Roborio, make_project) -> None:
+    project = make_project({**program(1), "noise.txt": os.urandom(120_000).hex()})
+    holding = Holding(lambda: deploy(project, robot))
+    options = DeployOptions(choice=RobotChoice(robot=robot.where), skip_tests=True)
+    session.deploy(find_project(project.path), options, Conversation(holding))
+    (second,) = holding.done
+    assert second.code == 1
+    assert "is deploying to this robot right now" in second.stderr
+    assert "until that is done" in second.stderr
+    assert "number 1" in code_on(robot)
+    info = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
+    assert [release["number"] for release in info["releases"]] == [1]
+
+
+def test_on_a_competition_field_nothing_is_deployed(make_project) -> None:
+    require_roborio()  # for its namespaces: the port of the Driver Station is one for the whole computer
+    project = make_project(program())
+    code = """
+import json, socket, subprocess, sys, threading
+subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
+with socket.create_server(("127.0.0.1", 1742)) as listener:
+    def serve():
+        with listener.accept()[0] as connected:
+            connected.sendall(json.dumps({"robotIP": 0, "FMS Connected": True}).encode() + b"\\n")
+    threading.Thread(target=serve, daemon=True).start()
+    sys.exit(subprocess.run([sys.executable, "-m", "pyfrc", *sys.argv[1:]]).returncode)
+"""
+    done = subprocess.run(
+        ["unshare", "-n", sys.executable, "-c", code, "deploy", "--skip-tests", "--team", "1234", "--no-resolve"],
+        cwd=project.path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "competition field (FMS)" in done.stderr
+    assert "when your match is over" in done.stderr
+
+
+# -- without a robot ---------------------------------------------------------------------------------------------------
+
+
+def test_without_a_robot_it_is_told_what_was_tried(make_project) -> None:
+    result = make_project(program()).run("deploy", "--skip-tests", "--robot", "127.0.0.1:1")
+    assert result.code == 1
+    assert "127.0.0.1:1  by the command  refused" in result.stderr
+
+
+def test_without_a_project_it_is_told_how_to_begin(make_project) -> None:
+    result = make_project({}).run("deploy", "--robot", "127.0.0.1:1")
+    assert result.code == 2
+    assert "pyfrc init" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["--in-place", "--auto-rollback"],
+        ["--rollback", "--dry-run"],
+        ["--rollback", "x"],
+        ["--json", "--nc"],
+        ["--dry-run", "--nc-ds"],
+        ["--robot", "127.0.0.1", "--team", "1"],
+        ["--robot", "127.0.0.1:x"],
+        ["--team", "0"],
+    ],
+    ids=" ".join,
+)
+def test_options_that_cannot_be_together_are_wrong_usage(args: list[str], make_project) -> None:
+    result = make_project(program()).run("deploy", *args)
+    assert result.code == 2, result.output
+    assert "Traceback" not in result.output

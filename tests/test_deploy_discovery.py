@@ -1,0 +1,173 @@
+"""Finding the robot among addresses that answer, do not, or answer something else."""
+
+from __future__ import annotations
+
+import json
+import socket
+import struct
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, suppress
+
+import pytest
+
+from pyfrc_core.deploy import discovery
+from pyfrc_core.deploy.discovery import Address, addresses_of, find_robot, parse_address
+from pyfrc_core.deploy.errors import OnTheFieldError, RobotNotFoundError
+from pyfrc_core.errors import UsageError
+
+BANNER = b"SSH-2.0-look-alike\r\n"
+
+
+class Servers:
+    """Servers on this computer, each of which sends one thing to whoever connects."""
+
+    def __init__(self, stack: ExitStack) -> None:
+        self._stack = stack
+        #: Whether the client has gone, by the address.
+        self.ends: dict[Address, threading.Event] = {}
+
+    def start(self, says: bytes, host: str = "127.0.0.1") -> Address:
+        listener = self._stack.enter_context(socket.create_server((host, 0)))
+        address = Address(host, listener.getsockname()[1])
+        ended = self.ends[address] = threading.Event()
+
+        def serve() -> None:
+            try:
+                connected, _ = listener.accept()
+            except OSError:
+                return
+            with connected:
+                connected.sendall(says)
+                if says.startswith(b"SSH-"):
+                    with suppress(ConnectionError):  # closed with our greeting unread
+                        connected.recv(1)
+                    ended.set()
+
+        threading.Thread(target=serve, daemon=True).start()
+        return address
+
+    def nobody(self) -> Address:
+        """An address that refuses."""
+        with socket.create_server(("127.0.0.1", 0)) as listener:
+            return Address("127.0.0.1", listener.getsockname()[1])
+
+
+@pytest.fixture
+def servers() -> Iterator[Servers]:
+    with ExitStack() as stack:
+        yield Servers(stack)
+
+
+def find(servers: Servers, *candidates: Address, station: Address | None = None, **how: bool) -> discovery.Found:
+    where = station or servers.nobody()
+    return find_robot(
+        [(address, "a place") for address in candidates], "team 1234", driver_station=(where.host, where.port), **how
+    )
+
+
+def station_says(servers: Servers, robot: int = 0, on_field: bool = False, **more: object) -> Address:
+    return servers.start(json.dumps({"robotIP": robot, "FMS Connected": on_field, **more}).encode() + b"\n")
+
+
+def test_the_one_that_answers_as_ssh_does_is_taken(servers: Servers) -> None:
+    robot = servers.start(BANNER)
+    found = find(servers, servers.nobody(), servers.start(b"220 mail\r\n"), robot, servers.start(b""))
+    with found.connected:
+        assert found.address == robot
+        assert found.connected.recv(100) == BANNER  # still there to be read
+
+
+def test_the_others_are_closed(servers: Servers) -> None:
+    robots = [servers.start(BANNER) for _ in range(5)]
+    found = find(servers, *robots)
+    for robot in robots:
+        if robot != found.address:
+            # Those that were connected see the end; the winner has not seen it.
+            assert servers.ends[robot].wait(10)
+    assert not servers.ends[found.address].is_set()
+    found.connected.close()
+
+
+def test_nothing_found_is_told_as_a_table(servers: Servers) -> None:
+    nobody, mail, mute = servers.nobody(), servers.start(b"220 mail\r\n"), servers.start(b"")
+    nowhere = Address("no-such-robot.invalid")
+    with pytest.raises(RobotNotFoundError) as caught:
+        find(servers, nobody, nowhere, mail, mute)
+    lines = str(caught.value).splitlines()
+    assert "team 1234" in lines[0]
+    for line, address, why in zip(
+        lines[1:5],
+        (nobody, nowhere, mail, mute),
+        ("refused", "the name is not known here", "no SSH server", "closed the connection"),
+        strict=True,
+    ):
+        assert line.split()[0] == str(address)
+        assert why in line
+    assert "--team" in lines[5]
+    assert "--robot" in lines[5]
+    assert [tried.address for tried in caught.value.tried] == [nobody, nowhere, mail, mute]
+
+
+def test_the_driver_stations_robot_is_tried_too(servers: Servers, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def connect_elsewhere(self, address: Address, kind: str) -> None:  # port 22 of it is not ours to listen on
+        asked.append((address, kind))
+
+    number = struct.unpack("!I", socket.inet_aton("127.9.8.7"))[0]
+    monkeypatch.setattr(discovery._Race, "enter", connect_elsewhere)
+    with pytest.raises(RobotNotFoundError):
+        find(servers, station=station_says(servers, number))
+    assert asked == [(Address("127.9.8.7"), "the Driver Station's robot")]
+
+
+@pytest.mark.parametrize("how", [{}, {"take_its_robot": False}])
+def test_on_a_competition_field_it_is_refused(how: dict[str, bool], servers: Servers) -> None:
+    robot = servers.start(BANNER)
+    with pytest.raises(OnTheFieldError, match=r"FMS.*\n.*when your match is over"):
+        find(servers, robot, station=station_says(servers, 0, on_field=True), **how)
+    assert servers.ends[robot].wait(10)
+
+
+@pytest.mark.parametrize("says", [b"", b"nonsense\n", b"[]\n", b'{"robotIP": "x", "FMS Connected": 1}\n', b"\xff\n"])
+def test_a_driver_station_that_says_nothing_of_use_hinders_nothing(says: bytes, servers: Servers) -> None:
+    robot = servers.start(BANNER)
+    found = find(servers, robot, station=servers.start(says))
+    found.connected.close()
+    assert found.address == robot
+
+
+@pytest.mark.parametrize(
+    ("team", "first"),
+    [(1, "10.0.1.2"), (254, "10.2.54.2"), (1234, "10.12.34.2"), (10000, "10.100.0.2"), (25599, "10.255.99.2")],
+)
+def test_a_teams_addresses(team: int, first: str) -> None:
+    every = [str(address) for address, _ in addresses_of(team)]
+    name = f"roboRIO-{team}-FRC"
+    assert every == [first, f"{name}.local", "172.22.11.2", name, f"{name}.lan", f"{name}.frc-field.local"]
+    assert [str(address) for address, _ in addresses_of(team, resolve=False)] == [first, "172.22.11.2"]
+
+
+@pytest.mark.parametrize(
+    ("text", "address"),
+    [
+        ("10.0.0.2", Address("10.0.0.2")),
+        ("robot.local:2222", Address("robot.local", 2222)),
+        ("fe80::1", Address("fe80::1")),
+        ("[fe80::1]:2222", Address("fe80::1", 2222)),
+        ("[::1]", Address("::1")),
+    ],
+)
+def test_addresses_are_read_and_shown_alike(text: str, address: Address) -> None:
+    assert parse_address(text) == address
+    assert parse_address(str(address)) == address
+
+
+@pytest.mark.parametrize("text", ["", ":22", "robot:", "robot:0", "robot:70000", "robot:ssh", "[::1]x:3"])
+def test_what_is_no_address_is_refused(text: str) -> None:
+    if text == "robot:":
+        assert parse_address(text) == Address("robot")
+        return
+    with pytest.raises(UsageError, match="HOST:PORT"):
+        parse_address(text)

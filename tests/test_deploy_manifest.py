@@ -1,0 +1,141 @@
+"""Which files of a project are uploaded, which are left out, and which cannot be."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pyfrc_core.deploy.errors import RefusedError
+from pyfrc_core.deploy.manifest import LARGE, is_excluded, survey
+
+posix = pytest.mark.skipif(sys.platform == "win32", reason="names and links that Windows has not")
+
+
+def make(root: Path, *names: str, content: bytes = b"x") -> None:
+    for name in names:
+        file = root / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(content)
+
+
+def paths(root: Path, *exclude: str) -> list[str]:
+    return [entry.path for entry in survey(root, exclude).entries]
+
+
+def test_a_programs_files_are_told_by_size_and_content(tmp_path: Path) -> None:
+    make(tmp_path, "robot.py", content=b"print()\n")
+    make(tmp_path, "components/arm.py", content=b"")
+    (tmp_path / "robot.py").chmod(0o755)
+    manifest = survey(tmp_path)
+    arm, robot = manifest.entries
+    assert (arm.path, arm.size) == ("components/arm.py", 0)
+    assert (robot.path, robot.size, robot.file) == ("robot.py", 8, tmp_path / "robot.py")
+    assert robot.sha256 == hashlib.sha256(b"print()\n").hexdigest()
+    assert not arm.executable
+    assert robot.executable == (os.name == "posix")
+    assert manifest.total_bytes == 8
+
+
+def test_what_no_tool_uploads_is_left_out(tmp_path: Path) -> None:
+    make(tmp_path, "robot.py", "data/zip.py", "tests/test_it.py")
+    left_out = ("a.pyc", "b.whl", "c.ipk", "d.zip", "e.gz", "f.wpilog", ".hidden", "deploy.json")
+    make(tmp_path, *left_out, *(f"data/{name}" for name in left_out if name != "deploy.json"))
+    make(tmp_path, *(f"{name}/x.py" for name in (".git", "__pycache__", "venv", "ctre_sim", "data/__pycache__")))
+    make(tmp_path, "data/venv")  # a file of this name is one of the user's
+    assert paths(tmp_path) == ["data/venv", "data/zip.py", "robot.py", "tests/test_it.py"]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "left"),
+    [
+        ("*.png", ["a/b/one.py", "a/two.txt", "robot.py"]),
+        ("b", ["a/pic.png", "a/two.txt", "pic.png", "robot.py"]),
+        ("b/", ["a/pic.png", "a/two.txt", "pic.png", "robot.py"]),
+        ("a/*.txt", ["a/b/one.py", "a/b/pic.png", "a/pic.png", "pic.png", "robot.py"]),
+        ("/pic.png", ["a/b/one.py", "a/b/pic.png", "a/pic.png", "a/two.txt", "robot.py"]),
+        ("a/**/*.png", ["a/b/one.py", "a/two.txt", "pic.png", "robot.py"]),
+        ("**/b/one.py", ["a/b/pic.png", "a/pic.png", "a/two.txt", "pic.png", "robot.py"]),
+    ],
+)
+def test_exclude_patterns(pattern: str, left: list[str], tmp_path: Path) -> None:
+    make(tmp_path, "robot.py", "pic.png", "a/pic.png", "a/two.txt", "a/b/one.py", "a/b/pic.png")
+    assert paths(tmp_path, pattern) == left
+
+
+_names = st.text(st.characters(codec="utf-8", exclude_characters="/\0*?[]"), min_size=1, max_size=8)
+
+
+@given(st.lists(_names, min_size=1, max_size=5))
+def test_every_path_fits_itself_and_the_pattern_for_everything(parts: list[str]) -> None:
+    path = "/".join(parts)
+    assert is_excluded(path, [f"/{path}"])
+    assert is_excluded(path, ["/**"])
+    assert is_excluded(path, [parts[-1]])
+    assert not is_excluded(path, [f"/{path}/**/x"])
+
+
+@posix
+def test_odd_names_are_uploaded_as_they_are(tmp_path: Path) -> None:
+    names = ["-rf", "a b.py", "käse.py", "new\nline.py", "quote'\".py", "$(reboot).py", "back\\slash.py"]
+    make(tmp_path, *names)
+    assert paths(tmp_path) == sorted(names)
+
+
+@posix
+def test_names_that_are_not_utf8_are_refused_by_name(tmp_path: Path) -> None:
+    try:
+        Path(os.fsdecode(os.fsencode(tmp_path) + b"/caf\xe9.py")).write_bytes(b"")
+    except OSError:
+        pytest.skip("this file system has no such names")
+    with pytest.raises(RefusedError, match=r"'caf\\udce9\.py'"):
+        survey(tmp_path)
+
+
+@posix
+def test_links_inside_the_project_are_uploaded_as_what_they_lead_to(tmp_path: Path) -> None:
+    make(tmp_path, "real/one.py", content=b"one")
+    (tmp_path / "file.py").symlink_to("real/one.py")
+    (tmp_path / "directory").symlink_to("real")
+    manifest = survey(tmp_path)
+    assert {entry.path: entry.size for entry in manifest.entries} == {
+        "directory/one.py": 3,
+        "file.py": 3,
+        "real/one.py": 3,
+    }
+
+
+@posix
+@pytest.mark.parametrize("leads_to", ["/etc/passwd", "/etc", "../outside.py", "nowhere.py", "round.link", "."])
+def test_links_that_cannot_be_uploaded_are_refused_by_name(leads_to: str, tmp_path: Path) -> None:
+    project = tmp_path / "project"
+    make(tmp_path, "outside.py", "project/robot.py", "project/package/x.py")
+    link = "package/round.link"
+    (project / link).symlink_to(leads_to)
+    with pytest.raises(RefusedError) as caught:
+        survey(project)
+    assert str(caught.value).startswith(f"{link}: this link leads ")
+    assert "exclude" in str(caught.value)
+    assert paths(project, "*.link") == ["package/x.py", "robot.py"]
+
+
+@posix
+def test_what_is_no_file_is_refused_by_name(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(RefusedError, match=r"^pipe: .*a pipe"):
+        survey(tmp_path)
+
+
+def test_large_files_are_uploaded_only_when_they_are_meant(tmp_path: Path) -> None:
+    make(tmp_path, "just.bin", content=bytes(LARGE))
+    assert paths(tmp_path) == ["just.bin"]
+    make(tmp_path, *(f"{number:02}.bin" for number in range(12)), content=bytes(LARGE + 1))
+    with pytest.raises(RefusedError, match=r"00\.bin \(250,001 bytes\), .* and 2 more\n.*--large.*exclude"):
+        survey(tmp_path)
+    assert len(survey(tmp_path, large=True).entries) == 13
+    assert paths(tmp_path, "[01]*.bin") == ["just.bin"]

@@ -1,0 +1,312 @@
+"""Deploys to a roboRIO look-alike, over a real SSH server: the program there starts, whatever happens to the deploy."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import random
+from collections.abc import Generator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from roborio import Proxy, Roborio, require_roborio
+from roborio.local import LocalRobot, project_of
+from roborio.ssh import SshConnection
+
+from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError
+from pyfrc_core.deploy.manifest import Manifest
+from pyfrc_core.deploy.robot import Deployed, DeployRequest, Robot, Watched
+
+ROBOT = """\
+import wpilib
+
+print("this is {name}")
+
+
+class Robot(wpilib.TimedRobot):
+    {body}
+"""
+CRASHING = 'def robotInit(self): raise RuntimeError("no such motor")'
+
+
+def program(directory: Path, name: str, body: str = "pass", **files: str | bytes) -> Manifest:
+    return project_of(directory / name, {"robot.py": ROBOT.format(name=name, body=body), **files})
+
+
+@pytest.fixture
+def roborio() -> Generator[Roborio]:
+    require_roborio()
+    with Roborio() as roborio:
+        yield roborio
+
+
+@contextlib.contextmanager
+def agent(roborio: Roborio | Proxy, user: str = "lvuser") -> Generator[Robot]:
+    """An agent on it."""
+    with SshConnection(roborio.host, roborio.port, user) as connection:
+        robot = Robot.start(connection)
+        try:
+            yield robot
+        finally:
+            robot.close()
+
+
+def deploy(roborio: Roborio | Proxy, project: Manifest, user: str = "lvuser") -> Deployed:
+    with agent(roborio, user) as robot:
+        return robot.deploy(project, DeployRequest("robot.py", {"deploy-host": "here"}))
+
+
+def started(robot: Robot, seconds: float = 20) -> Watched:
+    robot.restart()
+    return robot.watch(seconds)
+
+
+def test_a_program_is_deployed_and_runs(roborio: Roborio, tmp_path: Path) -> None:
+    project = program(tmp_path, "first", **{"Ünd so weiter/it's.txt": "x"})
+    with agent(roborio) as robot:
+        facts = robot.facts
+        assert (facts.not_roborio, facts.python, facts.wpilib, facts.user) == (None, "3.14.0", "2026.2.2", "lvuser")
+        assert (facts.image, facts.startup_dlls) == ("FRC_roboRIO_2026_v2.0", True)
+        assert (facts.current, facts.command, facts.running, facts.releases) == (None, None, False, ())
+        assert robot.deploy(project, DeployRequest("robot.py", {"git-hash": "1234"})).release == 1
+        printed: list[str] = []
+        robot.restart()
+        watched = robot.watch(20, printed.append)
+        assert watched.alive
+        assert watched.started
+        assert "this is first\n" in watched.output
+        assert watched.output == "".join(printed)
+        facts = robot.info()
+        assert (facts.current, facts.running, facts.deploy_json) == (1, True, {"git-hash": "1234"})
+    assert (
+        roborio.run("stat", "-Lc", "%U:%G", "/home/lvuser/py", "/home/lvuser/robotCommand").stdout == "lvuser:ni\n" * 2
+    )
+    roborio.power_off()
+    roborio.power_on()
+    roborio.said("this is first")
+
+
+def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_path: Path) -> None:
+    deploy(roborio, program(tmp_path, "first"), user="admin")
+    assert roborio.run("find", "/home/lvuser", "!", "-user", "lvuser").stdout == ""
+
+
+@pytest.mark.parametrize("debug", [False, True])
+def test_a_program_that_dies_at_once_is_told_with_its_traceback(roborio: Roborio, tmp_path: Path, debug: bool) -> None:
+    with agent(roborio) as robot:
+        robot.deploy(program(tmp_path, "good"), DeployRequest("robot.py", {}))
+        assert started(robot).alive
+        robot.deploy(program(tmp_path, "bad", CRASHING), DeployRequest("robot.py", {}, debug=debug))
+        watched = started(robot)
+        assert not watched.alive
+        assert not watched.started
+        assert watched.traceback is not None
+        assert watched.traceback.splitlines()[0] == "Traceback (most recent call last):"
+        assert 'File "/home/lvuser/py/robot.py", line 7, in robotInit' in watched.traceback
+        assert watched.traceback.endswith("\nRuntimeError: no such motor")
+        assert robot.rollback().release.number == 1
+        watched = started(robot)
+        assert watched.started
+        assert watched.traceback is None
+
+
+def test_a_program_that_does_not_say_that_it_has_started(roborio: Roborio, tmp_path: Path) -> None:
+    """Nor does a console without a Driver Station: that it runs is seen all the same."""
+    body = "def startCompetition(self):\n        import time\n        time.sleep(1000)"
+    with agent(roborio) as robot:
+        robot.deploy(program(tmp_path, "quiet", body), DeployRequest("robot.py", {}))
+        watched = started(robot, seconds=1.5)
+        assert (watched.alive, watched.started) == (True, False)
+
+
+def test_what_a_running_program_writes_survives(roborio: Roborio, tmp_path: Path) -> None:
+    """It writes all the time, into one file that stays open and one that is replaced each time."""
+    body = """\
+def robotInit(self):
+        import pathlib
+        self.here = pathlib.Path(__file__).parent
+        self.log = (self.here / "open.log").open("a")
+        self.count = int((self.here / "count").read_text()) if (self.here / "count").exists() else 0
+
+    def robotPeriodic(self):
+        self.count += 1
+        self.log.write(f"{self.count}\\n")
+        self.log.flush()
+        (self.here / "count.new").write_text(str(self.count))
+        (self.here / "count.new").replace(self.here / "count")
+"""
+    with agent(roborio) as robot:
+        for name in ("one", "two", "three"):
+            robot.deploy(program(tmp_path, name, body), DeployRequest("robot.py", {}))
+            assert started(robot).started
+    roborio.power_off()
+    numbers = [int(line) for line in (roborio.home / "py/open.log").read_text().split()]
+    assert numbers[0] == 1
+    # Each program starts where the last had got to: no count was lost, at most one of them twice.
+    assert all(after - before in (0, 1) for before, after in pairwise(numbers)), numbers
+
+
+@pytest.mark.parametrize("phase", ["start", "send", "switch"])
+def test_power_pulled_in_the_middle(roborio: Roborio, tmp_path: Path, phase: str) -> None:
+    deploy(roborio, program(tmp_path, "old"))
+    new = program(tmp_path, "new", **{"data.bin": random.Random(1).randbytes(300_000)})
+
+    def pull(now: str, done: int, total: int) -> None:
+        if now == phase and roborio.is_on:
+            roborio.power_off()
+
+    with agent(roborio) as robot:
+        pull("start", 0, 0)
+        # At the switch, the agent may be done before the power is off.
+        with contextlib.suppress(ConnectionFailedError) if phase == "switch" else pytest.raises(ConnectionFailedError):
+            robot.deploy(new, DeployRequest("robot.py", {}), pull)
+    roborio.power_on()
+    said = roborio.said("Robot program startup complete")
+    assert "this is old" in said or "this is new" in said
+    if phase != "switch":
+        assert "this is old" in said
+    with agent(roborio) as robot:
+        robot.deploy(new, DeployRequest("robot.py", {}))
+        assert "this is new" in started(robot).output
+
+
+@pytest.mark.parametrize("way", ["to", "from"])
+def test_cut_anywhere_on_the_wire(roborio: Roborio, tmp_path: Path, way: str) -> None:
+    """With SSH's own bytes around it; test_deploy_cuts.py has hundreds of places between ours."""
+    disk = LocalRobot(roborio.disk)
+
+    def another(number: int) -> Manifest:
+        """A program of the same size as the others, whose data the robot has not seen yet, and cannot be compressed."""
+        return program(tmp_path, f"number {number}", **{"data.bin": random.Random(number).randbytes(10_000)})
+
+    deploy(roborio, another(10))
+    with Proxy((roborio.host, roborio.port)) as whole:
+        deploy(whole, another(11))
+    total = whole.bytes_to_robot if way == "to" else whole.bytes_from_robot
+    for number in range(1, 9):
+        old, new = disk.startable(), another(20 + number)
+        cut = {f"cut_{way}_robot": total * number // 9}
+        with Proxy((roborio.host, roborio.port), **cut) as proxy, contextlib.suppress(DeployError):
+            deploy(proxy, new)
+        assert proxy.has_cut
+        after_cut = disk.startable()
+        deploy(roborio, new)
+        assert after_cut in (old, disk.startable())
+        assert disk.startable() == {entry.path: entry.file.read_bytes() for entry in new.entries}
+
+
+def test_a_full_disk(tmp_path: Path) -> None:
+    require_roborio()
+    old = program(tmp_path, "old", **{"data.bin": b"1" * 500_000})
+    large = program(tmp_path, "large", **{f"{number}.bin": b"%d" % number * 500_000 for number in range(8)})
+    with Roborio(disk_size="3m") as roborio:
+        disk = LocalRobot(roborio.disk)
+        deploy(roborio, old)
+        before = disk.startable()
+        with pytest.raises(RefusedError, match=r"the robot's disk is full: 4,\d{3},\d{3} bytes are needed") as caught:
+            deploy(roborio, large)
+        assert "old logs" in str(caught.value)
+        assert disk.startable() == before
+        # The program fills it while the deploy goes on.
+        small = program(tmp_path, "small", **{"data.bin": random.Random(2).randbytes(500_000)})
+        filling = []
+
+        def fill(phase: str, done: int, total: int) -> None:
+            if not filling:
+                filling.append(
+                    roborio.run("sh", "-c", "head -c 4000000 /dev/zero > /home/lvuser/logs.bin", user="lvuser")
+                )
+
+        with agent(roborio) as robot:
+            with pytest.raises(RefusedError, match="the robot's disk is full"):
+                robot.deploy(small, DeployRequest("robot.py", {}), fill)
+            assert disk.startable() == before
+            assert started(robot).started
+            roborio.run("rm", "/home/lvuser/logs.bin")
+            robot.deploy(small, DeployRequest("robot.py", {}))
+            assert "this is small" in started(robot).output
+
+
+def test_old_releases_make_room(tmp_path: Path) -> None:
+    require_roborio()
+    with Roborio(disk_size="3m") as roborio:
+        for name in ("one", "two", "three", "four"):
+            deploy(roborio, program(tmp_path, name, **{"data.bin": name.encode() * 250_000}))
+        with agent(roborio) as robot:
+            assert robot.facts.current == 4
+            assert len(robot.facts.releases) < 3
+            assert "this is four" in started(robot).output
+
+
+def test_two_at_once(roborio: Roborio, tmp_path: Path) -> None:
+    project = program(tmp_path, "first", **{"data.bin": random.Random(1).randbytes(1_000_000)})
+    with agent(roborio) as first, agent(roborio) as second:
+        refusals = []
+
+        def meanwhile(phase: str, done: int, total: int) -> None:
+            if done < total and not refusals:
+                with pytest.raises(RefusedError, match="is deploying to this robot right now") as caught:
+                    second.deploy(project, DeployRequest("robot.py", {"by": "second"}))
+                refusals.append(caught.value)
+
+        first.deploy(project, DeployRequest("robot.py", {"by": "first"}), meanwhile)
+        assert len(refusals) == 1
+    assert json.loads((roborio.home / "py/deploy.json").read_text()) == {"by": "first"}
+
+
+def test_the_tool_of_today_deploys_after_us(roborio: Roborio, tmp_path: Path) -> None:
+    deploy(roborio, program(tmp_path, "ours"))
+    with SshConnection(roborio.host, roborio.port) as connection:
+        said = connection.run(
+            "mkdir py_new && echo 'print(\"theirs\")' > py_new/robot.py && [ -d /home/lvuser/py ] && "
+            "rm -rf /home/lvuser/py; mv /home/lvuser/py_new /home/lvuser/py && ls -l /home/lvuser/py"
+        )
+    assert said.endswith("robot.py\n")
+    assert (roborio.home / ".pyfrc/releases/1/robot.py").exists()
+    assert deploy(roborio, program(tmp_path, "again")).taken == 2
+
+
+def test_undeploy(roborio: Roborio, tmp_path: Path) -> None:
+    with agent(roborio) as robot:
+        robot.deploy(program(tmp_path, "first"), DeployRequest("robot.py", {}))
+        started(robot)
+        assert robot.undeploy()
+        assert not robot.info().running
+    assert list(roborio.home.iterdir()) == []
+
+
+def test_a_kill_script_that_cannot_stop_the_program(roborio: Roborio, tmp_path: Path) -> None:
+    kill_script = "usr/local/frc/bin/frcKillRobot.sh"
+    first, second = (program(tmp_path, name) for name in ("first", "second"))
+    with agent(roborio) as robot:
+        robot.deploy(first, DeployRequest("robot.py", {}))
+        assert started(robot).started
+        works = (roborio.disk / kill_script).read_text()
+        roborio.put(kill_script, works + "exit 1\n", owner=0, mode=0o755)
+        robot.deploy(second, DeployRequest("robot.py", {}))
+        assert started(robot).started, "what counts is that it has stopped it"
+        roborio.put(kill_script, "", owner=0, mode=0o644)
+        with pytest.raises(
+            RefusedError, match=r"frcKillRobot.sh cannot be run: .*Permission denied\n  Switch the robot off"
+        ):
+            robot.restart()
+        (roborio.disk / kill_script).unlink()
+        with pytest.raises(RefusedError, match=r"there is no .*frcKillRobot.sh on the robot"):
+            robot.restart()
+
+
+def test_no_python_on_the_robot() -> None:
+    require_roborio()
+    with (
+        Roborio(python=None) as roborio,
+        pytest.raises(RefusedError, match=r"no Python on the robot.*\n.*install-python"),
+    ):
+        deploy(roborio, Manifest(()))
+
+
+def test_what_is_not_on_the_robot() -> None:
+    require_roborio()
+    with Roborio(image=None, wpilib=None) as roborio, agent(roborio) as robot:
+        assert robot.facts.wpilib is None
+        assert robot.facts.not_roborio == "there is no roboRIO image on it"

@@ -1,0 +1,468 @@
+"""What a deploy leaves on the robot's disk: the real agent, on a directory of this machine."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import os
+from collections.abc import Generator
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+
+from pyfrc_core.deploy.errors import RefusedError
+from pyfrc_core.deploy.manifest import Entry, Manifest
+from pyfrc_core.deploy.robot import DeployRequest
+
+START = "env LD_LIBRARY_PATH=/usr/local/frc/lib/ /usr/local/bin/python3 -u"
+OTHER_COMMAND = "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
+
+
+@pytest.fixture(scope="module")
+def agents() -> Generator[Agents]:
+    with Agents() as agents:
+        yield agents
+
+
+@pytest.fixture
+def robot() -> Generator[LocalRobot]:
+    with directory_in_memory() as directory:
+        yield LocalRobot.new(directory / "robot")
+
+
+class Project:
+    """A project in a directory, changed now and then."""
+
+    def __init__(self, directory: Path) -> None:
+        self._directory = directory
+        self.write("robot.py", ROBOT_PY)
+
+    def write(self, name: str, content: str | bytes = "") -> Project:
+        project_of(self._directory, {name: content})
+        return self
+
+    def remove(self, name: str) -> Project:
+        (self._directory / name).unlink()
+        return self
+
+    @property
+    def manifest(self) -> Manifest:
+        return project_of(self._directory, {})
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    return Project(tmp_path / "project").write("arm.py", "LENGTH = 1\n").write("deploy/path.json", "[1, 2]")
+
+
+def contents(directory: Path) -> dict[str, bytes | str]:
+    """All that is below a directory."""
+    return {
+        path.relative_to(directory).as_posix(): str(path.readlink()) if path.is_symlink() else path.read_bytes()
+        for path in directory.rglob("*")
+        if path.is_symlink() or path.is_file()
+    }
+
+
+def test_first_deploy_makes_what_other_tools_and_the_robot_expect(
+    robot: LocalRobot, project: Project, agents: Agents
+) -> None:
+    deployed = robot.deploy(agents, project.manifest)
+    assert (deployed.release, deployed.previous, deployed.taken, deployed.unchanged) == (1, None, None, False)
+    assert deployed.files_sent == 3
+    py = robot.home / "py"
+    assert py.is_dir()
+    assert (py / "arm.py").read_text() == "LENGTH = 1\n"
+    assert json.loads((py / "deploy.json").read_text()) == {"deploy-user": "somebody"}
+    assert (robot.home / "robotCommand").read_text() == f"{START} -O -m robotpy --main /home/lvuser/py/robot.py run\n"
+    assert not (robot.root / "tmp/frcdebug").exists()
+    assert [each.name.endswith(".opt-1.pyc") for each in (py / "__pycache__").iterdir()] == [True, True]
+
+
+def test_debugging(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    """The robot forgets /tmp when it is switched off: robotCommand has to start the program then."""
+    robot.deploy(agents, project.manifest, debug=True)
+    command = (robot.home / "robotDebugCommand").read_text()
+    assert command == f"{START} -m robotpy --main /home/lvuser/py/robot.py -v run\n"
+    assert (robot.root / "tmp/frcdebug").exists()
+    (robot.root / "tmp/frcdebug").unlink()
+    assert robot.startable() is not None
+    robot.deploy(agents, project.manifest, debug=True)
+    robot.deploy(agents, project.manifest)
+    assert not (robot.root / "tmp/frcdebug").exists()
+
+
+def test_only_what_changed_is_sent_and_the_rest_is_linked(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest)
+    inode = (robot.home / "py/arm.py").stat().st_ino
+    project.write("robot.py", ROBOT_PY + "# changed\n").remove("deploy/path.json")
+    deployed = robot.deploy(agents, project.manifest)
+    assert (deployed.release, deployed.previous, deployed.files_sent) == (2, 1, 1)
+    assert (robot.home / "py/arm.py").stat().st_ino == inode
+    assert robot.startable() == {"robot.py": (ROBOT_PY + "# changed\n").encode(), "arm.py": b"LENGTH = 1\n"}
+    assert len(list((robot.home / "py/__pycache__").iterdir())) == 2
+    assert not (robot.home / "py/deploy").exists()
+
+
+def test_a_file_that_was_moved_is_not_sent(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest)
+    project.remove("arm.py").write("lib/lever.py", "LENGTH = 1\n")
+    assert robot.deploy(agents, project.manifest).files_sent == 0
+    assert (robot.home / "py/lib/lever.py").read_text() == "LENGTH = 1\n"
+
+
+def test_the_same_again_makes_no_new_release(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    """Or three of them would push the last program that worked out of the releases kept."""
+    robot.deploy(agents, project.manifest)
+    deployed = robot.deploy(agents, project.manifest)
+    assert (deployed.release, deployed.unchanged, deployed.bytes_sent) == (1, True, 0)
+
+
+def test_a_file_that_was_changed_on_the_robot_is_put_right(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest)
+    (robot.home / "py/deploy/path.json").write_text("[9, 9]")
+    deployed = robot.deploy(agents, project.manifest)
+    assert (deployed.unchanged, deployed.files_sent) == (False, 1)
+    assert (robot.home / "py/deploy/path.json").read_text() == "[1, 2]"
+
+
+def test_what_is_executable(robot: LocalRobot, project: Project, agents: Agents, tmp_path: Path) -> None:
+    project.write("tool.sh", "#!/bin/sh\n")
+    robot.deploy(agents, project.manifest)
+    assert not os.access(robot.home / "py/tool.sh", os.X_OK) or os.geteuid() == 0
+    (tmp_path / "project/tool.sh").chmod(0o755)
+    assert robot.deploy(agents, project.manifest).files_sent == 0
+    assert (robot.home / "py/tool.sh").stat().st_mode & 0o777 == 0o755
+
+
+def test_rollback(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest)
+    first = robot.startable()
+    robot.deploy(agents, project.remove("arm.py").write("robot.py", "# 2\n").manifest)
+    robot.deploy(agents, project.write("robot.py", "# 3\n").manifest, debug=True)
+    session = robot.start(agents)
+    gone_back = session.rollback()
+    assert (gone_back.release.number, gone_back.previous, gone_back.changed) == (2, 3, ())
+    assert not (robot.root / "tmp/frcdebug").exists()
+    assert session.rollback().release.number == 1
+    assert robot.startable() == first
+    with pytest.raises(RefusedError, match=r"no earlier release.*\n.*1, 2, 3; current: 1"):
+        session.rollback()
+    with pytest.raises(RefusedError, match="no release 7"):
+        session.rollback(7)
+    assert session.rollback(3).release.debug
+    assert (robot.root / "tmp/frcdebug").exists()
+    session.close()
+
+
+def test_rollback_tells_what_the_program_has_changed(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest)
+    (robot.home / "py/deploy/path.json").write_text("[9, 9]")
+    robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
+    session = robot.start(agents)
+    assert session.rollback().changed == ("deploy/path.json",)
+    session.close()
+
+
+def test_few_releases_are_kept(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    for number in range(1, 7):
+        robot.deploy(agents, project.write("robot.py", f"# {number}\n").manifest)
+    session = robot.start(agents)
+    assert [each.number for each in session.facts.releases] == [4, 5, 6]
+    session.rollback(4)
+    session.close()
+    robot.deploy(agents, project.write("robot.py", "# 7\n").manifest)
+    session = robot.start(agents)
+    assert [each.number for each in session.facts.releases] == [4, 6, 7], "the one that was current stays"
+    assert session.rollback().release.number == 4
+    session.close()
+
+
+def other_tools_program(robot: LocalRobot, command: str = OTHER_COMMAND) -> None:
+    py = robot.home / "py"
+    if py.is_symlink():
+        py.unlink()  # as `rm -rf` does
+    (py / "sub").mkdir(parents=True)
+    (py / "robot.py").write_text("# another tool's\n")
+    (py / "sub/helper.py").write_text("# another tool's\n")
+    (py / "deploy.json").write_text('{"deploy-host": "theirs"}')
+    (py / "match.log").write_text("written by the program\n")
+    (robot.home / "robotCommand").write_text(command)
+
+
+def test_another_tools_program_becomes_a_release(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    other_tools_program(robot)
+    deployed = robot.deploy(agents, project.manifest)
+    assert (deployed.release, deployed.taken) == (2, 1)
+    py = robot.home / "py"
+    assert not (py / "sub/helper.py").exists()
+    assert (py / "match.log").read_text() == "written by the program\n"
+    session = robot.start(agents)
+    taken = session.rollback().release
+    assert (taken.number, taken.taken, taken.deploy_json) == (1, True, {"deploy-host": "theirs"})
+    assert (robot.home / "robotCommand").read_text() == OTHER_COMMAND
+    assert (py / "sub/helper.py").exists()
+    assert not session.info().other_code
+    session.close()
+
+
+def test_another_tool_deploys_after_us(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest)
+    other_tools_program(robot)
+    deployed = robot.deploy(agents, project.manifest)
+    assert (deployed.release, deployed.taken, deployed.files_sent) == (3, 2, 0)
+    assert robot.startable() is not None
+
+
+def test_where_names_cannot_be_exchanged(robot: LocalRobot, project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An old kernel: the directory is moved away before the link takes its place; the start command leads past that."""
+    from pyfrc_core.deploy.agent import releases
+    from pyfrc_core.deploy.agent.places import Places
+
+    other_tools_program(robot, "env LD_LIBRARY_PATH=/usr/local/frc/lib/ x --main /home/lvuser/py/robot.py run")
+    ours = releases.Releases(Places(str(robot.root)))
+    ours.take_over(1)
+    ours.directory(2).mkdir()
+    (ours.directory(2) / "robot.py").write_text("# ours\n")
+    commands = releases.start_commands("robot.py")
+    ours.write_record(2, {"files": {}, "commands": commands})
+    for name, text in commands.items():
+        (robot.home / name).write_text(text or "")
+    monkeypatch.setattr(releases, "exchange", lambda one, other: False)
+    original, seen = Path.rename, []
+
+    def rename(path: Path, target: Path) -> Path:
+        moved = original(path, target)
+        seen.append(robot.startable())
+        return moved
+
+    monkeypatch.setattr(Path, "rename", rename)
+    ours.switch(2, commands, 1)
+    assert seen == [{"robot.py": b"# ours\n"}]
+    assert robot.startable() == {"robot.py": b"# ours\n"}
+    assert (ours.directory(1) / "sub/helper.py").exists()
+    assert ours.numbers() == [1, 2]
+
+
+def test_what_the_program_writes_survives(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest)
+    py = robot.home / "py"
+    (py / "logs/empty").mkdir(parents=True)
+    (py / "logs/1.csv").write_text("1\n")
+    (py / "latest").symlink_to("logs/1.csv")
+    open_log = (py / "open.log").open("a")
+    session = robot.start(agents)
+    session.deploy(project.write("robot.py", "# 2\n").manifest, DeployRequest("robot.py", {}))
+    # Until it is restarted, the old program goes on, with the files and directories that it has open.
+    old = robot.home / ".pyfrc/releases/1"
+    open_log.write("still written\n")
+    open_log.close()
+    (old / "late.csv").write_text("late\n")
+    (old / "1.new").write_text("2\n")
+    (old / "1.new").replace(old / "logs/1.csv")
+    session.restart()
+    session.close()
+    assert (py / "open.log").read_text() == "still written\n"
+    assert (py / "late.csv").read_text() == "late\n"
+    assert (py / "latest").read_text() == "2\n"
+    assert (py / "logs/empty").is_dir()
+
+
+def test_what_the_new_program_writes_is_not_undone(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    """The restart was cut off: the next deploy takes along what the old program had still written, and no more."""
+    robot.deploy(agents, project.manifest)
+    py, old = robot.home / "py", robot.home / ".pyfrc/releases/1"
+    (py / "state").write_text("old")
+    (py / "removed").write_text("old")
+    robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
+    (old / "late").write_text("late")
+    (py / "removed").unlink()
+    (py / "x").write_text("new")
+    (py / "x").replace(py / "state")
+    robot.deploy(agents, project.write("robot.py", "# 3\n").manifest)
+    assert (py / "state").read_text() == "new"
+    assert (py / "late").read_text() == "late"
+    assert not (py / "removed").exists()
+
+
+def test_files_of_the_same_content_do_not_become_one(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    """Or what the program writes into the one would be in the other."""
+    robot.deploy(agents, project.write("package/__init__.py").write("data.csv").manifest)
+    py = robot.home / "py"
+    (py / "log.txt").touch()
+    robot.deploy(agents, project.write("lib/__init__.py").write("robot.py", "# 2\n").manifest)
+    for name in ("log.txt", "data.csv"):
+        with (py / name).open("a") as stream:
+            stream.write("written")
+    assert (py / "lib/__init__.py").read_text() == ""
+    assert (py / "package/__init__.py").read_text() == ""
+
+
+def test_in_place(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest)
+    robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
+    (robot.home / "py/__pycache__/robot.cpython-300.pyc").touch()
+    project.write("arm.py", "LENGTH = 2\n").remove("deploy/path.json")
+    deployed = robot.deploy(agents, project.manifest, in_place=True)
+    assert (deployed.release, deployed.files_sent) == (2, 1)
+    assert robot.startable() == {"robot.py": b"# 2\n", "arm.py": b"LENGTH = 2\n", "deploy/path.json": b"[1, 2]"}
+    assert (robot.home / ".pyfrc/releases/1/arm.py").read_text() == "LENGTH = 1\n"
+    assert robot.deploy(agents, project.manifest, in_place=True).unchanged
+    session = robot.start(agents)
+    assert session.rollback().changed == ()
+    session.close()
+
+
+def test_in_place_into_another_tools_directory(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    other_tools_program(robot)
+    deployed = robot.deploy(agents, project.manifest, in_place=True)
+    assert deployed.release is None
+    assert not (robot.home / "py").is_symlink()
+    assert (robot.home / "py/arm.py").exists()
+    assert (robot.home / "py/sub/helper.py").exists()
+
+
+def test_plan_tells_and_writes_nothing(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    session = robot.start(agents)
+    before = contents(robot.root)
+    plan = session.plan(project.manifest)
+    assert plan.added == ("arm.py", "deploy/path.json", "robot.py")
+    assert (plan.changed, plan.removed, plan.files_to_send) == ((), (), 3)
+    assert plan.bytes_to_send == project.manifest.total_bytes
+    assert contents(robot.root) == before
+    session.close()
+    robot.deploy(agents, project.manifest)
+    (robot.home / "py/log.txt").write_text("the program's")
+    before = contents(robot.root)
+    project.remove("arm.py").write("robot.py", "# 2\n").write("new.py", "# new\n").write("again.py", "LENGTH = 1\n")
+    session = robot.start(agents)
+    plan = session.plan(project.manifest)
+    session.close()
+    assert (plan.added, plan.changed, plan.removed) == (("again.py", "new.py"), ("robot.py",), ("arm.py",))
+    assert (plan.files_to_send, plan.bytes_to_send) == (2, 10)
+    assert contents(robot.root) == before
+
+
+def test_undeploy(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    robot.deploy(agents, project.manifest, debug=True)
+    session = robot.start(agents)
+    assert session.undeploy()
+    assert not session.undeploy()
+    assert session.info().releases == ()
+    session.close()
+    assert list(robot.home.iterdir()) == []
+    assert list((robot.root / "tmp").iterdir()) == []
+
+
+def test_two_at_once(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    first, second = robot.start(agents), robot.start(agents)
+
+    def meanwhile(phase: str, done: int, total: int) -> None:
+        if phase == "send" and done == total and not refused:
+            with pytest.raises(RefusedError, match="is deploying to this robot right now") as caught:
+                second.deploy(project.manifest, DeployRequest("robot.py", {"who": "second"}))
+            refused.append(caught.value)
+
+    refused: list[RefusedError] = []
+    # So large that it is not all sent before the other one asks.
+    project.write("data.bin", os.urandom(2_000_000))
+
+    def at_first(phase: str, done: int, total: int) -> None:
+        if phase == "send" and done < total:
+            meanwhile(phase, total, total)
+
+    first.deploy(dataclasses.replace(project.manifest), DeployRequest("robot.py", {"who": "first"}), at_first)
+    assert len(refused) == 1
+    assert json.loads((robot.home / "py/deploy.json").read_text()) == {"who": "first"}
+    first.close()
+    second.deploy(project.manifest, DeployRequest("robot.py", {"who": "second"}))
+    second.close()
+    assert json.loads((robot.home / "py/deploy.json").read_text()) == {"who": "second"}
+
+
+def test_a_file_that_changes_while_it_is_sent(
+    robot: LocalRobot, project: Project, agents: Agents, tmp_path: Path
+) -> None:
+    robot.deploy(agents, project.manifest)
+    before = robot.startable()
+    for change in ("LENGTH = 3\n", "", "much longer than it was\n"):
+        manifest = project.write("arm.py", "LENGTH = 2\n").manifest
+        project.write("arm.py", change)
+        with pytest.raises(RefusedError, match=r"arm.py was changed while it was sent\n  Deploy again."):
+            robot.deploy(agents, manifest)
+        assert robot.startable() == before
+    robot.deploy(agents, project.manifest)
+
+
+@pytest.mark.parametrize("main", ["my robot.py", "$(reboot).py", "a;b.py", "-x.py", "../robot.py"])
+def test_main_files_that_cannot_stand_in_a_start_command(
+    robot: LocalRobot, project: Project, agents: Agents, main: str
+) -> None:
+    with pytest.raises(RefusedError, match="main"):
+        robot.deploy(agents, project.manifest, main=main)
+    assert robot.startable() is None
+
+
+@pytest.mark.parametrize("path", ["../x", "/etc/x", "a/../../x", "a//b", "", ".", "a\0b"])
+def test_paths_that_lead_elsewhere(robot: LocalRobot, project: Project, agents: Agents, path: str) -> None:
+    manifest = project.manifest
+    entry = dataclasses.replace(manifest.entries[0], path=path)
+    before = contents(robot.root)
+    with pytest.raises(RefusedError, match="is no path within the program's directory"):
+        robot.deploy(agents, Manifest((*manifest.entries, entry)))
+    assert {each for each in contents(robot.root) if "lock" not in each} == set(before)
+
+
+ODD_NAMES = [
+    "two words.txt",
+    "it's.txt",
+    'a "quote".txt',
+    "new\nline.txt",
+    "Übermaß/Größe.txt",
+    "-rf",
+    "$(touch x)",
+    "`x`",
+    "*",
+    "[a].py",
+    "ロボット.py",
+    "~",
+    "a\\b",
+    "%s",
+]
+
+
+def test_odd_names(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    for name in ODD_NAMES:
+        project.write(name, f"# {name!a}\n")
+    robot.deploy(agents, project.manifest)
+    project.write("robot.py", "# 2\n")
+    robot.deploy(agents, project.manifest)
+    there = robot.startable()
+    assert there is not None
+    assert {name: there[name].decode() for name in ODD_NAMES} == {name: f"# {name!a}\n" for name in ODD_NAMES}
+
+
+NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="/\0"), min_size=1, max_size=20).filter(
+    lambda name: not name.startswith(".") and name not in ("robot.py", "deploy.json", "__pycache__")
+)
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+@given(programs=st.lists(st.dictionaries(NAMES, st.binary(max_size=200), max_size=6), min_size=2, max_size=3))
+def test_any_programs_one_after_the_other(programs: list[dict[str, bytes]], agents: Agents) -> None:
+    """Manifests made here, since the file system of this machine may not have all such names."""
+    with directory_in_memory() as directory:
+        robot = LocalRobot.new(directory / "robot")
+        for program in programs:
+            files = {**program, "robot.py": ROBOT_PY.encode()}
+            entries = []
+            for number, (name, content) in enumerate(files.items()):
+                file = directory / str(number)
+                file.write_bytes(content)
+                entries.append(Entry(name, len(content), hashlib.sha256(content).hexdigest(), False, file))
+            robot.deploy(agents, Manifest(tuple(entries)))
+            assert robot.startable() == files
