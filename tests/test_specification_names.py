@@ -1,7 +1,4 @@
-"""Every name of the specification's sections 1.1 to 1.3 exists under `pyfrc`, with its signature.
-
-Still to come: the simulator's drawing (1.3.8), with the simulator.
-"""
+"""Every name of the specification's sections 1.1 to 1.3 exists under `pyfrc`, with its signature."""
 
 from __future__ import annotations
 
@@ -117,6 +114,23 @@ SPECIFICATION: list[tuple[str, str, str | None]] = [
         "wheel_diameter=<Quantity(6, 'inch')>, vintercept=<Quantity(1.3, 'volt')>, "
         "timestep=<Quantity(5, 'millisecond')>",
     ),
+    ("pyfrc.sim", "get_user_renderer", ""),
+    (
+        "pyfrc.sim.field.user_renderer",
+        "UserRenderer.draw_line",
+        "line_pts, color='#ff0000', robot_coordinates=False, relative_to_first=False, arrow=True, scale=(1, 1)",
+    ),
+    (
+        "pyfrc.sim.field.user_renderer",
+        "UserRenderer.draw_pathfinder_trajectory",
+        "trajectory, color='#ff0000', offset=None, scale=(1, 1), show_dt=False, dt_offset=0.0",
+    ),
+    (
+        "pyfrc.sim.field.user_renderer",
+        "UserRenderer.draw_text",
+        "text, pt, color='#000000', fontSize=10, robot_coordinates=False, scale=(1, 1)",
+    ),
+    ("pyfrc.sim.field.user_renderer", "UserRenderer", None),
     ("pyfrc.physics.units", "units", None),
     *[
         ("pyfrc.physics.units", f"units.{name}", None)
@@ -159,6 +173,8 @@ def documented_part(signature: inspect.Signature, parameters: str) -> str:
     documented = re.split(r", (?=[A-Za-z_])", parameters) if parameters else []
     known = [p for p in signature.parameters.values() if p.name not in ("self", "_cls")]
     for extra in known[len(documented) :]:
+        if extra.kind is inspect.Parameter.VAR_KEYWORD:
+            continue
         assert extra.default is not inspect.Parameter.empty, (
             f"{extra.name} is an addition that callers would have to give"
         )

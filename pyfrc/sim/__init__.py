@@ -1,8 +1,5 @@
 """What robot code may ask of the simulator while it runs in one."""
 
-from __future__ import annotations
+from pyfrc_core.sim.user_renderer import get_user_renderer
 
-
-def get_user_renderer() -> None:
-    """What draws on the simulated field: None, as nothing does in tests."""
-    return
+__all__ = ["get_user_renderer"]

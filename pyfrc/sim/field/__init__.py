@@ -1,0 +1,1 @@
+"""The simulated field; see `pyfrc.sim.field.user_renderer`."""

@@ -1,0 +1,76 @@
+"""`pyfrc sim`."""
+
+from __future__ import annotations
+
+import sys
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .project_options import chosen_project, project_options
+
+_FILE = click.Path(path_type=Path, dir_okay=False)
+
+
+@click.command("sim", context_settings={"help_option_names": ["-h", "--help"]})
+@project_options
+@click.option(
+    "--ui",
+    type=click.Choice(["tk", "wpilib", "none"]),
+    help="The window: pyfrc's, or WPILib's own; or none. Default: tk, where there is a display.",
+)
+@click.option(
+    "--mode",
+    type=click.Choice(["practice", "auto", "teleop", "test", "disabled"]),
+    help="With --ui none: what to put the robot through.",
+)
+@click.option("--seconds", type=click.FloatRange(min=0.02), metavar="S", help="End, or pause, at this robot time.")
+@click.option("--script", type=_FILE, metavar="FILE", help="Tell the robot what this input script says.")
+@click.option(
+    "--from",
+    "start_at",
+    type=click.FloatRange(min=0),
+    default=0.0,
+    metavar="T",
+    help="Go to this robot time at once, then on from there.",
+)
+@click.option(
+    "--speed",
+    type=float,
+    metavar="X",
+    help="Robot seconds a second; 0: as fast as it goes. Default: 1, or 0 where nobody watches.",
+)
+@click.option("--paused", is_flag=True, help="Begin with time standing still.")
+@click.option("--start", "start_position", metavar="NAME", help="Start at one of start_positions in sim/config.json.")
+@click.option("--watch", is_flag=True, help="When a file is saved, go on with the new code.")
+@click.option("--record", type=_FILE, metavar="FILE", help="Write an input script, for pyfrc replay and tests.")
+@click.option("--wpilog", type=_FILE, metavar="FILE", help="Write a WPILib data log, for AdvantageScope.")
+@click.option("--picture", type=_FILE, metavar="FILE", help="Draw the driven path on the field, such as path.png.")
+@click.option(
+    "--nt-port",
+    type=click.IntRange(0, 65535),
+    metavar="PORT",
+    help="Serve NetworkTables to dashboards here; 0: nowhere. Default: 5810, or 0 where nobody watches.",
+)
+@click.option(
+    "--ext",
+    "extensions",
+    multiple=True,
+    metavar="NAME",
+    help="Load one of WPILib's simulation extensions: ds-socket, ws-server, ws-client.",
+)
+def command(directory: Path | None, main: Path | None, robot_class: str | None, **request: Any) -> None:
+    """Drive the robot on the desk: simulate it, with its physics, in a window or without one.
+
+    Without a window, --mode, --seconds or --script say what to simulate, as fast as it goes; with none of them the
+    robot runs in real time, for dashboards, until Ctrl-C.
+
+    \b
+    Exit codes: 0 all went well, 1 the robot's code failed, 2 wrong usage.
+    """
+    from pyfrc_core.sim.simulate import SimRequest, simulate
+
+    project = chosen_project(directory, main, robot_class)
+    sys.exit(simulate(project, SimRequest(**request), partial(click.echo, nl=False)))

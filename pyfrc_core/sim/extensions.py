@@ -1,0 +1,58 @@
+"""WPILib's simulation extensions: libraries that are loaded beside the simulated HAL."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..errors import UsageError
+
+
+@dataclass(frozen=True)
+class Extension:
+    """One that is known.
+
+    :param module: has a function ``loadExtension``
+    :param package: what to install
+    """
+
+    module: str
+    package: str
+
+
+EXTENSIONS = {
+    "ds-socket": Extension("halsim_ds_socket", "robotpy-halsim-ds-socket"),
+    "ws-server": Extension("halsim_ws.server", "robotpy-halsim-ws"),
+    "ws-client": Extension("halsim_ws.client", "robotpy-halsim-ws"),
+}
+
+
+#: WPILib's simulator window, which wants the process's main thread.
+WINDOW = "gui"
+_LOADABLE = {**EXTENSIONS, WINDOW: Extension("halsim_gui", "robotpy-halsim-gui")}
+
+
+def see_that_there_are(names: Sequence[str]) -> None:
+    """See that these can be loaded.
+
+    :raises UsageError: saying what to install
+    """
+    for name in names:
+        if name not in _LOADABLE:
+            raise UsageError(f"there is no extension {name!r}", remedy=f"There is: {', '.join(EXTENSIONS)}.")
+        extension = _LOADABLE[name]
+        if importlib.util.find_spec(extension.module.partition(".")[0]) is None:
+            raise UsageError(
+                "WPILib's simulator window is not installed"
+                if name == WINDOW
+                else f"the extension {name} is not installed",
+                remedy=f"Install it with: pip install {extension.package}",
+            )
+
+
+def load_extensions(names: Sequence[str]) -> None:
+    """Load them into this process."""
+    for name in names:
+        importlib.import_module(_LOADABLE[name].module).loadExtension()

@@ -1,0 +1,105 @@
+"""The field of a project's simulations: from ``sim/config.json``, or the season's."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import UsageError, nearest
+from ..physics.pose import METRES_PER_FOOT
+from .commands import ROBOT_ON_FIELD
+from .scene import Field, Pose, Shape, Tag
+
+if TYPE_CHECKING:
+    from ..config.sim import FieldObject, SimConfig
+    from ..project import Project
+
+#: A season's tags are drawn where the field's size differs from theirs by less than this, in feet.
+_SAME_SIZE = 1.0
+
+
+def field_of(project: Project) -> Field:
+    """The project's field, without tags.
+
+    :raises SettingsError: when ``sim/config.json`` is not what it may be
+    """
+    config = project.sim_config
+    start = config.start
+    starts = {start.name: Pose(start.x, start.y, math.radians(start.angle))}
+    if len(config.robot.start_positions) > 1:
+        starts |= {each.name: Pose(each.x, each.y, math.radians(each.angle)) for each in config.robot.start_positions}
+    return Field(
+        width=config.field.w,
+        height=config.field.h,
+        px_per_ft=config.field.px_per_ft,
+        robot_width=config.robot.w,
+        robot_length=config.robot.l,
+        starts=starts,
+        image=_image(project, config),
+        objects=tuple(_shape(each) for each in config.field.objects),
+    )
+
+
+def _image(project: Project, config: SimConfig) -> Path | None:
+    """The configured image; None where there is none, of which the configuration has warned."""
+    if config.field.image is None:
+        return None
+    file = project.root / "sim" / config.field.image
+    return file if file.is_file() else None
+
+
+def _shape(given: FieldObject) -> Shape:
+    points = getattr(given, "points", None)
+    if points is None:
+        x, y, w, h = given.rect  # type: ignore[union-attr]
+        points = ((x, y), (x + w, y), (x + w, y + h), (x, y + h))
+    return Shape(given.color, tuple(points))
+
+
+def tags_of(config: SimConfig) -> tuple[Tag, ...]:
+    """The AprilTags of the season, where `robotpy-apriltag` is installed and the field is the season's."""
+    if importlib.util.find_spec("robotpy_apriltag") is None:
+        return ()
+    from robotpy_apriltag import AprilTagField, AprilTagFieldLayout
+
+    from ..config.seasons import TODAY
+
+    season = str(config.field.season or TODAY)
+    named = [field for name, field in AprilTagField.__members__.items() if season in name]
+    for name in named:
+        layout = AprilTagFieldLayout.loadField(name)
+        size = layout.getFieldLength() / METRES_PER_FOOT, layout.getFieldWidth() / METRES_PER_FOOT
+        if math.dist(size, (config.field.w, config.field.h)) < _SAME_SIZE:
+            return tuple(_tags(layout, config.field.h))
+    return ()
+
+
+def _tags(layout: object, height: float) -> Iterator[Tag]:
+    for tag in layout.getTags():  # type: ignore[attr-defined]
+        pose = tag.pose.toPose2d()
+        x, y = pose.X() / METRES_PER_FOOT, height - pose.Y() / METRES_PER_FOOT
+        yield Tag(tag.ID, x, y, -pose.rotation().radians())
+
+
+def start_named(field: Field, name: str | None) -> Pose:
+    """One of the field's starts; the first, if none is named.
+
+    :raises UsageError: when there is none of that name
+    """
+    if name is None:
+        return next(iter(field.starts.values()))
+    if name not in field.starts:
+        raise UsageError(
+            f"there is no start position {name!r}: {nearest(name, list(field.starts))}",
+            where="sim/config.json: pyfrc.robot.start_positions",
+        )
+    return field.starts[name]
+
+
+def robot_at(field: Field, pose: Pose) -> dict[str, list[float]]:
+    """What is to be written for the robot to be there: its place as WPILib has it, in metres and degrees."""
+    x, y = pose.x * METRES_PER_FOOT, (field.height - pose.y) * METRES_PER_FOOT
+    return {ROBOT_ON_FIELD: [x, y, -math.degrees(pose.angle)]}

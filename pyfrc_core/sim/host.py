@@ -1,0 +1,188 @@
+"""Makes robots' processes: one that has imported everything, and has none of WPILib's threads, forks them.
+
+`main` runs in a new interpreter, with what it needs pickled on standard input. It listens to the `Simulation` over a
+connection and ends with it. Where processes cannot be forked, it becomes the first robot's process itself.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import pickle
+import signal
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from multiprocessing.connection import Client, Connection, wait
+from pathlib import Path
+from typing import Any
+
+from .commands import Quit
+
+_LOOK_SECONDS = 0.2
+
+#: Libraries that are known to start no threads when they are imported.
+_HARMLESS = {
+    "commands2", "hal", "magicbot", "native", "navx", "ntcore", "numpy", "pathplannerlib", "phoenix6", "photonlibpy",
+    "pint", "pydantic", "pyfrc", "pyfrc_core", "rev", "wpilib", "wpimath", "wpinet", "wpiutil",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Hosting:
+    """What a host is told.
+
+    :param address: where the simulation listens; likewise `key`
+    :param path: `sys.path`
+    :param directory: the current one
+    :param fork: whether to fork robots' processes
+    """
+
+    address: Any
+    key: bytes
+    path: list[str]
+    directory: str
+    fork: bool
+
+
+@dataclass(frozen=True)
+class Launch:
+    """Have a robot's process made.
+
+    :param number: by which the process introduces itself
+    :param job: the pickled `Job`
+    :param words: where the process leaves word
+    """
+
+    number: int
+    job: bytes
+    words: Path
+
+
+@dataclass(frozen=True)
+class Kill:
+    """End the robot's process."""
+
+
+@dataclass(frozen=True)
+class Preload:
+    """Import these modules for the robots to come."""
+
+    modules: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Exited:
+    """A robot's process has ended."""
+
+    number: int
+    status: int
+
+
+def main() -> None:
+    """The process."""
+    hosting: Hosting = pickle.load(sys.stdin.buffer)
+    sys.path[:] = hosting.path
+    os.chdir(hosting.directory)
+    from ..measure.processes import measure_here
+
+    measure_here()
+    connection = Client(hosting.address, authkey=hosting.key)
+    connection.send("host")
+    # Ends with the simulation, not with whoever presses Ctrl-C in its terminal.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    from . import robot_process  # noqa: F401 - what every robot needs, imported while nobody waits for it
+
+    if hosting.fork:
+        _Forks(hosting, connection).serve()
+    else:
+        with suppress(EOFError):
+            _become_the_robot(hosting, connection.recv())
+
+
+class _Forks:
+    """The robots' processes, one at a time."""
+
+    def __init__(self, hosting: Hosting, connection: Connection) -> None:
+        self._hosting = hosting
+        self._connection = connection
+        self._fork: Any = None
+        self._number = 0
+
+    def serve(self) -> None:
+        """Do what the simulation says until it is gone."""
+        from ..runtime.forks import Fork
+
+        while True:
+            if self._fork is None:
+                there = wait([self._connection])
+            else:  # what a robot has started may outlive it, and hold its pipe open
+                there = wait([self._connection, self._fork.fileno()], _LOOK_SECONDS)
+            if self._fork is not None:
+                self._fork.poll()
+                if self._fork.finished:
+                    self._gone()
+            if self._connection not in there:
+                continue
+            try:
+                command = self._connection.recv()
+            except (EOFError, ConnectionError):
+                command = Quit()
+            if isinstance(command, Quit):
+                self._kill()
+                return
+            if isinstance(command, Preload):
+                _preload(command.modules)
+                continue
+            self._kill()
+            if isinstance(command, Launch):
+                self._number = command.number
+                self._fork = Fork(partial(self._become_the_robot, command))
+
+    def _kill(self) -> None:
+        if self._fork is not None:
+            self._fork.kill()
+            self._gone()
+
+    def _gone(self) -> None:
+        status, self._fork = self._fork.status, None
+        with suppress(OSError):
+            self._connection.send(Exited(self._number, status))
+
+    def _become_the_robot(self, launch: Launch, send: object) -> None:
+        self._connection.close()
+        _become_the_robot(self._hosting, launch)
+
+
+def _preload(modules: Sequence[str]) -> None:
+    for name in modules:
+        if name.partition(".")[0] in _HARMLESS and name not in sys.modules:
+            with suppress(Exception):  # the robot will be told
+                importlib.import_module(name)
+
+
+def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
+    """Never returns."""
+    from ..runtime.own_process import LastWords, end_processes_of_the_robot, exit_now
+    from .robot_process import run_robot
+
+    status = 1
+    with launch.words.open("wb", buffering=0) as file:
+        words = LastWords(file.fileno())
+        words.leave_on_crash()
+        try:
+            connection = Client(hosting.address, authkey=hosting.key)
+            connection.send(launch.number)
+            run_robot(pickle.loads(launch.job), connection, words)
+            status = 0
+        except BaseException:
+            import traceback
+
+            words.write(traceback.format_exc())
+        finally:
+            end_processes_of_the_robot()
+            sys.stdout.flush()
+            sys.stderr.flush()
+            exit_now(status)

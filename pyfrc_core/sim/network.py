@@ -1,0 +1,127 @@
+"""NetworkTables of a simulated robot: what its dashboards show and write, and its choosers.
+
+The robot's own tables stay in its process, where nothing changes them while the robot's code runs: a second instance is
+served to dashboards, and between packets each is told what is new in the other. So what a dashboard writes arrives at
+a moment that can be recorded, and comes at the same moment in a replay.
+"""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from typing import Any
+
+import ntcore
+
+from ..runtime.scripts.targets import NETWORK
+from .snapshot import Chooser
+
+#: Where dashboards look for a robot's NetworkTables.
+NT4_PORT = 5810
+
+_PUBLISHED = int(ntcore.EventFlags.kPublish) | int(ntcore.EventFlags.kImmediate)
+_VALUES = int(ntcore.EventFlags.kValueAll) | int(ntcore.EventFlags.kImmediate)
+_FROM_OUTSIDE = int(ntcore.EventFlags.kValueRemote)
+_CHOOSER, _TYPE = "String Chooser", "/.type"
+
+
+class Choosers:
+    """The choosers among the robot's own tables."""
+
+    def __init__(self) -> None:
+        self._instance = ntcore.NetworkTableInstance.getDefault()
+        self._news = ntcore.NetworkTableListenerPoller(self._instance)
+        self._news.addListener([""], _PUBLISHED)
+        self._names: set[str] = set()
+        self._told: tuple[Chooser, ...] = ()
+
+    def changed(self) -> tuple[Chooser, ...] | None:
+        """All of them; None when nothing has changed since the last time."""
+        for event in self._news.readQueue():
+            name = event.data.name if isinstance(event.data, ntcore.TopicInfo) else ""
+            if name.endswith(_TYPE):
+                self._names.add(name.removesuffix(_TYPE))
+        choosers = tuple(self._chooser(name) for name in sorted(self._names) if self._text(name + _TYPE) == _CHOOSER)
+        if choosers == self._told:
+            return None
+        self._told = choosers
+        return choosers
+
+    def _chooser(self, name: str) -> Chooser:
+        options = self._instance.getEntry(f"{name}/options").getStringArray([])
+        return Chooser(name, tuple(options), self._text(f"{name}/default"), self._text(f"{name}/active"))
+
+    def _text(self, name: str) -> str:
+        return str(self._instance.getEntry(name).getString(""))
+
+
+class Served:
+    """The robot's tables, served to dashboards.
+
+    :param write: writes a target, as in input scripts
+    """
+
+    def __init__(self, port: int, write: Callable[[str, Any], object]) -> None:
+        self._write = write
+        self._robot = ntcore.NetworkTableListenerPoller(ntcore.NetworkTableInstance.getDefault())
+        self._robot.addListener([""], _VALUES)
+        self._instance = ntcore.NetworkTableInstance.create()
+        self._publishers: dict[str, tuple[str, ntcore.GenericPublisher]] = {}
+        self._from_outside: dict[str, Any] = {}
+        self.problem = _problem_with(port)
+        self.address = None if self.problem else f"localhost:{port}"
+        if self.problem is None:
+            self._instance.startServer("", "", 0, port)
+        self._news = ntcore.NetworkTableListenerPoller(self._instance)
+        self._news.addListener([""], _FROM_OUTSIDE)
+
+    def exchange(self) -> None:
+        """Between packets: tell dashboards what the robot has published, and the robot what dashboards have written."""
+        for event in self._robot.readQueue():
+            data = event.data
+            if isinstance(data, ntcore.ValueEventData):
+                self._publish(data.topic, data.value)
+        for event in self._news.readQueue():
+            data = event.data
+            if isinstance(data, ntcore.ValueEventData) and (value := _plain(data.value)) is not None:
+                name = data.topic.getName()
+                self._from_outside[name] = value
+                self._write(f"{NETWORK}{name}", value)
+
+    def close(self) -> None:
+        """Let go of the port."""
+        ntcore.NetworkTableInstance.destroy(self._instance)
+
+    def _publish(self, topic: ntcore.Topic, value: ntcore.Value) -> None:
+        name = topic.getName()
+        if name in self._from_outside and self._from_outside.pop(name) == value.value():
+            return  # what a dashboard has written comes back
+        kind = topic.getTypeString()
+        known = self._publishers.get(name)
+        if known is None or known[0] != kind:
+            served = self._instance.getTopic(name)
+            self._publishers[name] = known = (kind, served.genericPublish(kind))
+            served.setProperties(topic.getProperties())
+        known[1].set(value)
+
+
+def _plain(value: ntcore.Value) -> Any:
+    found = value.value()
+    items = found if isinstance(found, (list, tuple)) else [found]
+    if not all(isinstance(each, (bool, int, float, str)) for each in items):
+        return None  # structs and the like are written by robots
+    return list(found) if isinstance(found, tuple) else found
+
+
+def _problem_with(port: int) -> str | None:
+    """Why there cannot be a server at this port, which WPILib would only tell on the console."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("", port))
+        except OSError as error:
+            return (
+                f"NetworkTables are not served to dashboards: port {port} is taken ({error.strerror}). "
+                "Is another simulation running?"
+            )
+    return None

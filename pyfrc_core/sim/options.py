@@ -1,0 +1,70 @@
+"""What a simulation may be told before it starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import UsageError
+from ..runtime.scripts.script import InputScript
+from .extensions import see_that_there_are
+
+
+@dataclass(frozen=True)
+class SimOptions:
+    """How to simulate.
+
+    :param speed: robot seconds a second; 0 is as fast as it goes
+    :param paused: whether to begin with time standing still
+    :param script: what the robot is told, besides what is commanded
+    :param start_at: go there at once before anything is shown, in seconds of robot time
+    :param run_until: pause there, in seconds of robot time
+    :param recording: whether to keep what is told and done; only then is there a way back in time
+    :param nt_port: where to serve NetworkTables to dashboards; None: nowhere
+    :param wpilog: where to write WPILib's data log
+    :param extensions: WPILib's simulation extensions to load, by name
+    :param start_position: one of the field's `starts` for the robot to start at
+    :param fork: False has each robot start in a new interpreter, as where processes cannot be forked
+    """
+
+    speed: float = 1.0
+    paused: bool = False
+    script: InputScript | None = None
+    start_at: float = 0.0
+    run_until: float | None = None
+    recording: bool = True
+    nt_port: int | None = None
+    wpilog: Path | None = None
+    extensions: tuple[str, ...] = ()
+    start_position: str | None = None
+    fork: bool | None = None
+
+    def check(self) -> None:
+        """See that this can be done.
+
+        :raises UsageError: saying what cannot
+        """
+        check_speed(self.speed)
+        see_that_there_are(self.extensions)
+        if self.script is None:
+            return
+        end = self.script.end_us / 1_000_000
+        for name, when in (("--from", self.start_at), ("--seconds", self.run_until)):
+            if when is not None and when > end:
+                raise UsageError(
+                    f"{name} {when:g} is after the script's end, at {end:g} s",
+                    where=self.script.file,
+                    remedy='A script ends at the "end" in its first line; raise that for the robot to run longer.',
+                )
+
+
+def check_speed(factor: float) -> None:
+    """See that robot time can go this fast.
+
+    :raises UsageError: when it cannot
+    """
+    if not (factor == 0 or 0.01 <= factor <= 1000):
+        raise UsageError(
+            f"the speed cannot be {factor:g}",
+            remedy="1 is real time, 0.1 slow motion, 0 as fast as it goes; at most 1000.",
+        )

@@ -1,0 +1,74 @@
+"""How fast robot time goes beside the wall clock's."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+
+from ..runtime.clock import PACKET_US
+
+wall = time.perf_counter
+
+#: A robot that has fallen behind by more than this, in wall seconds, is not made to catch up.
+_GIVEN_UP = 1.0
+#: What was reached is told of the last so many wall seconds.
+_RECENT = 0.5
+_PACKETS_A_SECOND = 1_000_000 // PACKET_US
+
+
+class Pace:
+    """A schedule, fixed when it begins: robot time does not drift from the wall's, however late single packets are.
+
+    :param speed: robot seconds a second; 0 is as fast as it goes
+    """
+
+    def __init__(self, speed: float, paused: bool) -> None:
+        self.speed = speed
+        self.paused = paused
+        self.loop_seconds = 0.0
+        self.overruns = 0
+        self._began_wall, self._began_us = wall(), 0
+        self._recent: deque[tuple[float, int]] = deque()
+        self._loops: deque[float] = deque(maxlen=_PACKETS_A_SECOND)
+
+    def begin(self, now_us: int) -> None:
+        """Begin a new schedule: the speed has changed, or time goes on after a pause."""
+        self._began_wall, self._began_us = wall(), now_us
+        self._recent.clear()
+
+    def wait_for(self, due_us: int) -> float:
+        """The wall seconds until robot time may be `due_us`; less than 0 when it is late."""
+        if self.speed == 0:
+            return 0.0
+        due = self._began_wall + (due_us - self._began_us) / 1_000_000 / self.speed
+        wait = due - wall()
+        if wait < -_GIVEN_UP:
+            self._began_wall -= wait
+        return wait
+
+    def ran(self, now_us: int) -> None:
+        """Robot time has come to `now_us`."""
+        now = wall()
+        self._recent.append((now, now_us))
+        while now - self._recent[0][0] > _RECENT and len(self._recent) > 2:
+            self._recent.popleft()
+
+    def took(self, seconds: float, packets: int = 1) -> None:
+        """The robot has taken so long on the wall for each of these packets."""
+        self.loop_seconds = seconds
+        if seconds > PACKET_US / 1_000_000:
+            self.overruns += packets
+        self._loops.append(seconds)
+
+    @property
+    def reached(self) -> float:
+        """Robot seconds a second, lately."""
+        if self.paused or len(self._recent) < 2:
+            return 0.0
+        (first_wall, first_us), (last_wall, last_us) = self._recent[0], self._recent[-1]
+        return (last_us - first_us) / 1_000_000 / max(1e-9, last_wall - first_wall)
+
+    @property
+    def worst_loop_seconds(self) -> float:
+        """The longest time that the robot has lately taken for a packet, in wall seconds."""
+        return max(self._loops, default=0.0)

@@ -1,0 +1,247 @@
+"""The simulation's side of its robot's process: makes it, hears it, ends it."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+from codecs import getincrementaldecoder
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection, Listener
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from ..runtime.forks import FORK_IS_SAFE
+from .commands import Quit
+from .host import Exited, Hosting, Kill, Launch, Preload
+from .messages import Job, Message
+
+#: Where no module of the user's is in Python's way.
+_BESIDE_OUR_PACKAGE = Path(__file__).resolve().parents[2]
+#: How long a process is given to end when it has been told to, in seconds.
+_PATIENCE = 1.0
+
+
+class RobotProcesses:
+    """One robot's process at a time, each in place of the one before.
+
+    The functions are called from threads of this object's.
+
+    :param on_message: what a robot's process says, with the number of its launch
+    :param on_exit: it has ended: the launch's number, the exit code, its last words
+    :param on_output: what robots print
+    :param fork: whether to fork them; where that is not safe, each is a new interpreter
+    """
+
+    def __init__(
+        self,
+        on_message: Callable[[int, Message], object],
+        on_exit: Callable[[int, int, str], object],
+        on_output: Callable[[str], object],
+        fork: bool | None = None,
+    ) -> None:
+        self._on_message, self._on_exit, self._on_output = on_message, on_exit, on_output
+        self._forks = FORK_IS_SAFE if fork is None else fork
+        self._lock = threading.RLock()
+        self._closed = False
+        self._temporary = TemporaryDirectory(prefix="pyfrc-sim-")
+        self._key = os.urandom(32)
+        self._listener = Listener(authkey=self._key)
+        self._number = 0
+        self._host: subprocess.Popen[bytes] | None = None
+        self._host_connection: Connection | None = None
+        self._robot: Connection | None = None
+        #: Set when the robot's process has ended.
+        self._ended = threading.Event()
+        self._hearing: dict[int, threading.Thread] = {}
+        #: What is to be sent to the host as soon as it is there; likewise to the robot.
+        self._for_host: list[object] = []
+        self._for_robot: list[object] = []
+        _thread(self._accept, "pyfrc sim: listener")
+
+    def launch(self, job: Job) -> int:
+        """Begin another robot's process, ending the one before; answers the launch's number."""
+        with self._lock:
+            if self._closed:
+                return self._number
+            self._number += 1
+            self._robot, self._for_robot = None, []
+            self._ended = threading.Event()
+            if self._host is not None and not self._forks:
+                self._end_host()
+            if self._host is None or self._host.poll() is not None:
+                self._begin_host()
+            self._tell_host(Launch(self._number, pickle.dumps(job), self._words(self._number)))
+            return self._number
+
+    def send(self, command: object) -> None:
+        """Tell the robot's process something; nothing, where there is none."""
+        with self._lock:
+            if self._robot is None:
+                self._for_robot.append(command)
+                return
+            with suppress(OSError):
+                self._robot.send(command)
+
+    def kill(self) -> None:
+        """End the robot's process."""
+        with self._lock:
+            self._robot, self._for_robot = None, []
+            if self._forks:
+                self._tell_host(Kill())
+            elif self._host is not None:
+                self._end_host()
+
+    def preload(self, modules: tuple[str, ...]) -> None:
+        """Have robots to come find these modules imported."""
+        if self._forks:
+            with self._lock:
+                self._tell_host(Preload(modules))
+
+    def close(self) -> None:
+        """End everything; a robot that listens may bring its files to an end before."""
+        with self._lock:
+            robot, ended = self._robot, self._ended
+        if robot is not None and not self._closed:
+            with suppress(OSError):
+                robot.send(Quit())
+                ended.wait(_PATIENCE)
+        with self._lock:
+            if self._closed:
+                return
+            self._closed = True
+            if self._host is not None:
+                self._end_host()
+        # In a thread: where the listener's has left its loop already, nobody answers, until the listener is closed.
+        _thread(self._wake_the_listener, "pyfrc sim: wake").join(_PATIENCE)
+        self._listener.close()
+        self._temporary.cleanup()
+
+    # -- the host -----------------------------------------------------------------------------------------------
+
+    def _begin_host(self) -> None:
+        self._host_connection, self._for_host = None, []
+        host = subprocess.Popen(
+            [sys.executable, "-c", f"from {__package__}.host import main; main()"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            cwd=_BESIDE_OUR_PACKAGE,
+            env=os.environ | {"PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"},
+            start_new_session=os.name == "posix",
+        )
+        self._host = host
+        assert host.stdin is not None
+        hosting = Hosting(self._listener.address, self._key, sys.path, str(Path.cwd()), self._forks)
+        with suppress(OSError), host.stdin as stdin:
+            stdin.write(pickle.dumps(hosting))
+        _thread(self._read_output, "pyfrc sim: output", host)
+        if not self._forks:
+            _thread(self._wait_for, "pyfrc sim: end", host, self._number)
+
+    def _end_host(self) -> None:
+        host, self._host = self._host, None
+        assert host is not None
+        if self._host_connection is not None:
+            with suppress(OSError, subprocess.TimeoutExpired):
+                self._host_connection.send(Quit())
+                if self._forks:
+                    host.wait(_PATIENCE)
+            self._host_connection = None
+        if os.name == "posix":  # with whatever the robot has started
+            with suppress(ProcessLookupError, PermissionError):
+                os.killpg(host.pid, signal.SIGKILL)
+        else:
+            host.kill()
+        host.wait()
+
+    def _tell_host(self, message: object) -> None:
+        if self._host_connection is None:
+            self._for_host.append(message)
+            return
+        with suppress(OSError):
+            self._host_connection.send(message)
+
+    # -- threads --------------------------------------------------------------------------------------------------
+
+    def _accept(self) -> None:
+        while not self._closed:
+            try:
+                connection = self._listener.accept()
+                who = connection.recv()
+            except (OSError, EOFError):  # closed, or nobody of ours
+                continue
+            except Exception:  # a stranger without the key
+                continue
+            with self._lock:
+                if who == "host" and self._host is not None:
+                    self._host_connection = connection
+                    for message in self._for_host:
+                        self._tell_host(message)
+                    self._for_host.clear()
+                    if self._forks:
+                        _thread(self._hear_host, "pyfrc sim: host", connection)
+                elif who == self._number and not self._closed:
+                    self._robot = connection
+                    for message in self._for_robot:
+                        self.send(message)
+                    self._for_robot.clear()
+                    self._hearing[who] = _thread(self._hear_robot, "pyfrc sim: robot", connection, who)
+                else:
+                    connection.close()
+
+    def _hear_robot(self, connection: Connection, number: int) -> None:
+        with suppress(OSError, EOFError):
+            while number == self._number:
+                self._on_message(number, connection.recv())
+        connection.close()
+
+    def _hear_host(self, connection: Connection) -> None:
+        with suppress(OSError, EOFError):
+            while True:
+                message = connection.recv()
+                if isinstance(message, Exited):
+                    self._exited(message.number, message.status)
+
+    def _wait_for(self, host: subprocess.Popen[bytes], number: int) -> None:
+        self._exited(number, host.wait())
+
+    def _exited(self, number: int, status: int) -> None:
+        hearing = self._hearing.pop(number, None)
+        if hearing is not None:
+            hearing.join(_PATIENCE)  # what it has said before comes first
+        if number == self._number:
+            self._ended.set()
+        self._on_exit(number, status, self._last_words(number))
+
+    def _read_output(self, host: subprocess.Popen[bytes]) -> None:
+        assert host.stdout is not None
+        decoder = getincrementaldecoder("utf-8")(errors="replace")
+        with host.stdout as output, suppress(OSError, ValueError):
+            while data := os.read(output.fileno(), 1 << 16):
+                self._on_output(decoder.decode(data))
+
+    def _wake_the_listener(self) -> None:
+        from multiprocessing.connection import Client
+
+        with suppress(Exception):
+            Client(self._listener.address, authkey=self._key).close()
+
+    def _words(self, number: int) -> Path:
+        return Path(self._temporary.name, f"words-{number}")
+
+    def _last_words(self, number: int) -> str:
+        with suppress(OSError):
+            return self._words(number).read_text("utf-8", errors="replace")
+        return ""
+
+
+def _thread(target: Callable[..., object], name: str, *arguments: Any) -> threading.Thread:
+    thread = threading.Thread(target=target, name=name, args=arguments, daemon=True)
+    thread.start()
+    return thread

@@ -1,0 +1,128 @@
+"""The process that a simulated robot lives in: from importing its code to telling how it ended."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import traceback
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from multiprocessing.connection import Connection
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import hal
+
+from ..errors import PyfrcError, text_of
+from ..physics.engine import load_physics
+from ..project import Project
+from ..robot_files import is_pyfrc
+from ..runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ..runtime.own_process import LastWords
+from ..runtime.redirect import redirection
+from ..runtime.robot import RobotRun
+from ..runtime.seeds import seed_generators
+from ..runtime.watchdog import Watchdog
+from .extensions import WINDOW, load_extensions
+from .field import tags_of
+from .messages import Failed, Job, Ready, WindowClosed
+from .session import Ended, Session
+from .snapshot import Failure
+from .wpilog import WpiLog
+
+#: Code that a robot imports counts as a library's when it is from there.
+_INSTALLED = ("site-packages", "dist-packages")
+
+
+def run_robot(job: Job, connection: Connection, words: LastWords) -> None:
+    """Run a robot until the other end of `connection` is closed, or the robot fails: which is told there.
+
+    :param words: where to leave word when the process ends by itself
+    """
+    load_extensions(job.extensions)
+    if WINDOW not in job.extensions:
+        _run(job, connection, words)
+        return
+    robot = threading.Thread(target=_run, name="robot", args=(job, connection, words), daemon=True)
+    robot.start()
+    hal.runMain()  # until the user closes the window
+    with suppress(OSError):
+        connection.send(WindowClosed())
+
+
+def _run(job: Job, connection: Connection, words: LastWords) -> None:
+    project, files = job.project, job.project.files
+    run = RobotRun()
+    try:
+        redirection.install(files)
+        robot_class = project.load()
+        physics = load_physics(project) if project.physics_file.is_file() else None
+        watchdog = Watchdog(run, files, project.settings.test.hang_seconds, words.write, words.descriptor)
+        with watchdog.watching(), ExitStack() as closing:
+            run.open()
+            seed_generators(job.script.seed)
+            session = Session(run, job, connection)
+
+            def construct() -> None:
+                if physics is not None:
+                    physics.attach(run)
+                if job.wpilog is not None:
+                    closing.enter_context(_logged(run, job.wpilog))
+                run.construct(robot_class)
+
+            def ready() -> Ready:
+                tags = tags_of(project.sim_config) if job.tags is None else job.tags
+                return Ready(tags, tuple(_libraries(project)), session.network_address)
+
+            try:
+                session.go(construct, ready)
+            except (BrokenPipeError, ConnectionResetError):
+                pass  # nobody is there any more
+            except BaseException:
+                with suppress(Exception):  # what has happened matters more
+                    session.tell()
+                raise
+    except Ended:
+        headline = f"{project.main_file.name}: the robot program ended by itself"
+        _tell(connection, run, headline, "startCompetition() returned.")
+    except PyfrcError as error:
+        _tell(connection, run, str(error), "")
+    except BaseException as error:
+        leave_out_pyfrc(error, files)
+        failure = as_robot_code_error(error, files) if isinstance(error, Exception) else text_of(error)
+        entry = error.__traceback__
+        while entry is not None and entry.tb_next is not None and is_pyfrc(entry.tb_frame.f_code.co_filename):
+            entry = entry.tb_next  # this function's own
+        details = "".join(traceback.format_exception(type(error), error, entry))
+        _tell(connection, run, str(failure), details)
+
+
+def _tell(connection: Connection, run: RobotRun, headline: str, details: str) -> None:
+    connection.send(Failed(Failure(headline, details, run.clock.now)))
+
+
+@contextmanager
+def _logged(run: RobotRun, file: Path) -> Iterator[None]:
+    log = WpiLog(file)
+    before: dict[str, Any] = {}
+
+    def look(now: float) -> None:
+        values = dict(run.hal_data.leaves())
+        changed = {path: value for path, value in values.items() if path not in before or before[path] != value}
+        before.update(changed)
+        controller = getattr(run.physics, "controller", None)
+        log.write(run.clock.now_us, changed, None if controller is None else controller.get_pose())
+
+    run.observe(look)
+    try:
+        yield
+    finally:
+        log.close()
+
+
+def _libraries(project: Project) -> Iterator[str]:
+    for name, module in list(sys.modules.items()):
+        file = getattr(module, "__file__", None) if isinstance(module, ModuleType) else None
+        if file is not None and any(part in file for part in _INSTALLED) and not project.files.is_project_file(file):
+            yield name

@@ -1,0 +1,311 @@
+"""The robot's side of a simulation: lets time go on, carries out commands, tells what has changed."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from typing import Any
+
+from ..errors import PyfrcError
+from ..hal import modes
+from ..physics.core import PhysicsInterface
+from ..runtime.clock import OBSERVE, PACKET_US
+from ..runtime.robot import RobotRun
+from ..runtime.scripts.player import Player
+from ..runtime.scripts.recorder import Recorder
+from ..runtime.scripts.targets import Targets
+from ..runtime.trace import Trace
+from .commands import ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
+from .messages import Job, Ready, Update
+from .network import Choosers, Served
+from .pace import Pace, wall
+from .scene import Point, Pose, Target
+from .station import Station
+from .user_renderer import UserRenderer
+
+#: Faster than real time, updates are told no oftener than this, in wall seconds; else one for each packet.
+_UPDATE_SECONDS = 0.02
+#: How long to wait for commands while time stands still, before looking what dashboards have written.
+_LOOK_SECONDS = 0.05
+#: Where the robot is, is asked every so many packets; the trail has a point for each time that it has moved on by as
+#: many feet.
+_FOLLOW_PACKETS, _TRAIL_STEP = 2, 0.05
+#: So long the robot runs at most without a look at commands when it goes as fast as it can: packets, wall seconds.
+_MOST_PACKETS, _CHUNK_SECONDS = 50, 0.01
+
+
+class Ended(Exception):
+    """The robot program has ended by itself."""
+
+
+class _Lines(list[str]):
+    """A file for a trace's lines."""
+
+    def write(self, line: str) -> None:
+        self.append(line)
+
+
+class Session:
+    """One run of a robot that somebody takes part in: open, and its robot not constructed yet.
+
+    :param connection: to the `Simulation`
+    """
+
+    def __init__(self, run: RobotRun, job: Job, connection: Connection) -> None:
+        self._run, self._job, self._connection = run, job, connection
+        self._targets = Targets(run.hal_data)
+        self._choosers = Choosers()
+        self._served: Served | None = None
+        self._pace = Pace(job.speed, job.paused)
+        self._run_until_us = job.run_until_us
+        if job.extensions:  # which have changed what every run begins with: that, too, comes from outside
+            modes.reset_driver_station()
+            run.hal_data.apply_defaults()
+        self._recorder = Recorder(run) if job.recording else None
+        self._lines = _Lines()
+        self._trace = Trace(run.hal_data, self._lines)  # type: ignore[arg-type]
+        self._lines.clear()  # its header
+        self._renderer = UserRenderer(self._robot_pose)
+        self._drawings: tuple[Any, ...] = ()
+        self._vision: tuple[Target, ...] = ()
+        self._trail: list[Point] = []
+        self._trail_end: Point = (math.nan, math.nan)
+        self._at: Point | None = None
+        self._distance = 0.0
+        self._mode_packets: Counter[str] = Counter()
+        self._notes: list[str] = []
+        self._tracing = False
+        self._packet_began = wall()
+        self._steps_told = 0
+        self._told_at = 0.0
+        self._packets_at_once = 1
+        run.renderer = self._renderer
+        run.clock.limit_us = 1 << 62
+        project = job.project
+        self._station = Station(run, project.settings.match, project.sim_config.field, self._write, job.station)
+
+    def go(self, construct: Callable[[], object], ready: Callable[[], Ready]) -> None:
+        """Make the robot, bring it to where it is to go on from, and let it run until nobody listens any more.
+
+        :raises Ended: when the robot program has ended
+        """
+        run, job = self._run, self._job
+        from_the_start = job.forward_to_us <= job.script.start_us
+        self._tracing = job.recording and from_the_start
+        if job.recording:
+            run.clock.before_packet.append(self._packet_begins)
+            run.observe(self._packet_is_over)
+        construct()
+        run.clock.every(_FOLLOW_PACKETS * PACKET_US, OBSERVE, self._follow)
+        Player(job.script, run).start()
+        self._mark_position()
+        while run.clock.now_us < job.forward_to_us:
+            run.run_until(min(job.forward_to_us, run.clock.now_us + _MOST_PACKETS * PACKET_US))
+        self._station.take_over()
+        if job.nt_port is not None:
+            self._served = Served(job.nt_port, self._write)
+            if self._served.problem:
+                self._notes.append(self._served.problem)
+        self._connection.send(ready())
+        self.tell(dict(run.hal_data.leaves()))
+        if not self._tracing:
+            self._trace.look(run.clock.now)
+            self._lines.clear()
+            self._tracing = job.recording
+        self._loop()
+
+    @property
+    def network_address(self) -> str | None:
+        """Where NetworkTables are served."""
+        return None if self._served is None else self._served.address
+
+    # -- time -----------------------------------------------------------------------------------------------------
+
+    def _loop(self) -> None:
+        pace, clock = self._pace, self._run.clock
+        pace.begin(clock.now_us)
+        while self._hear_commands():
+            if not pace.paused and self._stop_us() <= clock.now_us:
+                self._pause()
+            if pace.paused:
+                if self._connection.poll(_LOOK_SECONDS if self._served is not None else None):
+                    continue
+                self._exchange()
+                continue
+            packets = self._packets_at_once if pace.speed == 0 else 1
+            target_us = min(clock.next_packet_us + (packets - 1) * PACKET_US, self._stop_us())
+            wait = pace.wait_for(target_us)
+            if wait > 0 and self._connection.poll(wait):
+                continue
+            self._exchange()
+            self._advance(target_us)
+            if 0 < pace.speed <= 1 or wall() - self._told_at >= _UPDATE_SECONDS:
+                self.tell()
+
+    def _advance(self, target_us: int) -> None:
+        clock = self._run.clock
+        began, from_us = wall(), clock.now_us
+        self._run.run_until(target_us)
+        took = wall() - began
+        self._pace.ran(clock.now_us)
+        if not self._job.recording:
+            packets = max(1, (clock.now_us - from_us) // PACKET_US)
+            self._pace.took(took / packets, packets)
+        if took > _CHUNK_SECONDS:
+            self._packets_at_once = max(1, self._packets_at_once // 2)
+        else:
+            self._packets_at_once = min(_MOST_PACKETS, self._packets_at_once * 2)
+
+    def _stop_us(self) -> int:
+        return 1 << 62 if self._run_until_us is None else self._run_until_us
+
+    def _pause(self) -> None:
+        self._pace.paused, self._run_until_us = True, None
+        self.tell()
+
+    # -- what comes from outside ----------------------------------------------------------------------------------
+
+    def _hear_commands(self) -> bool:
+        """Carry out what has come; answers False when nobody is there any more."""
+        heard = False
+        try:
+            while self._connection.poll():
+                command = self._connection.recv()
+                if isinstance(command, Quit):
+                    return False
+                self._carry_out(command)
+                heard = True
+        except (EOFError, ConnectionError):
+            return False
+        if heard and self._pace.paused:
+            self.tell(dict(self._run.hal_data.leaves()))
+        return True
+
+    def _carry_out(self, command: object) -> None:
+        match command:
+            case Run():
+                clock = self._run.clock
+                self._run_until_us = command.until_us
+                if command.packets is not None:
+                    self._run_until_us = clock.next_packet_us + (command.packets - 1) * PACKET_US
+                self._pace.paused = False
+                self._pace.begin(clock.now_us)
+            case Pause():
+                self._pause()
+            case Speed():
+                self._pace.speed = command.factor
+                self._pace.begin(self._run.clock.now_us)
+            case ChooseMode():
+                self._station.choose(command)
+            case Enable():
+                if note := self._station.enable(command):
+                    self._notes.append(note)
+            case EmergencyStop():
+                self._station.emergency_stop(command)
+            case Practice():
+                self._station.practise(command)
+            case Write():
+                for target, value in command.writes.items():
+                    self._put(target, value)
+
+    def _put(self, target: str, value: Any) -> None:
+        try:
+            self._station.put(target, value)
+        except (PyfrcError, TypeError, ValueError, LookupError) as wrong:
+            self._notes.append(f"{target} = {value!r}: {wrong}")
+
+    def _write(self, target: str, value: Any) -> None:
+        self._targets.write(target, value, self._run.clock.now_us)
+
+    def _exchange(self) -> None:
+        if self._served is not None:
+            self._served.exchange()
+
+    # -- what is told ---------------------------------------------------------------------------------------------
+
+    def tell(self, base: dict[str, Any] | None = None) -> None:
+        """Tell what has changed.
+
+        :param base: all values, where those told until now are not what this goes on from
+        """
+        run, pace = self._run, self._pace
+        if not self._job.recording and base is None:
+            self._trace.look(run.clock.now)
+        steps = () if self._recorder is None else self._recorder.steps_from(max(0, self._steps_told - 2))
+        drawings, vision = self._renderer.drawings(), self._targets_seen()
+        update = Update(
+            time_us=run.clock.now_us,
+            mode=modes.mode_name(),
+            station=self._station.state,
+            paused=pace.paused,
+            speed=pace.speed,
+            reached=pace.reached,
+            loop_seconds=pace.loop_seconds,
+            worst_loop_seconds=pace.worst_loop_seconds,
+            overruns=pace.overruns,
+            robot=self._robot_pose(),
+            base=base,
+            lines=tuple(self._lines),
+            trail=tuple(self._trail),
+            distance=self._distance,
+            mode_seconds={mode: packets * PACKET_US / 1_000_000 for mode, packets in self._mode_packets.items()},
+            steps_from=max(0, self._steps_told - 2),
+            steps=steps,
+            drawings=None if drawings == self._drawings else drawings,
+            targets=None if vision == self._vision else vision,
+            choosers=self._choosers.changed(),
+            notes=tuple(self._notes),
+        )
+        self._connection.send(update)
+        self._told_at = wall()
+        self._drawings, self._vision = drawings, vision
+        self._steps_told = update.steps_from + len(steps)
+        self._lines.clear()
+        self._trail.clear()
+        self._notes.clear()
+
+    @property
+    def _controller(self) -> PhysicsInterface | None:
+        return getattr(self._run.physics, "controller", None)
+
+    def _robot_pose(self) -> Pose | None:
+        controller = self._controller
+        return None if controller is None else Pose(*controller.get_position())
+
+    def _packet_begins(self, now: float) -> None:
+        self._packet_began = wall()
+
+    def _packet_is_over(self, now: float) -> None:
+        # Measured here, what recording costs does not count as the robot's.
+        self._pace.took(wall() - self._packet_began)
+        if self._tracing:
+            self._trace.look(now)
+
+    def _follow(self) -> None:
+        """Called for every second packet: where the robot has gone, in which mode."""
+        if not self._run.alive:
+            raise Ended
+        self._mode_packets[modes.mode_name()] += _FOLLOW_PACKETS
+        self._mark_position()
+
+    def _mark_position(self) -> None:
+        controller = self._controller
+        if controller is None:
+            return
+        x, y, _ = controller.get_position()
+        if self._at is not None:
+            self._distance += math.dist(self._at, (x, y))
+        self._at = (x, y)
+        end_x, end_y = self._trail_end
+        if not abs(x - end_x) + abs(y - end_y) < _TRAIL_STEP:
+            self._trail_end = self._at
+            self._trail.append(self._at)
+
+    def _targets_seen(self) -> tuple[Target, ...]:
+        controller = self._controller
+        if controller is None:
+            return ()
+        in_view = controller.vision_targets_in_view
+        return tuple(Target(each.x, each.y, each in in_view) for each in controller.vision_targets)

@@ -1,0 +1,119 @@
+"""`pyfrc sim`: a simulation, its front end, and what is kept of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import UsageError
+from ..project import Project
+from ..runtime.scripts.script import load_script
+from .extensions import WINDOW
+from .network import NT4_PORT
+from .options import SimOptions
+from .simulation import Simulation
+from .ui.choose import default_name, window
+from .ui.headless import Headless, HeadlessMode
+from .watch import watching
+
+
+@dataclass(frozen=True)
+class SimRequest:
+    """What the user asks for.
+
+    :param ui: the front end; None: a window, where there can be one
+    :param mode: what a headless simulation puts the robot through
+    :param seconds: for how long, in robot time; likewise `start_at`
+    :param speed: robot seconds a second; None: real time, or as fast as it goes where nobody watches
+    :param nt_port: None: the usual one where somebody may look; 0: none
+    """
+
+    ui: str | None = None
+    mode: HeadlessMode | None = None
+    seconds: float | None = None
+    script: Path | None = None
+    start_at: float = 0.0
+    speed: float | None = None
+    paused: bool = False
+    start_position: str | None = None
+    watch: bool = False
+    record: Path | None = None
+    wpilog: Path | None = None
+    picture: Path | None = None
+    nt_port: int | None = None
+    extensions: tuple[str, ...] = ()
+
+
+def simulate(project: Project, request: SimRequest, say: Callable[[str], object]) -> int:
+    """Simulate the project's robot as the user asks; answers the exit code.
+
+    :param say: prints
+    """
+    ui = request.ui
+    if ui is None:
+        ui, why = default_name()
+        if why:
+            say(f"No window: {why}. This is --ui none.\n")
+    if request.mode is not None and ui != "none":
+        raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
+    headless = Headless(say, request.mode, request.seconds) if ui == "none" else None
+    front_end = headless or window(ui)
+    # Nobody watches what ends by itself.
+    unattended = headless is not None and any(
+        each is not None for each in (request.mode, request.seconds, request.script)
+    )
+    if request.picture is not None:
+        from .picture import see_that_pictures_can_be_drawn
+
+        see_that_pictures_can_be_drawn(request.picture)
+    port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
+    options = SimOptions(
+        speed=request.speed if request.speed is not None else 0.0 if unattended else 1.0,
+        paused=request.paused or headless is not None,
+        script=None if request.script is None else load_script(request.script),
+        start_at=request.start_at,
+        run_until=request.seconds,
+        recording=headless is None or request.record is not None or request.watch,
+        nt_port=port or None,
+        wpilog=request.wpilog,
+        extensions=(*request.extensions, WINDOW) if ui == "wpilib" else request.extensions,
+        start_position=request.start_position,
+    )
+    simulation = Simulation(project, options)
+    with ExitStack() as closing:
+        if request.watch:
+            closing.enter_context(watching(simulation))
+        try:
+            code = front_end.run(simulation)
+        except KeyboardInterrupt:  # in the terminal: another way to close a window
+            simulation.close()
+            code = 0
+    if request.record is not None:
+        for file in simulation.save_all(request.record):
+            say(f"wrote {file}\n")
+    if request.wpilog is not None:
+        say(f"wrote {request.wpilog}\n")
+    if request.picture is not None and simulation.snapshot is not None:
+        from .picture import draw_picture
+
+        draw_picture(simulation.snapshot.scene, request.picture, simulation.status.former_trail)
+        say(f"wrote {request.picture}\n")
+    return code
+
+
+def draw_script(project: Project, script: Path, picture: Path, until: float | None = None) -> None:
+    """Draw the way that the robot drives when it is told what a script says.
+
+    :param until: an earlier end, in seconds of robot time
+    """
+    from .picture import draw_picture, see_that_pictures_can_be_drawn
+
+    see_that_pictures_can_be_drawn(picture)
+    options = SimOptions(speed=0, paused=True, script=load_script(script), recording=False)
+    simulation = Simulation(project, options)
+    headless = Headless(lambda text: None, seconds=until)
+    headless.run(simulation)
+    if simulation.snapshot is not None:
+        draw_picture(simulation.snapshot.scene, picture)

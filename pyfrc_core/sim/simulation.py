@@ -1,0 +1,401 @@
+"""A simulation session: owns the process that the robot lives in, and knows no window."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from ..errors import PyfrcError, UsageError
+from ..project import Project
+from ..runtime.clock import PACKET_US, to_us
+from ..runtime.own_process import explain_end
+from ..runtime.scripts.script import InputScript, Step
+from .assembly import Assembly
+from .commands import (
+    ChooseMode,
+    ChosenMode,
+    Command,
+    EmergencyStop,
+    Enable,
+    Pause,
+    Practice,
+    Run,
+    Speed,
+    Write,
+    chosen,
+)
+from .field import field_of, robot_at, start_named
+from .messages import Failed, Job, Message, Ready, Update
+from .options import SimOptions, check_speed
+from .processes import RobotProcesses
+from .recording import Recording
+from .scene import Pose, Tag
+from .snapshot import Failure, Snapshot, Status
+
+#: So much of what a robot has printed is kept for whoever asks for it, in characters.
+_MOST_OUTPUT = 200_000
+#: A robot not heard of for so long does not respond, in wall seconds.
+_SILENCE = 1.0
+
+
+class Simulation:
+    """A robot that a person, a script or a dashboard can drive.
+
+    Everything may be called at any time, from any thread: what makes no sense then does nothing, or is answered in
+    `Status.note`. Only `close` and `wait_for` wait for anything. See `Snapshot` and `Status` for what there is to see.
+
+    :raises SettingsError: when ``sim/config.json`` is not what it may be
+    :raises UsageError: when an option cannot be
+    """
+
+    def __init__(self, project: Project, options: SimOptions | None = None) -> None:
+        self.options = options or SimOptions()
+        self.options.check()
+        self.project = project
+        self.field = field_of(project)
+        self._changed = threading.Condition()
+        self._status = Status(speed=self.options.speed)
+        self._snapshot: Snapshot | None = None
+        self._recording = Recording(self._first_script())
+        self._older: list[Recording] = []
+        self._heard = time.monotonic()
+        self._launch = 0
+        self._tags: tuple[Tag, ...] | None = None
+        self._assembly = Assembly()
+        self._output = ""
+        self._processes: RobotProcesses | None = None
+
+    # -- what there is to see -------------------------------------------------------------------------------------
+
+    @property
+    def snapshot(self) -> Snapshot | None:
+        """The robot as it was last heard of; None before the first time."""
+        return self._snapshot
+
+    @property
+    def status(self) -> Status:
+        """How the simulation goes."""
+        status = self._status
+        if status.state == "running" and time.monotonic() - self._heard > _SILENCE:
+            return replace(status, responding=False)
+        return status
+
+    @property
+    def recordings(self) -> tuple[InputScript, ...]:
+        """What was recorded until time was turned back, or the robot restarted; the latest first."""
+        return tuple(each.script() for each in self._older)
+
+    def take_output(self) -> str:
+        """What the robot has printed since this was last asked."""
+        with self._changed:
+            output, self._output = self._output, ""
+        return output
+
+    def wait_for(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
+        """Wait until this is so; answers whether it is.
+
+        :param condition: asked whenever something has changed
+        :param timeout: in wall seconds
+        """
+        with self._changed:
+            return self._changed.wait_for(condition, timeout)
+
+    # -- beginning and end ----------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Start the robot."""
+        if self._processes is None:
+            self._processes = RobotProcesses(self._on_message, self._on_exit, self._on_output, self.options.fork)
+            options = self.options
+            until = None if options.run_until is None else to_us(options.run_until)
+            self._begin(self._recording, to_us(options.start_at), options.paused, until)
+            image = self.project.sim_config.field.image
+            if image is not None and self.field.image is None:
+                self._note(f"sim/config.json: pyfrc.field.image: there is no file {image!r} in sim/. Correct the path.")
+
+    def close(self) -> None:
+        """End the robot's process, whatever it does."""
+        with self._changed:
+            self._status = replace(self._status, state="closed")
+            self._changed.notify_all()
+        if self._processes is not None:
+            self._processes.close()
+
+    def __enter__(self) -> Simulation:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self.close()
+
+    # -- time -----------------------------------------------------------------------------------------------------
+
+    def resume(self) -> None:
+        """Let time go on."""
+        self._send(Run())
+
+    def pause(self) -> None:
+        """Let time stand still."""
+        self._send(Pause())
+
+    def step(self, packets: int = 1) -> None:
+        """Let so many packets' time pass, 0.02 s each, then pause."""
+        self._send(Run(packets=max(1, packets)))
+
+    def run_for(self, seconds: float) -> None:
+        """Let so many seconds of robot time pass, then pause."""
+        self.step(round(to_us(seconds) / PACKET_US))
+
+    def run_until(self, seconds: float) -> None:
+        """Pause when robot time gets there."""
+        self._send(Run(until_us=to_us(seconds)))
+
+    def set_speed(self, factor: float) -> None:
+        """Robot seconds a second: 1 is real time, 0.1 slow motion, 0 as fast as it goes."""
+        check_speed(factor)
+        self._send(Speed(factor))
+
+    def rewind(self, seconds: float) -> None:
+        """Go back to a moment, and go on from there. What came after it is kept among `recordings`.
+
+        A robot that has failed can be brought back to before it did.
+        """
+        if not self.options.recording:
+            self._note("There is no way back: this simulation is not recorded.")
+            return
+        with self._changed:
+            to = max(0, min(to_us(seconds), self._recording.length_us)) // PACKET_US * PACKET_US
+            self._keep_and_begin(self._recording.until(to), to, paused=self._status.state != "running")
+
+    def restart(self) -> None:
+        """Start the robot anew, at time 0. What was recorded is kept among `recordings`."""
+        with self._changed:
+            paused = self._status.state == "paused"
+            self._keep_and_begin(Recording(self._first_script()), to_us(self.options.start_at), paused)
+
+    def reload(self) -> None:
+        """Bring the robot, with its code as it is now, to this moment through the same inputs, and go on from there."""
+        if not self.options.recording:
+            self.restart()
+            return
+        with self._changed:
+            project = replace(self.project)
+            try:
+                self.field = field_of(project)
+            except PyfrcError as wrong:
+                self._note(str(wrong))
+                return
+            self.project = project
+            again = self._recording.again()
+            to = max([self._recording.length_us, *(step.at_us for step in again.past.steps[-1:])])
+            former = self._assembly.trail
+            self._keep_and_begin(again, to, paused=self._status.state == "paused", keep=False)
+            self._status = replace(self._status, former_trail=former)
+
+    # -- the driver station ---------------------------------------------------------------------------------------
+
+    def choose_mode(self, mode: ChosenMode) -> None:
+        """Disable the robot, and choose what it does when it is enabled."""
+        self._send(ChooseMode(mode))
+
+    def enable(self) -> None:
+        """Enable the robot in the chosen mode."""
+        self._send(Enable(True))
+
+    def disable(self) -> None:
+        """Disable the robot."""
+        self._send(Enable(False))
+
+    def emergency_stop(self) -> None:
+        """Stop the robot; it cannot be enabled again until it is restarted."""
+        self._send(EmergencyStop())
+
+    def practice(self) -> None:
+        """Begin a practice match, with the periods under ``[tool.pyfrc.match]``."""
+        self._send(Practice())
+
+    def set_alliance(self, station: str) -> None:
+        """Choose an alliance station: ``red1`` to ``red3``, ``blue1`` to ``blue3``."""
+        self.write({"alliance_station": station})
+
+    def set_game_message(self, message: str) -> None:
+        """Choose what the field sends to all robots."""
+        self.write({"event.game_specific_message": message})
+
+    def choose(self, chooser: str, option: str) -> None:
+        """Choose one of a `Chooser`'s options, by the names of both."""
+        self.write({chosen(chooser): option})
+
+    # -- inputs ---------------------------------------------------------------------------------------------------
+
+    def write(self, values: Mapping[str, Any]) -> None:
+        """Write inputs by target, as input scripts do: ``{"dio[3].value": True, "nt:/SmartDashboard/kP": 0.1}``."""
+        self._send(Write(dict(values)))
+
+    def set_axis(self, stick: int, axis: int, value: float) -> None:
+        """Move a joystick's axis, from -1 to 1."""
+        self.write({f"joysticks[{stick}].axes[{axis}]": value})
+
+    def set_button(self, stick: int, button: int, pressed: bool) -> None:
+        """Press or release a joystick's button; they count from 1."""
+        self.write({f"joysticks[{stick}].buttons[{button}]": pressed})
+
+    def set_pov(self, stick: int, pov: int, angle: int) -> None:
+        """Press a joystick's POV: degrees clockwise from up; -1 releases it."""
+        self.write({f"joysticks[{stick}].povs[{pov}]": angle})
+
+    def plug(self, stick: int, plugged_in: bool) -> None:
+        """Plug a joystick in, or out."""
+        self.write({f"joysticks[{stick}].plugged": plugged_in})
+
+    def place(self, x: float, y: float, degrees: float) -> None:
+        """Put the robot elsewhere on the field: feet and degrees, as in ``sim/config.json``."""
+        self.write(robot_at(self.field, Pose(x, y, math.radians(degrees))))
+
+    def reset_position(self, start: str | None = None) -> None:
+        """Put the robot where it started, or on another of the field's `starts`."""
+        self.write(self._at_start(start or self.options.start_position))
+
+    # -- recording ------------------------------------------------------------------------------------------------
+
+    def script(self) -> InputScript:
+        """What the robot has been told from its start until now, and the hash of what it has done."""
+        with self._changed:
+            return self._recording.script()
+
+    def save(self, file: Path) -> None:
+        """Write the recording: an input script, and a trace beside it.
+
+        :raises UsageError: when this simulation is not recorded
+        """
+        if not self.options.recording:
+            raise UsageError("this simulation is not recorded")
+        with self._changed:
+            self._recording.save(file)
+
+    def save_all(self, file: Path) -> list[Path]:
+        """Write this recording, and the older ones beside it: ``NAME-1.jsonl`` is what time was first turned back from.
+
+        :returns: the scripts' files
+        """
+        self.save(file)
+        files = [file]
+        with self._changed:
+            for number, older in enumerate(reversed(self._older), 1):
+                files.append(file.with_name(f"{file.stem}-{number}{file.suffix}"))
+                older.save(files[-1])
+        return files
+
+    # -- the robot's process --------------------------------------------------------------------------------------
+
+    def _keep_and_begin(self, recording: Recording, to_us: int, paused: bool, keep: bool = True) -> None:
+        if self._processes is None or self._status.state == "closed":
+            return
+        if keep and self._recording.length_us > to_us:
+            self._older.insert(0, self._recording)
+        self._status = replace(self._status, former_trail=self._assembly.trail if keep else ())
+        self._begin(recording, to_us, paused, None)
+
+    def _begin(self, recording: Recording, forward_to_us: int, paused: bool, until_us: int | None) -> None:
+        assert self._processes is not None
+        options = self.options
+        job = Job(
+            project=replace(self.project),
+            script=recording.past,
+            forward_to_us=forward_to_us,
+            run_until_us=until_us,
+            paused=paused,
+            speed=self._status.speed,
+            recording=options.recording,
+            station=recording.station,
+            nt_port=options.nt_port,
+            wpilog=options.wpilog,
+            extensions=options.extensions,
+            tags=self._tags,
+        )
+        with self._changed:
+            self._recording = recording
+            self._assembly = Assembly()
+            self._heard = time.monotonic()
+            self._status = replace(self._status, state="starting", failure=None, note="")
+            self._launch = self._processes.launch(job)
+            self._changed.notify_all()
+
+    def _send(self, command: Command) -> None:
+        if self._processes is not None:
+            self._processes.send(command)
+
+    def _on_message(self, launch: int, message: Message) -> None:
+        with self._changed:
+            if launch != self._launch or self._status.state == "closed":
+                return
+            self._heard = time.monotonic()
+            if isinstance(message, Update):
+                self._take_in(message)
+            elif isinstance(message, Ready):
+                self._tags = message.tags
+                self.field = replace(self.field, tags=message.tags)
+                self._status = replace(self._status, network_address=message.network_address)
+                assert self._processes is not None
+                self._processes.preload(message.libraries)
+            elif isinstance(message, Failed):
+                self._fail(message.failure)
+            else:
+                self._status = replace(self._status, state="closed")
+            self._changed.notify_all()
+
+    def _on_exit(self, launch: int, status: int, words: str) -> None:
+        with self._changed:
+            if launch == self._launch and self._status.state not in ("failed", "closed"):
+                text = explain_end(words, status, self.project.files, "while it was simulated")
+                headline, _, details = text.partition("\n\n")
+                self._fail(Failure(headline, details, self._recording.length_us / 1_000_000))
+                self._changed.notify_all()
+
+    def _on_output(self, text: str) -> None:
+        with self._changed:
+            self._output = (self._output + text)[-_MOST_OUTPUT:]
+            self._changed.notify_all()
+
+    def _fail(self, failure: Failure) -> None:
+        self._status = replace(self._status, state="failed", failure=failure, reached=0.0)
+
+    def _note(self, note: str) -> None:
+        with self._changed:
+            self._status = replace(self._status, note=note)
+            self._changed.notify_all()
+
+    def _take_in(self, update: Update) -> None:
+        if self.options.recording:
+            self._recording.hear(update)
+        else:
+            self._recording.length_us = update.time_us
+        self._snapshot = self._assembly.snapshot_after(update, self.field)
+        self._status = replace(
+            self._status,
+            state="paused" if update.paused else "running",
+            speed=update.speed,
+            reached=update.reached,
+            loop_seconds=update.loop_seconds,
+            worst_loop_seconds=update.worst_loop_seconds,
+            overruns=update.overruns,
+            length=self._recording.length_us / 1_000_000,
+            note=" ".join(update.notes) or self._status.note,
+        )
+
+    def _first_script(self) -> InputScript:
+        script = self.options.script or InputScript((), 0, robot=self.project.main_file.name)
+        if self.options.start_position is not None:
+            script = replace(script, steps=(Step(0, self._at_start(self.options.start_position)), *script.steps))
+        return script
+
+    def _at_start(self, name: str | None) -> dict[str, Any]:
+        return robot_at(self.field, start_named(self.field, name))

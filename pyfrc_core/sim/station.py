@@ -1,0 +1,129 @@
+"""The driver station: modes, a practice match, and which joystick data are delivered in which mode."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from ..config.settings import MatchSettings
+from ..config.sim import FieldConfig
+from ..hal import modes
+from ..runtime.match import MatchPeriods
+from ..runtime.robot import RobotRun
+from .commands import ChooseMode, EmergencyStop, Enable, Practice
+from .messages import StationState
+
+_CONTROL = re.compile(r"joysticks\[[0-5]\]\.(axes|buttons|povs)\[\d+\]")
+_NEUTRAL = {"axes": 0.0, "buttons": False, "povs": modes.NOT_PRESSED}
+
+E_STOP = "control.eStop"
+
+
+class Station:
+    """The driver station of one run.
+
+    :param write: writes a target, as in input scripts
+    :param state: how it is to begin with
+    """
+
+    def __init__(
+        self,
+        run: RobotRun,
+        match: MatchSettings,
+        field: FieldConfig,
+        write: Callable[[str, Any], object],
+        state: StationState,
+    ) -> None:
+        self._run = run
+        self._periods = MatchPeriods(match)
+        self._field = field
+        self._write = write
+        self.state = state
+        #: Whether match time is this class's: for one packet longer than the practice match.
+        self._keeps_time = state.practice_since_us is not None
+
+    def take_over(self) -> None:
+        """From the next packet on, have the say over the match: until now, the script before has counted down."""
+        self._run.clock.before_packet.append(self._on_packet)
+
+    def choose(self, command: ChooseMode) -> None:
+        """Disabled, and ready for a mode."""
+        self._end_practice()
+        self._enter({"teleop": "disabled"}.get(command.mode, f"disabled {command.mode}"))
+
+    def enable(self, command: Enable) -> str:
+        """Enable or disable; answers what the user should know, if anything."""
+        if not command.enabled:
+            self._disable()
+        elif self._run.hal_data.read(E_STOP):
+            return "The robot has been stopped in an emergency: restart it to enable it again."
+        elif modes.get_mode() == "disabled":
+            self._end_practice()
+            chosen = modes.mode_name().removeprefix("disabled").strip()
+            self._enter(chosen or "teleop")
+        return ""
+
+    def emergency_stop(self, command: EmergencyStop) -> None:
+        """Stop for good."""
+        self._disable()
+        self._write(E_STOP, True)
+
+    def practise(self, command: Practice) -> None:
+        """Begin a practice match, with the next packet."""
+        self.state = replace(self.state, practice_since_us=self._run.clock.next_packet_us)
+
+    def put(self, target: str, value: Any) -> None:
+        """Write an input; a joystick's control, when its data are delivered."""
+        control = _CONTROL.fullmatch(target)
+        if control is None:
+            self._write(target, value)
+            return
+        if self._delivers(modes.mode_name()):
+            self._write(target, value)
+        # Kept when it could be written, or will be found out when it is.
+        self.state = replace(self.state, sticks={**self.state.sticks, target: value})
+
+    def _disable(self) -> None:
+        self._end_practice()
+        mode = modes.mode_name()
+        if not mode.startswith("disabled"):
+            self._enter("disabled" if mode == "teleop" else f"disabled {mode}")
+
+    def _enter(self, mode: str) -> None:
+        before, after = self._delivers(modes.mode_name()), self._delivers(mode)
+        self._write("mode", mode)
+        if before != after:
+            for target, value in self.state.sticks.items():
+                control = _CONTROL.fullmatch(target)
+                if control is not None:
+                    self._write(target, value if after else _NEUTRAL[control[1]])
+
+    def _delivers(self, mode: str) -> bool:
+        if mode.startswith("disabled"):
+            return self._field.disabled_joysticks
+        return mode != "autonomous" or self._field.auto_joysticks
+
+    def _end_practice(self) -> None:
+        if self.state.practice_since_us is not None:
+            self.state = replace(self.state, practice_since_us=None)
+
+    def _on_packet(self, now: float) -> None:
+        since = self.state.practice_since_us
+        if since is None and not self._keeps_time:
+            return
+        self._keeps_time = since is not None
+        recorder = self._run.recorder
+        if recorder is not None:
+            recorder.begin_outside(stepping=True)
+        period = None if since is None else self._periods.at(self._run.clock.now_us - since)
+        mode, left = period or ("disabled", 0.0)
+        if since is not None:
+            if mode != modes.mode_name():
+                self._enter(mode)
+            modes.set_match_time(left)
+        if period is None:
+            self._end_practice()
+        if recorder is not None:
+            recorder.end_outside(stepping=True)

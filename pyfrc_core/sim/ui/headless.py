@@ -1,0 +1,141 @@
+"""The front end without a window: for continuous integration, for dashboards, for a look at what a robot does."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from ...physics.pose import METRES_PER_FOOT
+from ...runtime.clock import to_us
+from ...runtime.match import MatchPeriods
+from ..commands import ChosenMode
+from ..simulation import Simulation
+from ..snapshot import Failure, Snapshot
+from . import FrontEnd
+
+#: What the robot may be put through. ``auto`` is autonomous.
+HeadlessMode = Literal["practice", "auto", "teleop", "test", "disabled"]
+
+#: How long one of the modes lasts when nobody says, in seconds.
+DEFAULT_SECONDS = 15.0
+
+_CHOSEN: dict[str, ChosenMode] = {"auto": "autonomous", "teleop": "teleop", "test": "test"}
+#: What the robot prints is passed on as often, in wall seconds.
+_PRINT_SECONDS = 0.25
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What came of a simulation.
+
+    :param snapshot: the robot at the end; None when it was never seen
+    :param speed: robot seconds a wall second, from when the robot was there
+    """
+
+    snapshot: Snapshot | None
+    failure: Failure | None
+    speed: float
+    overruns: int
+
+    def lines(self) -> list[str]:
+        """For people to read."""
+        found = []
+        snapshot = self.snapshot
+        if snapshot is not None:
+            speed = f", at {self.speed:.0f} times real time" if self.speed else ""
+            found.append(f"simulated {snapshot.time:.2f} s of robot time{speed}")
+            times = (f"{mode} {seconds:.1f} s" for mode, seconds in snapshot.mode_seconds.items())
+            found.append(f"modes: {', '.join(times) or 'none'}")
+            if snapshot.scene.robot is None:
+                found.append("distance driven: not known, there is no physics.py (pyfrc create-physics writes one)")
+            else:
+                metres = snapshot.distance * METRES_PER_FOOT
+                found.append(f"distance driven: {snapshot.distance:.1f} ft ({metres:.1f} m)")
+            found.append(f"packets that took longer than 20 ms: {self.overruns}")
+        if self.failure is not None:
+            found.append(f"failed at {self.failure.time:.2f} s: {self.failure.headline}")
+        return found
+
+
+class Headless(FrontEnd):
+    """Runs the robot for some time and sums up.
+
+    :param say: prints
+    :param mode: what to put the robot through; None: only what comes from scripts and dashboards
+    :param seconds: for how long; None: until it is interrupted, or for as long as the script or the match takes
+    """
+
+    def __init__(
+        self, say: Callable[[str], object], mode: HeadlessMode | None = None, seconds: float | None = None
+    ) -> None:
+        self._say = say
+        self._mode = mode
+        self._seconds = seconds
+        self.summary: Summary | None = None
+
+    def run(self, simulation: Simulation) -> int:
+        """The exit code is 1 when the robot has failed."""
+        end = self._end(simulation)
+        interrupted = False
+        with simulation:
+            try:
+                speed = self._drive(simulation, end)
+            except KeyboardInterrupt:
+                interrupted, speed = True, 0.0
+            status = simulation.status
+            self.summary = Summary(simulation.snapshot, status.failure, speed, status.overruns)
+        self._print(simulation)
+        for line in self.summary.lines():
+            self._say(f"{line}\n")
+        if interrupted and end is not None:
+            self._say("interrupted\n")
+            return 2
+        return 1 if status.failure is not None else 0
+
+    def _drive(self, simulation: Simulation, end: float | None) -> float:
+        """Let the robot run until it is over; answers the speed that was reached."""
+        if self._mode == "practice":
+            simulation.practice()
+        elif self._mode is not None and self._mode != "disabled":
+            simulation.choose_mode(_CHOSEN[self._mode])
+            simulation.enable()
+        if end is None:
+            simulation.resume()
+        else:
+            simulation.run_until(end)
+        self._wait(simulation, lambda: simulation.status.state != "starting")
+        began, from_us = time.monotonic(), self._time_us(simulation)
+
+        def over() -> bool:
+            state = simulation.status.state
+            return state == "failed" or (
+                state == "paused" and end is not None and self._time_us(simulation) >= to_us(end)
+            )
+
+        self._wait(simulation, over)
+        return (self._time_us(simulation) - from_us) / 1_000_000 / (time.monotonic() - began)
+
+    def _wait(self, simulation: Simulation, condition: Callable[[], bool]) -> None:
+        while not simulation.wait_for(condition, timeout=_PRINT_SECONDS):
+            self._print(simulation)
+
+    @staticmethod
+    def _time_us(simulation: Simulation) -> int:
+        return 0 if simulation.snapshot is None else to_us(simulation.snapshot.time)
+
+    def _end(self, simulation: Simulation) -> float | None:
+        script = simulation.options.script
+        if self._seconds is not None:
+            return self._seconds
+        if script is not None:
+            return (script.end_us - 1) / 1_000_000
+        if self._mode == "practice":
+            return (MatchPeriods(simulation.project.settings.match).length_us) / 1_000_000 + 0.5
+        return None if self._mode is None else DEFAULT_SECONDS
+
+    def _print(self, simulation: Simulation) -> None:
+        output = simulation.take_output()
+        if output:
+            self._say(output)

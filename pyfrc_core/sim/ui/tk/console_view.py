@@ -1,0 +1,94 @@
+"""Under the field: what the robot prints; and, when its program has failed, why."""
+
+from __future__ import annotations
+
+import tkinter as tk
+from tkinter import ttk
+from typing import TYPE_CHECKING
+
+from ...snapshot import Failure
+from . import theme as colors
+from .theme import Theme
+from .wording import plain_output
+
+if TYPE_CHECKING:
+    from ...simulation import Simulation
+
+#: So many lines stay to be seen.
+_MOST_LINES = 2000
+
+
+class ConsoleView:
+    """The robot's output, line by line."""
+
+    def __init__(self, parent: tk.Misc, theme: Theme, simulation: Simulation) -> None:
+        px = theme.px
+        self._simulation = simulation
+        self._failure: Failure | None = None
+        self.frame = frame = colors.card(parent, theme)
+        self._banner = banner = tk.Frame(frame, background="#fdecec")
+        self.restart = ttk.Button(
+            banner, text="Restart robot", style="Stop.TButton", command=simulation.restart, takefocus=False
+        )
+        self.restart.pack(side="right", padx=px(10), pady=px(6))
+        self.headline = tk.Label(
+            banner, background="#fdecec", foreground=colors.RED, font=theme.bold, anchor="w", justify="left"
+        )
+        self.headline.pack(side="left", fill="x", expand=True, padx=px(10))
+        self.headline.bind("<Configure>", lambda event: self.headline.configure(wraplength=event.width))
+        self._body = body = tk.Frame(frame, background=colors.CARD)
+        body.pack(side="bottom", fill="both", expand=True)
+        self.text = text = tk.Text(
+            body,
+            font=theme.mono,
+            background=colors.CARD,
+            foreground=colors.TEXT,
+            relief="flat",
+            highlightthickness=0,
+            borderwidth=0,
+            wrap="word",
+            height=4,
+            width=20,
+            padx=px(10),
+            pady=px(6),
+            state="disabled",
+            takefocus=False,
+            cursor="arrow",
+        )
+        text.tag_configure("trace", foreground=colors.RED)
+        text.tag_configure("hint", foreground=colors.MUTED)
+        scrollbar = ttk.Scrollbar(body, command=text.yview)
+        text.configure(yscrollcommand=scrollbar.set)
+        scrollbar.pack(side="right", fill="y")
+        text.pack(side="left", fill="both", expand=True)
+        self._empty = True
+        self._append("What the robot prints appears here.\n", "hint")
+        self._empty = True
+
+    def show(self, failure: Failure | None) -> None:
+        """Show what has been printed since, and what has happened."""
+        if output := self._simulation.take_output():
+            self._append(plain_output(output))
+        if failure is self._failure:
+            return
+        self._failure = failure
+        if failure is None:
+            self._banner.pack_forget()
+            return
+        self.headline.configure(text=f"{failure.headline}\nafter {failure.time:.2f} s")
+        self._banner.pack(side="top", fill="x", before=self._body)
+        self._append(f"\n{failure.details or failure.headline}\n", "trace")
+
+    def _append(self, new: str, tag: str = "") -> None:
+        text = self.text
+        follows = float(text.yview()[1]) >= 0.999  # else the user is reading something above
+        text.configure(state="normal")
+        if self._empty:
+            text.delete("1.0", "end")
+            self._empty = False
+        text.insert("end", new, tag)
+        if (lines := int(text.index("end-1c").partition(".")[0])) > _MOST_LINES:
+            text.delete("1.0", f"{lines - _MOST_LINES}.0")
+        text.configure(state="disabled")
+        if follows:
+            text.see("end")

@@ -1,0 +1,187 @@
+"""The device panels: a long canvas that can be scrolled, its inputs set by the mouse."""
+
+from __future__ import annotations
+
+import math
+import tkinter as tk
+from collections.abc import Callable
+from tkinter import ttk
+from typing import TYPE_CHECKING, Any
+
+from ...snapshot import Snapshot
+from . import theme as colors
+from .device_items import ITEMS, Item, Place
+from .devices import SETTABLE, DeviceRows, Row
+from .theme import Theme
+from .tooltip import Tooltip
+
+if TYPE_CHECKING:
+    from ....config.sim import SimConfig
+    from ...simulation import Simulation
+
+#: In the design's pixels: the whole width, and where labels end.
+WIDTH, _LABELS = 292, 122
+
+
+class DeviceView:
+    """Shows what the robot has made, as it makes it.
+
+    :param done: called when the user has typed a number, and keys are for driving again
+    """
+
+    def __init__(
+        self, parent: tk.Misc, theme: Theme, tooltip: Tooltip, simulation: Simulation, done: Callable[[], None]
+    ) -> None:
+        self._theme, self._tooltip, self._simulation, self._done = theme, tooltip, simulation, done
+        self.frame = frame = colors.card(parent, theme)
+        self.canvas = canvas = tk.Canvas(frame, background=colors.CARD, highlightthickness=0, width=theme.px(WIDTH))
+        scrollbar = ttk.Scrollbar(frame, command=canvas.yview)
+        canvas.configure(yscrollcommand=scrollbar.set, yscrollincrement=1)
+        canvas.pack(side="left", fill="both", expand=True)
+        scrollbar.pack(side="right", fill="y")
+        self.rows = DeviceRows(simulation.project.sim_config)
+        self.items: list[Item] = []
+        self._held: Item | None = None
+        self._editor: tk.Entry | None = None
+        self._hint = canvas.create_text(
+            theme.px(WIDTH) // 2,
+            theme.px(40),
+            text="Motors and sensors appear here\nas the robot makes them.",
+            justify="center",
+            font=theme.body,
+            fill=colors.MUTED,
+        )
+        self._bind()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Draw what has changed since the last one."""
+        values = snapshot.values
+        if self.rows.look(values):
+            self._make_items()
+        for item in self.items:
+            if item is not self._held:
+                item.look([values.get(path) for path in item.row.paths])
+
+    def relabel(self, config: SimConfig) -> None:
+        """Take other labels."""
+        self.rows = DeviceRows(config)
+
+    def center_of(self, row: Row) -> tuple[int, int]:
+        """Where a row is set by a click, in the canvas's pixels as it is scrolled now."""
+        item = next(item for item in self.items if item.row == row)
+        return item.place.right - self._theme.px(14), item.place.y - round(self.canvas.canvasy(0))
+
+    def _make_items(self) -> None:
+        canvas, px = self.canvas, self._theme.px
+        self._close_editor()
+        self._held = None
+        canvas.delete("all")
+        self.items = []
+        y, right = px(6), px(WIDTH - 10)
+        for panel in self.rows.panels:
+            y += px(4)
+            canvas.create_text(px(12), y + px(9), text=panel.title, anchor="w", font=self._theme.bold, fill=colors.TEXT)
+            canvas.create_line(px(12), y + px(20), right, y + px(20), fill=colors.BORDER)
+            y += px(24)
+            for row in panel.rows:
+                make = ITEMS[row.kind]
+                height = px(make.height)
+                place = Place(px(_LABELS), right, y + height // 2)
+                self.items.append(make(canvas, self._theme, row, place))
+                y += height
+            y += px(4)
+        canvas.configure(scrollregion=(0, 0, px(WIDTH), y + px(6)))
+
+    # -- the mouse ------------------------------------------------------------------------------------------------
+
+    def _bind(self) -> None:
+        canvas = self.canvas
+        canvas.bind("<Button-1>", self._press)
+        canvas.bind("<B1-Motion>", self._drag)
+        canvas.bind("<ButtonRelease-1>", self._release)
+        canvas.bind("<Motion>", self._rest)
+        canvas.bind("<Leave>", lambda event: self._tooltip.hide())
+        canvas.bind("<MouseWheel>", lambda event: self._scroll(-1 if event.delta > 0 else 1))
+        canvas.bind("<Button-4>", lambda event: self._scroll(-1))
+        canvas.bind("<Button-5>", lambda event: self._scroll(1))
+
+    def _scroll(self, way: int) -> None:
+        self._close_editor()
+        if self.canvas.yview() != (0.0, 1.0):
+            self.canvas.yview_scroll(way * self._theme.px(48), "units")
+
+    def _at(self, event: tk.Event[tk.Canvas]) -> Item | None:
+        y = self.canvas.canvasy(event.y)
+        half = self._theme.px(11)
+        return next((item for item in self.items if item.row.paths and abs(item.place.y - y) <= half), None)
+
+    def _rest(self, event: tk.Event[tk.Canvas]) -> None:
+        item = self._at(event)
+        self.canvas.configure(cursor="hand2" if item is not None and item.row.kind in SETTABLE else "")
+        self._tooltip.expect("" if item is None else item.row.tooltip, event.x_root, event.y_root)
+
+    def _press(self, event: tk.Event[tk.Canvas]) -> None:
+        self._tooltip.hide()
+        self._close_editor()
+        item = self._at(event)
+        snapshot = self._simulation.snapshot
+        if item is None or snapshot is None or item.row.kind not in SETTABLE:
+            return
+        value = snapshot.values.get(item.row.paths[0])
+        if item.row.kind == "switch":
+            self._simulation.write({item.row.paths[0]: not value})
+        elif item.row.kind == "number" or item.value_at(event.x) is None:
+            self._edit(item, value)
+        else:
+            self._held = item
+            self._drag(event)
+
+    def _drag(self, event: tk.Event[tk.Canvas]) -> None:
+        if self._held is not None:
+            value = self._held.value_at(min(event.x, self._theme.px(WIDTH - 70)))
+            self._held.look([value])
+            self._simulation.write({self._held.row.paths[0]: value})
+
+    def _release(self, event: tk.Event[tk.Canvas]) -> None:
+        self._held = None
+
+    # -- typing a number ------------------------------------------------------------------------------------------
+
+    def _edit(self, item: Item, value: Any) -> None:
+        px, place = self._theme.px, item.place
+        self._editor = editor = tk.Entry(
+            self.canvas,
+            font=self._theme.small,
+            justify="right",
+            width=9,
+            relief="flat",
+            highlightthickness=px(1),
+            highlightcolor=colors.ACCENT,
+        )
+        editor.insert(0, f"{value:g}" if isinstance(value, float) else str(value))
+        editor.select_range(0, "end")
+        self.canvas.create_window(place.right, place.y, anchor="e", window=editor, tags="editor")
+        editor.bind("<Return>", lambda event: self._set(item, editor.get()))
+        editor.bind("<KP_Enter>", lambda event: self._set(item, editor.get()))
+        editor.bind("<Escape>", lambda event: self._close_editor())
+        editor.focus_set()
+
+    def _set(self, item: Item, text: str) -> None:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            assert self._editor is not None
+            self._editor.configure(highlightcolor=colors.RED)
+            return
+        whole = item.row.decimals == 0 and item.row.kind == "number"
+        self._simulation.write({item.row.paths[0]: round(value) if whole else value})
+        self._close_editor()
+
+    def _close_editor(self) -> None:
+        if self._editor is not None:
+            editor, self._editor = self._editor, None
+            self.canvas.delete("editor")
+            editor.destroy()
+            self._done()

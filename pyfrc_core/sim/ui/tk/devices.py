@@ -1,0 +1,272 @@
+"""What the device panels show: rows made of a snapshot's values, without a window.
+
+Only what the robot has made is among the values, so there is a row for that and for nothing else. `DeviceRows` makes
+the rows anew when something came or went; between that, only the values at their paths change.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from ....hal.paths import parse_path
+
+if TYPE_CHECKING:
+    from ....config.sim import SimConfig
+
+#: How a row is shown. Outputs: ``meter`` (a bar from its range's middle, or from 0), ``lamp``, ``lamps``, ``relay``,
+#: ``bars``, ``leds``, ``text``. Inputs: ``switch``, ``slider`` and ``number``, which can be set.
+Kind = Literal["meter", "lamp", "lamps", "relay", "bars", "leds", "text", "switch", "slider", "number"]
+
+SETTABLE = frozenset({"switch", "slider", "number"})
+
+Values = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One device's line.
+
+    :param paths: of the values shown: one, a relay's two directions, or one for each of a module's lamps
+    :param low: the least that a meter or slider goes to; likewise `high`
+    :param tooltip: what it is, in words
+    """
+
+    kind: Kind
+    paths: tuple[str, ...]
+    label: str
+    low: float = 0.0
+    high: float = 1.0
+    decimals: int = 2
+    unit: str = ""
+    tooltip: str = ""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Devices of one kind."""
+
+    title: str
+    rows: tuple[Row, ...]
+
+
+class DeviceRows:
+    """The panels of one robot.
+
+    :param config: names its channels
+    """
+
+    def __init__(self, config: SimConfig) -> None:
+        self._config = config
+        self._shape: object = None
+        self.panels: tuple[Panel, ...] = ()
+
+    def look(self, values: Values) -> bool:
+        """Make the panels for these values; answers whether they are others than before."""
+        # A robot may use a channel as an input and later as an output.
+        shape = values.keys(), [value for path, value in values.items() if path.endswith(".is_input")]
+        if shape == self._shape:
+            return False
+        self._shape = frozenset(values), shape[1]
+        before, self.panels = self.panels, tuple(panels_of(values, self._config))
+        return self.panels != before
+
+
+def panels_of(values: Values, config: SimConfig) -> Iterator[Panel]:
+    """The panels that have rows, in the order in which they are shown."""
+    tree = _tree(values)
+    makers = {
+        "PWM": _pwm,
+        "Digital I/O": _dio,
+        "Analog inputs": _analog_in,
+        "Analog outputs": _analog_out,
+        "Relays": _relays,
+        "Pneumatics": _pneumatics,
+        "Encoders and counters": _encoders,
+        "Gyros": _gyros,
+        "CAN and SimDevices": _sim_devices,
+        "Power": _power,
+        "roboRIO": _roborio,
+        "Other values": _robot,
+        "Custom": _custom,
+    }
+    for title, make in makers.items():
+        if rows := tuple(make(tree, config)):
+            yield Panel(title, rows)
+
+
+def _tree(values: Values) -> dict[Any, Any]:
+    """The values by the segments of their paths."""
+    tree: dict[Any, Any] = {}
+    for path, value in values.items():
+        place = tree
+        try:
+            *parents, last = parse_path(path)
+        except ValueError:  # a key of the user's own that cannot be written as a path
+            continue
+        for segment in parents:
+            place = place.setdefault(segment, {})
+        place[last] = path, value
+    return tree
+
+
+def _named(channel: int | str, labels: Mapping[int, str]) -> str:
+    label = labels.get(channel, "") if isinstance(channel, int) else ""
+    return f"{channel}  {label}" if label else f"{channel}"
+
+
+def _channels(tree: dict[Any, Any], room: str) -> Iterator[tuple[int, dict[Any, Any]]]:
+    yield from sorted(tree.get(room, {}).items())
+
+
+def _pwm(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for channel, fields in _channels(tree, "pwm"):
+        if "value" in fields:
+            what = f"PWM {channel}: what the robot sends to the motor, from -1 to 1"
+            yield Row("meter", (fields["value"][0],), _named(channel, config.pwm), -1.0, 1.0, 2, "", what)
+    for channel, fields in _channels(tree, "d0_pwm"):
+        if "duty_cycle" in fields:
+            yield Row("meter", (fields["duty_cycle"][0],), f"{channel}  (DIO as PWM)", tooltip="Its duty cycle, 0 to 1")
+
+
+def _dio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for channel, fields in _channels(tree, "dio"):
+        if "value" not in fields:
+            continue
+        is_input = "is_input" in fields and fields["is_input"][1]
+        kind: Kind = "switch" if is_input else "lamp"
+        what = "an input: click to change it" if is_input else "an output of the robot"
+        yield Row(kind, (fields["value"][0],), _named(channel, config.dio), tooltip=f"DIO {channel}, {what}")
+    for channel, fields in _channels(tree, "duty_cycle"):
+        if "output" in fields:
+            what = "The duty cycle that the robot measures"
+            yield Row("slider", (fields["output"][0],), f"Duty cycle {channel}", tooltip=what)
+
+
+def _analog_in(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for channel, fields in _channels(tree, "analog_in"):
+        if "voltage" in fields:
+            what = f"Analog input {channel}: the voltage that the robot measures"
+            yield Row("slider", (fields["voltage"][0],), _named(channel, config.analog), 0.0, 5.0, 2, "V", what)
+
+
+def _analog_out(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for channel, fields in _channels(tree, "analog_out"):
+        if "voltage" in fields:
+            what = f"Analog output {channel}: the voltage that the robot puts out"
+            yield Row("meter", (fields["voltage"][0],), f"{channel}", 0.0, 5.0, 2, "V", what)
+
+
+def _relays(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for channel, fields in _channels(tree, "relay"):
+        if {"fwd", "rev"} <= fields.keys():
+            paths = fields["fwd"][0], fields["rev"][0]
+            yield Row("relay", paths, _named(channel, config.relay), tooltip=f"Relay {channel}: its two directions")
+
+
+def _pneumatics(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for room, name in (("pcm", "PCM"), ("ph", "PH")):
+        for module, solenoids in _channels(tree, room):
+            paths = tuple(fields["value"][0] for _, fields in sorted(solenoids.items()) if "value" in fields)
+            labels = ", ".join(f"{channel} {label}" for channel, label in sorted(config.solenoid.items()))
+            what = f"The solenoids of {name} {module}, from 0" + (f": {labels}" if labels else "")
+            yield Row("lamps", paths, f"{name} {module}", tooltip=what)
+            compressor = tree.get(f"{room}_compressor", {}).get(module, {})
+            if "on" in compressor:
+                yield Row(
+                    "lamp", (compressor["on"][0],), "   Compressor", tooltip=f"Of {name} {module}: whether it runs"
+                )
+            if "pressure_switch" in compressor:
+                what = f"Of {name} {module}: whether the pressure is high enough"
+                yield Row("switch", (compressor["pressure_switch"][0],), "   Pressure switch", tooltip=what)
+
+
+def _encoders(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for number, fields in _channels(tree, "encoder"):
+        if "count" in fields:
+            each = fields.get("distance_per_pulse", ("", 1.0))[1]
+            what = f"Encoder {number}: its counts, of {each:g} distance units each. Click the number to change it"
+            yield Row("number", (fields["count"][0],), f"Encoder {number}", decimals=0, tooltip=what)
+    for number, fields in _channels(tree, "counter"):
+        if "count" in fields:
+            what = f"Counter {number}: its counts. Click the number to change it"
+            yield Row("number", (fields["count"][0],), f"Counter {number}", decimals=0, tooltip=what)
+
+
+def _is_gyro(device: object) -> bool:
+    return str(device).startswith("Gyro:") or "navx" in str(device).lower()
+
+
+def _gyros(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for channel, fields in _channels(tree, "analog_gyro"):
+        if "angle" in fields:
+            what = f"The gyro at analog input {channel}: degrees clockwise"
+            yield Row("slider", (fields["angle"][0],), f"Analog {channel}", -360.0, 360.0, 1, "°", what)
+    for device, fields in tree.get("CAN", {}).items():
+        if _is_gyro(device):
+            yield from _device_rows(str(device), fields, str(device).partition(":")[2] or str(device))
+
+
+def _sim_devices(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for device, fields in tree.get("CAN", {}).items():
+        if not _is_gyro(device):
+            number = re.search(r"\[(?:\d+,\s*)?(\d+)\]$", str(device))
+            label = config.CAN.get(int(number[1]), "") if number and not str(device).startswith("DutyCycle") else ""
+            yield from _device_rows(str(device), fields, f"{device}  {label}".strip())
+
+
+def _device_rows(device: str, fields: Mapping[Any, Any], title: str) -> Iterator[Row]:
+    yield Row("text", (), title, tooltip=f"The simulated device {device}")
+    for name, (path, value) in fields.items():
+        text, tooltip = f"   {str(name).strip()}", f"{name} of {device}"
+        if isinstance(value, bool):
+            yield Row("switch", (path,), text, tooltip=f"{tooltip}: click to change it")
+        elif isinstance(value, int | float) and "angle" in str(name).lower():
+            yield Row("slider", (path,), text, -360.0, 360.0, 1, "°", tooltip)
+        elif isinstance(value, int | float):
+            decimals = 0 if isinstance(value, int) else 2
+            yield Row("number", (path,), text, decimals=decimals, tooltip=f"{tooltip}: click the number to change it")
+        else:
+            yield Row("text", (path,), text, tooltip=tooltip)
+
+
+def _power(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    power = tree.get("power", {})
+    if "vin_voltage" in power:
+        what = "The voltage that the roboRIO gets from the battery"
+        yield Row("slider", (power["vin_voltage"][0],), "Battery", 0.0, 14.0, 2, "V", what)
+    for module, fields in _channels(tree, "pdp"):
+        if "voltage" in fields:
+            what = f"Power distribution {module}: its voltage"
+            yield Row("slider", (fields["voltage"][0],), f"PDP {module}", 0.0, 14.0, 2, "V", what)
+        if "current" in fields:
+            what = f"Power distribution {module}: the current of each channel, up to 40 A"
+            yield Row("bars", (fields["current"][0],), "   Currents", 0.0, 40.0, 1, "A", what)
+
+
+def _roborio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    if "fpga_button" in tree:
+        yield Row("switch", (tree["fpga_button"][0],), "User button", tooltip="The button on the roboRIO")
+    accelerometer = tree.get("accelerometer", {})
+    for axis in "xyz":
+        if axis in accelerometer:
+            what = f"The accelerometer in the roboRIO, along {axis}"
+            yield Row("slider", (accelerometer[axis][0],), f"Accelerometer {axis}", -8.0, 8.0, 2, "g", what)
+    for number, fields in _channels(tree, "addressable_led"):
+        if "data" in fields:
+            yield Row("leds", (fields["data"][0],), f"LEDs {number}", tooltip="The colours of the LED strip")
+
+
+def _robot(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for name, (path, value) in tree.get("robot", {}).items():
+        kind: Kind = "switch" if isinstance(value, bool) else "number" if isinstance(value, int | float) else "text"
+        yield Row(kind, (path,), str(name), tooltip=f"hal_data['robot']['{name}']: what this device tells the robot")
+
+
+def _custom(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+    for name, entry in tree.get("custom", {}).items():
+        # What is written there is the robot's, and may be a dict or list of its own.
+        if isinstance(entry, tuple):
+            yield Row("text", (entry[0],), str(name), tooltip=f"hal_data['custom']['{name}']")

@@ -1,0 +1,284 @@
+"""The field in the window's middle: what the scene shows, seen from above, near or far."""
+
+from __future__ import annotations
+
+import math
+import tkinter as tk
+from typing import TYPE_CHECKING
+
+from ....errors import SettingsError
+from ....physics.pose import Pose
+from ...scene import Field, Scene, Shape, Target
+from ...snapshot import Snapshot, Status
+from . import theme as colors
+from .drawings import Drawings
+from .field_image import FieldImage
+from .theme import Theme
+from .trail import Trail
+from .viewport import Viewport
+from .wording import station_name
+
+if TYPE_CHECKING:
+    from ...simulation import Simulation
+
+_ZOOM_STEP = 1.2
+#: The grid's lines are so many feet apart.
+_GRID = 5.0
+_MOST_LINES = 60
+
+
+class FieldView:
+    """Draws scenes. Items are made once and moved; all are placed anew when another part of the field is seen."""
+
+    def __init__(self, parent: tk.Misc, theme: Theme, simulation: Simulation) -> None:
+        self._theme, self._simulation = theme, simulation
+        self.canvas = canvas = tk.Canvas(parent, background=colors.BACKGROUND, highlightthickness=0, takefocus=True)
+        field = simulation.field
+        self._field = field
+        self._image = None if field.image is None else FieldImage(canvas, field.image)
+        self._image_problem = ""
+        self._picture: tk.PhotoImage | None = None
+        self.view = Viewport.whole(field.width, field.height, 100, 100)
+        self._whole = True
+        #: Whether another part of the field is to be seen than was drawn.
+        self.moved = True
+        self._robot: Pose | None = None
+        self._bumpers = ""
+        self._targets: tuple[Target, ...] = ()
+        self._dragged: tuple[str, int, int] | None = None
+        self._held = 0.0, 0.0
+        px = theme.px
+        self._former = Trail(canvas, "trail", fill=colors.FORMER_TRAIL, width=px(2), dash=(6, 4))
+        self._trail = Trail(canvas, "trail", fill=colors.TRAIL, width=px(2))
+        self._drawings = Drawings(canvas, theme)
+        self._make_robot()
+        self._draw_field()
+        self._bind()
+
+    @property
+    def problem(self) -> str:
+        """What could not be drawn, if anything."""
+        return self._image_problem or self._drawings.problem
+
+    def show(self, snapshot: Snapshot, status: Status) -> None:
+        """Draw what has changed since the last one."""
+        scene = snapshot.scene
+        if scene.field is not self._field and scene.field != self._field:
+            self._take_field(scene.field)
+        if self.moved:
+            self._place_all(scene)
+        view = self.view
+        self._former.show(status.former_trail, view)
+        self._trail.show(scene.trail, view)
+        if self._drawings.show(scene.drawings, view):
+            self.canvas.tag_raise("over")
+        if scene.targets != self._targets:
+            self._draw_targets(scene.targets)
+        if scene.robot != self._robot:
+            self._place_robot(scene.robot)
+        station = snapshot.values.get("alliance_station")
+        bumpers = colors.BLUE_ALLIANCE if station_name(station).startswith("Blue") else colors.RED_ALLIANCE
+        if bumpers != self._bumpers:
+            self._bumpers = bumpers
+            self.canvas.itemconfigure("bumpers", fill=bumpers)
+
+    # -- which part is seen ---------------------------------------------------------------------------------------
+
+    def see_whole(self) -> None:
+        """Show the whole field."""
+        self._whole = True
+        self._see(Viewport.whole(self._field.width, self._field.height, self.view.width, self.view.height))
+
+    def zoom(self, factor: float, x: float | None = None, y: float | None = None) -> None:
+        """Come nearer, or go farther away; towards the middle, if no pixel is given."""
+        view, self._whole = self.view, False
+        self._see(view.zoomed(factor, view.width / 2 if x is None else x, view.height / 2 if y is None else y))
+
+    def _see(self, view: Viewport) -> None:
+        if view != self.view:
+            self.view, self.moved = view, True
+
+    def _take_field(self, field: Field) -> None:
+        if field.image != self._field.image:
+            self._image_problem = ""
+            try:
+                self._image = None if field.image is None else FieldImage(self.canvas, field.image)
+            except SettingsError as wrong:
+                self._image, self._image_problem = None, str(wrong)
+        former, self._field = self._field, field
+        if (field.width, field.height) != (former.width, former.height):
+            self.see_whole()
+        self._draw_field()
+        self.moved = True
+
+    # -- what stays -----------------------------------------------------------------------------------------------
+
+    def _draw_field(self) -> None:
+        canvas, px, field = self.canvas, self._theme.px, self._field
+        canvas.delete("field")
+        self._fixed: list[tuple[int, tuple[tuple[float, float], ...]]] = []
+        w, h = field.width, field.height
+
+        def add(item: int, *points: tuple[float, float]) -> int:
+            self._fixed.append((item, points))
+            return item
+
+        add(canvas.create_rectangle(0, 0, 0, 0, fill=colors.CARPET, outline="", tags="field"), (0, 0), (w, h))
+        self._image_item = canvas.create_image(0, 0, anchor="nw", tags="field")
+        if self._image is None:
+            step = max(_GRID, max(w, h) / _MOST_LINES)
+            for number in range(1, math.ceil(w / step)):
+                x = number * step
+                add(canvas.create_line(0, 0, 0, 0, fill=colors.GRID, tags="field"), (x, 0), (x, h))
+            for number in range(1, math.ceil(h / step)):
+                y = number * step
+                add(canvas.create_line(0, 0, 0, 0, fill=colors.GRID, tags="field"), (0, y), (w, y))
+        for shape in field.objects:
+            if len(shape.points) > 1:
+                add(self._draw_shape(shape), *shape.points)
+        edge = canvas.create_rectangle(0, 0, 0, 0, outline=colors.EDGE, width=px(2), tags="field")
+        add(edge, (0, 0), (w, h))
+        for tag in field.tags:
+            # A tag is as wide as on the field; its number stands behind it.
+            across, along = (-math.sin(tag.angle) * 0.35, math.cos(tag.angle) * 0.35), math.cos(tag.angle) * 0.8
+            ends = (tag.x - across[0], tag.y - across[1]), (tag.x + across[0], tag.y + across[1])
+            add(canvas.create_line(0, 0, 0, 0, fill=colors.TEXT, width=px(3), tags="field"), *ends)
+            text = canvas.create_text(
+                0, 0, text=str(tag.number), font=self._theme.tiny, fill=colors.MUTED, tags="field"
+            )
+            add(text, (tag.x + along, tag.y + math.sin(tag.angle) * 0.8))
+        canvas.tag_lower("field")
+
+    def _draw_shape(self, shape: Shape) -> int:
+        try:
+            return self.canvas.create_polygon(*[0] * 2 * len(shape.points), fill=shape.color, tags="field")
+        except tk.TclError:  # a colour that Tk does not know; what is there is to be seen all the same
+            return self.canvas.create_polygon(*[0] * 2 * len(shape.points), fill=colors.EDGE, tags="field")
+
+    def _place_all(self, scene: Scene) -> None:
+        self.moved = False
+        view, canvas = self.view, self.canvas
+        for item, points in self._fixed:
+            canvas.coords(item, *view.line(points))
+        if self._image is not None:
+            seen = self._image.seen(view)
+            self._picture = None if seen is None else seen[0]  # Tk does not keep it
+            canvas.itemconfigure(self._image_item, image=self._picture or "")
+            if seen is not None:
+                canvas.coords(self._image_item, seen[1], seen[2])
+        self._former.move(view)
+        self._trail.move(view)
+        self._drawings.move(view)
+        self._draw_targets(scene.targets)
+        self._place_robot(scene.robot)
+
+    # -- what moves -----------------------------------------------------------------------------------------------
+
+    def _make_robot(self) -> None:
+        canvas, px, tags = self.canvas, self._theme.px, ("over", "robot")
+        hidden = [0] * 8
+        self._frame = canvas.create_polygon(
+            *hidden, fill=colors.RED_ALLIANCE, outline="#3b4450", width=px(1), tags=(*tags, "bumpers"), state="hidden"
+        )
+        self._body = canvas.create_polygon(*hidden, fill="#f7f8fa", outline="", tags=tags, state="hidden")
+        self._nose = canvas.create_polygon(*hidden[:6], fill="#39424e", outline="", tags=tags, state="hidden")
+
+    def _place_robot(self, robot: Pose | None) -> None:
+        was_there, self._robot = self._robot is not None, robot
+        parts = self._frame, self._body, self._nose
+        if robot is None:
+            for item in parts:
+                self.canvas.itemconfigure(item, state="hidden")
+            return
+        l, w = self._field.robot_length / 2, self._field.robot_width / 2  # noqa: E741
+        bumper = 0.18 * min(l, w)
+        for item, corners in zip(
+            parts,
+            (
+                ((l, w), (l, -w), (-l, -w), (-l, w)),
+                (
+                    (l - bumper, w - bumper),
+                    (l - bumper, bumper - w),
+                    (bumper - l, bumper - w),
+                    (bumper - l, w - bumper),
+                ),
+                ((l - bumper * 1.6, 0), (l * 0.2, w * 0.45), (l * 0.2, -w * 0.45)),
+            ),
+            strict=True,
+        ):
+            places = [robot.moved(x, y, 0.0)[:2] for x, y in corners]
+            self.canvas.coords(item, *self.view.line(places))
+            if not was_there:
+                self.canvas.itemconfigure(item, state="normal")
+
+    def _draw_targets(self, targets: tuple[Target, ...]) -> None:
+        canvas, r = self.canvas, self._theme.px(6)
+        self._targets = targets
+        canvas.delete("target")
+        for target in targets:
+            x, y = self.view.to_screen(target.x, target.y)
+            color = colors.LAMP_ON if target.in_view else colors.EDGE
+            canvas.create_oval(x - r, y - r, x + r, y + r, outline=color, width=self._theme.px(2), tags="target")
+            fill = color if target.in_view else ""
+            canvas.create_oval(x - r / 2, y - r / 2, x + r / 2, y + r / 2, outline=color, fill=fill, tags="target")
+
+    # -- the mouse ------------------------------------------------------------------------------------------------
+
+    def _bind(self) -> None:
+        canvas = self.canvas
+        canvas.bind("<Configure>", self._resized)
+        canvas.bind("<Button-1>", self._press)
+        canvas.bind(f"<Button-{colors.RIGHT_BUTTON}>", self._press_to_turn)
+        canvas.bind("<B1-Motion>", self._drag)
+        canvas.bind(f"<B{colors.RIGHT_BUTTON}-Motion>", self._drag)
+        canvas.bind("<ButtonRelease-1>", self._release)
+        canvas.bind(f"<ButtonRelease-{colors.RIGHT_BUTTON}>", self._release)
+        canvas.bind("<Double-Button-1>", lambda event: self.see_whole())
+        canvas.bind(
+            "<MouseWheel>", lambda event: self.zoom(_ZOOM_STEP ** (1 if event.delta > 0 else -1), event.x, event.y)
+        )
+        canvas.bind("<Button-4>", lambda event: self.zoom(_ZOOM_STEP, event.x, event.y))
+        canvas.bind("<Button-5>", lambda event: self.zoom(1 / _ZOOM_STEP, event.x, event.y))
+
+    def _resized(self, event: tk.Event[tk.Canvas]) -> None:
+        if self._whole:
+            self._see(Viewport.whole(self._field.width, self._field.height, event.width, event.height))
+        else:
+            self._see(self.view.resized(event.width, event.height))
+
+    def _on_robot(self, event: tk.Event[tk.Canvas]) -> bool:
+        if self._robot is None:
+            return False
+        x, y = self.view.to_field(event.x, event.y)
+        reach = max(self._field.robot_length, self._field.robot_width) / 2
+        return math.hypot(x - self._robot.x, y - self._robot.y) < reach
+
+    def _press(self, event: tk.Event[tk.Canvas]) -> None:
+        self.canvas.focus_set()
+        self._dragged = "pan", event.x, event.y
+        if self._robot is not None and self._on_robot(event):
+            x, y = self.view.to_field(event.x, event.y)
+            self._dragged, self._held = ("place", event.x, event.y), (self._robot.x - x, self._robot.y - y)
+
+    def _press_to_turn(self, event: tk.Event[tk.Canvas]) -> None:
+        self._dragged = ("turn", event.x, event.y) if self._on_robot(event) else None
+
+    def _drag(self, event: tk.Event[tk.Canvas]) -> None:
+        if self._dragged is None:
+            return
+        what, x, y = self._dragged
+        self._dragged = what, event.x, event.y
+        robot = self._robot
+        if what == "pan":
+            self._whole = False
+            self._see(self.view.panned(event.x - x, event.y - y))
+        elif robot is not None:
+            to_x, to_y = self.view.to_field(event.x, event.y)
+            if what == "place":
+                held_x, held_y = self._held
+                self._simulation.place(to_x + held_x, to_y + held_y, math.degrees(robot.angle))
+            else:
+                self._simulation.place(robot.x, robot.y, math.degrees(math.atan2(to_y - robot.y, to_x - robot.x)))
+
+    def _release(self, event: tk.Event[tk.Canvas]) -> None:
+        self._dragged = None

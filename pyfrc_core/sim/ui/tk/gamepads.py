@@ -1,0 +1,167 @@
+"""Real gamepads, by way of pygame-ce: the extra ``gamepads``.
+
+SDL, which is underneath, knows most pads' layouts. Those are told in the order of the Driver Station (as XInput has
+it), so that robot code finds its buttons; of others, the order is the device's own.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from .joysticks import JOYSTICKS, RELEASED, Sticks
+
+HINT = 'For real gamepads: pip install "pyfrc[gamepads]"'
+
+_HATS = {(0, 1): 0, (1, 1): 45, (1, 0): 90, (1, -1): 135, (0, -1): 180, (-1, -1): 225, (-1, 0): 270, (-1, 1): 315}
+
+#: The least movement that is told.
+_STEP = 0.01
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a gamepad's controls are at; the buttons from the first one on."""
+
+    axes: tuple[float, ...] = ()
+    buttons: tuple[bool, ...] = ()
+    pov: int = RELEASED
+
+
+class Gamepad(Protocol):
+    """One real gamepad."""
+
+    name: str
+
+    def read(self) -> Reading:
+        """What its controls are at now."""
+        ...
+
+
+class GamepadRoom(Protocol):
+    """Where gamepads come and go."""
+
+    def look(self) -> Sequence[Gamepad]:
+        """Those that are there."""
+        ...
+
+
+def hat_angle(x: int, y: int) -> int:
+    """A POV's angle, from the two ways in which its hat is pressed: to the right, and up."""
+    return _HATS.get((x, y), RELEASED)
+
+
+class GamepadRouter:
+    """Lets gamepads move joysticks: the first one joystick 0, and so on, unless the user says otherwise."""
+
+    def __init__(self, room: GamepadRoom, sticks: Sticks) -> None:
+        self._room, self._sticks = room, sticks
+        self._told: dict[int, Reading] = {}
+        #: Which joystick takes which gamepad, by the gamepad's number; None: none.
+        self.assigned: dict[int, int | None] = {}
+        self.names: tuple[str, ...] = ()
+
+    def poll(self) -> None:
+        """Pass on what has moved."""
+        pads = self._room.look()
+        self.names = tuple(pad.name for pad in pads)
+        for stick in range(JOYSTICKS):
+            number = self.assigned.get(stick, stick)
+            reading = pads[number].read() if number is not None and number < len(pads) else None
+            before = self._told.get(stick)
+            if reading is None:
+                if before is not None:  # pulled out, or given to another
+                    self._pass_on(stick, before, Reading((0.0,) * len(before.axes), (False,) * len(before.buttons)))
+                    del self._told[stick]
+            else:
+                self._told[stick] = self._pass_on(stick, before, reading)
+
+    def tell_all_again(self) -> None:
+        """The robot has been started anew, and knows nothing."""
+        self._told.clear()
+
+    def _pass_on(self, stick: int, before: Reading | None, now: Reading) -> Reading:
+        before = before or Reading()
+        axes = list(now.axes[:12])
+        for axis, value in enumerate(axes):
+            old = before.axes[axis] if axis < len(before.axes) else 0.0
+            if abs(value - old) >= _STEP or (value != old and value in (-1.0, 0.0, 1.0)):
+                self._sticks.move(stick, axis, value)
+            else:
+                axes[axis] = old
+        for index, pressed in enumerate(now.buttons[:32]):
+            if pressed != (index < len(before.buttons) and before.buttons[index]):
+                self._sticks.press(stick, index + 1, pressed)
+        if now.pov != before.pov:
+            self._sticks.turn(stick, now.pov)
+        return Reading(tuple(axes), now.buttons, now.pov)
+
+
+class _Pad:
+    def __init__(self, name: str, read: Callable[[], Reading]) -> None:
+        self.name, self.read = name, read
+
+
+class PygameRoom:
+    """The gamepads that pygame knows."""
+
+    def __init__(self) -> None:
+        # Read without a window of SDL's own, and while ours is the one in front.
+        os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
+        os.environ.setdefault("SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", "1")
+        os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+        # Not imported by name: the extra need not be there when types are checked.
+        self._pygame: Any = importlib.import_module("pygame")
+        self._controllers: Any = importlib.import_module("pygame._sdl2.controller")
+        self._pygame.display.init()
+        self._pygame.joystick.init()
+        self._controllers.init()
+        self._pads: list[Gamepad] = []
+        self._count = -1
+
+    def look(self) -> Sequence[Gamepad]:
+        self._pygame.event.pump()
+        changes = self._pygame.event.get((self._pygame.JOYDEVICEADDED, self._pygame.JOYDEVICEREMOVED))
+        if changes or self._count != self._pygame.joystick.get_count():
+            self._count = self._pygame.joystick.get_count()
+            self._pads = [self._open(number) for number in range(self._count)]
+        self._pygame.event.clear()
+        return self._pads
+
+    def _open(self, number: int) -> Gamepad:
+        if self._controllers.is_controller(number):
+            pad = self._controllers.Controller(number)
+            return _Pad(pad.name or f"Gamepad {number}", lambda: self._read_known(pad))
+        joystick = self._pygame.joystick.Joystick(number)
+        return _Pad(joystick.get_name(), lambda: _read_raw(joystick))
+
+    def _read_known(self, pad: Any) -> Reading:
+        pg = self._pygame
+        axes = ("LEFTX", "LEFTY", "TRIGGERLEFT", "TRIGGERRIGHT", "RIGHTX", "RIGHTY")
+        buttons = ("A", "B", "X", "Y", "LEFTSHOULDER", "RIGHTSHOULDER", "BACK", "START", "LEFTSTICK", "RIGHTSTICK")
+        up, right, down, left = (
+            bool(pad.get_button(getattr(pg, f"CONTROLLER_BUTTON_DPAD_{way}")))
+            for way in ("UP", "RIGHT", "DOWN", "LEFT")
+        )
+        return Reading(
+            tuple(max(pad.get_axis(getattr(pg, f"CONTROLLER_AXIS_{name}")) / 32767, -1.0) for name in axes),
+            tuple(bool(pad.get_button(getattr(pg, f"CONTROLLER_BUTTON_{name}"))) for name in buttons),
+            hat_angle(right - left, up - down),
+        )
+
+
+def _read_raw(joystick: Any) -> Reading:
+    return Reading(
+        tuple(max(min(joystick.get_axis(axis), 1.0), -1.0) for axis in range(joystick.get_numaxes())),
+        tuple(bool(joystick.get_button(button)) for button in range(joystick.get_numbuttons())),
+        hat_angle(*joystick.get_hat(0)) if joystick.get_numhats() else RELEASED,
+    )
+
+
+def open_room() -> GamepadRoom | None:
+    """Where this machine's gamepads are; None without pygame."""
+    return PygameRoom() if importlib.util.find_spec("pygame") is not None else None

@@ -1,0 +1,127 @@
+"""Driving by the keyboard: which keys move which joystick's axes, press its buttons, and are the driver station's.
+
+Key names are Tk's keysyms, in lower case.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+#: A joystick and one of its axes, or one of its buttons.
+Control = tuple[int, int]
+
+#: How far a key moves an axis while Shift is held.
+GENTLE = 0.4
+
+_SHIFTS = frozenset({"shift_l", "shift_r"})
+
+#: All three at once enable the robot, as on the Driver Station.
+ENABLE_CHORD = frozenset({"bracketleft", "bracketright", "backslash"})
+
+#: What a key that is held with Shift is called, on keyboards as in the United States.
+_SHIFTED = dict(zip(("exclam", "at", "numbersign", "dollar", "percent", "asciicircum", "ampersand", "asterisk",
+                     "parenleft", "parenright"), "1234567890", strict=True))  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What the keys do.
+
+    :param name: what the user chooses it by
+    :param help: the keys in a few words
+    :param axes: how far a key moves axes
+    """
+
+    name: str
+    help: str
+    axes: Mapping[str, Mapping[Control, float]]
+
+
+def _pair(left: str, right: str, control: Control) -> dict[str, dict[Control, float]]:
+    return {left: {control: -1.0}, right: {control: 1.0}}
+
+
+# On a joystick, forwards and to the left are negative.
+_LEFT, _RIGHT = (0, 1), (1, 1)
+
+LAYOUTS = (
+    Layout(
+        "Tank: both sides",
+        "W S drive, A D turn (Y of joysticks 0 and 1)",
+        {
+            "w": {_LEFT: -1.0, _RIGHT: -1.0},
+            "s": {_LEFT: 1.0, _RIGHT: 1.0},
+            "a": {_LEFT: 0.6, _RIGHT: -0.6},
+            "d": {_LEFT: -0.6, _RIGHT: 0.6},
+            **_pair("up", "down", _RIGHT),
+        },
+    ),
+    Layout(
+        "Two joysticks",
+        "WASD: joystick 0, Q E: its twist; arrows: joystick 1",
+        {
+            **_pair("a", "d", (0, 0)),
+            **_pair("w", "s", (0, 1)),
+            **_pair("q", "e", (0, 2)),
+            **_pair("left", "right", (1, 0)),
+            **_pair("up", "down", (1, 1)),
+        },
+    ),
+    Layout(
+        "Gamepad",
+        "WASD: left stick of 0, arrows: right stick, Q E: triggers",
+        {
+            **_pair("a", "d", (0, 0)),
+            **_pair("w", "s", (0, 1)),
+            "q": {(0, 2): 1.0},
+            "e": {(0, 3): 1.0},
+            **_pair("left", "right", (0, 4)),
+            **_pair("up", "down", (0, 5)),
+        },
+    ),
+)
+
+#: The keys of the first joystick's buttons.
+BUTTON_KEYS = {**{str(number): number for number in range(1, 10)}, "0": 10}
+
+
+def canonical(keysym: str) -> str:
+    """A key's name, whether or not Shift or Caps Lock is on."""
+    return _SHIFTED.get(keysym, keysym.lower())
+
+
+class KeyDriver:
+    """Which keys are held, and what that makes of axes and buttons."""
+
+    def __init__(self, layout: Layout = LAYOUTS[0]) -> None:
+        self.layout = layout
+        self.held: set[str] = set()
+
+    def press(self, keysym: str) -> None:
+        self.held.add(canonical(keysym))
+
+    def release(self, keysym: str) -> None:
+        self.held.discard(canonical(keysym))
+
+    def release_all(self) -> None:
+        """As when the window is no longer the one that is typed into."""
+        self.held.clear()
+
+    @property
+    def asks_to_enable(self) -> bool:
+        """Whether the keys are held that enable the robot."""
+        return self.held >= ENABLE_CHORD
+
+    def axes(self) -> dict[Control, float]:
+        """Where the layout's axes are now; all of those that some key moves."""
+        far = GENTLE if self.held & _SHIFTS else 1.0
+        moved: dict[Control, float] = {}
+        for key, moves in self.layout.axes.items():
+            for control, by in moves.items():
+                moved[control] = moved.get(control, 0.0) + (by * far if key in self.held else 0.0)
+        return {control: min(max(value, -1.0), 1.0) for control, value in moved.items()}
+
+    def buttons(self) -> dict[Control, bool]:
+        """Whether the keys of the buttons are held; buttons count from 1."""
+        return {(0, button): key in self.held for key, button in BUTTON_KEYS.items()}

@@ -1,0 +1,111 @@
+"""What is chosen before a match: alliance, game message, where the robot starts, what it does in autonomous."""
+
+from __future__ import annotations
+
+import tkinter as tk
+from collections.abc import Callable
+from tkinter import ttk
+from typing import TYPE_CHECKING
+
+from ...snapshot import Chooser, Snapshot
+from . import theme as colors
+from .theme import Theme
+from .tooltip import Tooltip
+from .wording import STATIONS, station_name
+
+if TYPE_CHECKING:
+    from ...simulation import Simulation
+
+
+class MatchView:
+    """Choices, each a box with a list.
+
+    :param done: called when the user has chosen, and keys are for driving again
+    """
+
+    def __init__(
+        self, parent: tk.Misc, theme: Theme, tooltip: Tooltip, simulation: Simulation, done: Callable[[], None]
+    ) -> None:
+        self._theme, self._simulation, self._done = theme, simulation, done
+        px = theme.px
+        self.frame = colors.card(parent, theme)
+        self._grid = grid = ttk.Frame(self.frame, style="Card.TFrame")
+        grid.pack(fill="x", padx=px(10), pady=px(8))
+        grid.columnconfigure(1, weight=1)
+        self._rows = 0
+        self._shown: tuple[object, ...] = ()
+        self._alliance = self._box(list(STATIONS), self._choose_alliance)
+        self._message = self._box(list(simulation.project.game_specific_messages), self._send_message)
+        self._message.configure(state="normal", width=8)
+        self._message.bind("<Return>", lambda event: self._send_message())
+        tooltip.attach(self._message, "Game data, which the field tells all robots: choose, or type and press Enter")
+        self._place_row("Alliance", self._alliance, self._message)
+        starts = list(simulation.field.starts)
+        self._start = self._box(starts, self._reset)
+        if starts:
+            self._start.current(0)
+        self.reset = ttk.Button(grid, text="Reset", style="Tiny.TButton", command=self._reset, takefocus=False)
+        tooltip.attach(self.reset, "Put the robot back to where it starts. It can be dragged on the field, too.")
+        self._place_row("Start", self._start, self.reset)
+        self._choosers: dict[str, tuple[Chooser, ttk.Label, ttk.Combobox]] = {}
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show what is chosen."""
+        values = snapshot.values
+        chosen = values.get("alliance_station"), values.get("event.game_specific_message"), snapshot.choosers
+        if chosen == self._shown:
+            return
+        self._shown = chosen
+        self._alliance.set(station_name(chosen[0]))
+        if self._message.focus_get() is not self._message:
+            self._message.set(str(chosen[1] or ""))
+        self._show_choosers(snapshot.choosers)
+
+    def _show_choosers(self, choosers: tuple[Chooser, ...]) -> None:
+        named = {each.name: each for each in choosers}
+        for name in self._choosers.keys() - named.keys():
+            _, label, box = self._choosers.pop(name)
+            label.destroy()
+            box.destroy()
+        for name, chooser in named.items():
+            if name not in self._choosers:
+                box = self._box([], lambda name=name: self._choose(name))  # type: ignore[misc]
+                label = self._place_row(name.rpartition("/")[2][:14], box)
+            else:
+                _, label, box = self._choosers[name]
+            self._choosers[name] = chooser, label, box
+            box.configure(values=chooser.options)
+            box.set(chooser.active or chooser.default)
+
+    def _box(self, values: list[str], chosen: Callable[[], None]) -> ttk.Combobox:
+        box = ttk.Combobox(
+            self._grid, values=values, state="readonly", width=10, font=self._theme.body, takefocus=False
+        )
+        box.bind("<<ComboboxSelected>>", lambda event: chosen())
+        return box
+
+    def _place_row(self, text: str, box: ttk.Combobox, beside: ttk.Widget | None = None) -> ttk.Label:
+        px = self._theme.px
+        label = ttk.Label(self._grid, text=text, style="Card.TLabel")
+        label.grid(row=self._rows, column=0, sticky="w", padx=(0, px(10)), pady=px(2))
+        box.grid(row=self._rows, column=1, columnspan=1 if beside else 2, sticky="ew", pady=px(2))
+        if beside is not None:
+            beside.grid(row=self._rows, column=2, sticky="ew", padx=(px(4), 0), pady=px(2))
+        self._rows += 1
+        return label
+
+    def _choose_alliance(self) -> None:
+        self._simulation.set_alliance(STATIONS[self._alliance.get()])
+        self._done()
+
+    def _send_message(self) -> None:
+        self._simulation.set_game_message(self._message.get())
+        self._done()
+
+    def _reset(self) -> None:
+        self._simulation.reset_position(self._start.get() or None)
+        self._done()
+
+    def _choose(self, name: str) -> None:
+        self._simulation.choose(name, self._choosers[name][2].get())
+        self._done()

@@ -1,0 +1,116 @@
+"""Robot time, along the bottom: let it go on, stop it, step it, change its speed, go back in it."""
+
+from __future__ import annotations
+
+import tkinter as tk
+from pathlib import Path
+from tkinter import filedialog, ttk
+from typing import TYPE_CHECKING
+
+from ....errors import PyfrcError
+from ...snapshot import Snapshot, Status
+from .slider import Slider
+from .theme import Theme
+from .tooltip import Tooltip
+from .wording import clock, slider_of_speed, speed_of_slider, speed_text
+
+if TYPE_CHECKING:
+    from ...simulation import Simulation
+
+
+class TimeBar:
+    """The controls of time, and the line of all that was recorded."""
+
+    def __init__(self, parent: tk.Misc, theme: Theme, tooltip: Tooltip, simulation: Simulation) -> None:
+        px = theme.px
+        self._simulation = simulation
+        #: What came of saving, for the user.
+        self.note = ""
+        self._shown: object = None
+        self._end = 0.0
+        self.frame = frame = ttk.Frame(parent)
+        self.run = ttk.Button(frame, text="Pause", width=7, command=self.toggle, takefocus=False)
+        self.run.pack(side="left")
+        tooltip.attach(self.run, "Let robot time stand still, or go on: F5")
+        self.step = ttk.Button(frame, text="Step", width=5, command=simulation.step, takefocus=False)
+        self.step.pack(side="left", padx=(px(4), px(14)))
+        tooltip.attach(self.step, "Let one packet's time pass, 0.02 s, and pause: F6")
+        ttk.Label(frame, text="Speed", style="Muted.TLabel").pack(side="left")
+        self.speed = Slider(frame, theme, px(130), self._speed_moved)
+        self.speed.pack(side="left", padx=(px(6), px(4)))
+        tooltip.attach(self.speed, "Robot seconds a second, from 0.1 to 8; at the right end: as fast as it goes")
+        self._speed_text = ttk.Label(frame, width=5)
+        self._speed_text.pack(side="left", padx=(0, px(14)))
+        self._time = ttk.Label(frame, font=theme.bold, width=8, anchor="e")
+        self._time.pack(side="left")
+        self.timeline = Slider(frame, theme, px(200), self._time_moved)
+        self.timeline.pack(side="left", fill="x", expand=True, padx=px(8))
+        tooltip.attach(self.timeline, "Drag to a moment to go back there, and drive on from it")
+        self._length = ttk.Label(frame, style="Muted.TLabel", width=8)
+        self._length.pack(side="left")
+        self.restart = ttk.Button(frame, text="Restart", command=simulation.restart, takefocus=False)
+        self.restart.pack(side="left", padx=(px(8), px(4)))
+        tooltip.attach(self.restart, "Start the robot program anew, at time 0: F9")
+        self.save = ttk.Button(frame, text="Save…", command=self._save, takefocus=False)
+        self.save.pack(side="left")
+        tooltip.attach(self.save, "Save the recording, for pyfrc replay and for tests")
+
+    def show(self, snapshot: Snapshot | None, status: Status) -> None:
+        """Show which moment it is, and how fast time goes."""
+        time = 0.0 if snapshot is None else snapshot.time
+        self._end = max(status.length, time)
+        if not self.timeline.held:
+            self.timeline.show(time / self._end if self._end else 0.0)
+            self._time_shown(time)
+        state = status.state, status.speed, round(self._end, 1)
+        if state == self._shown:
+            return
+        self._shown = state
+        going = status.state == "running"
+        self.run.configure(text="Pause" if going else "Run")
+        self.run.state(["!disabled" if status.state in ("running", "paused") else "disabled"])
+        self.step.state(["!disabled" if status.state in ("running", "paused") else "disabled"])
+        self._length.configure(text=clock(self._end)[:-1])
+        if not self.speed.held:
+            self.speed.show(slider_of_speed(status.speed))
+            self._speed_text.configure(text=speed_text(status.speed))
+
+    def toggle(self) -> None:
+        """Pause, or go on."""
+        if self._simulation.status.state == "running":
+            self._simulation.pause()
+        else:
+            self._simulation.resume()
+
+    def _time_shown(self, time: float) -> None:
+        text = clock(time)
+        if text != self._time.cget("text"):
+            self._time.configure(text=text)
+
+    def _speed_moved(self, place: float, let_go: bool) -> None:
+        speed = speed_of_slider(place)
+        self._speed_text.configure(text=speed_text(speed))
+        self._simulation.set_speed(speed)
+        if let_go:
+            self._shown = None
+
+    def _time_moved(self, place: float, let_go: bool) -> None:
+        self._time_shown(place * self._end)
+        if let_go:
+            self._simulation.rewind(round(place * self._end / 0.02) * 0.02)
+
+    def _save(self) -> None:
+        name = filedialog.asksaveasfilename(
+            parent=self.frame,
+            title="Save the recording",
+            initialdir=self._simulation.project.root,
+            initialfile="recording.jsonl",
+            defaultextension=".jsonl",
+            filetypes=[("Input scripts", "*.jsonl"), ("All files", "*")],
+        )
+        if name:
+            try:
+                self._simulation.save(Path(name))
+                self.note = f"Saved: {name}"
+            except (PyfrcError, OSError) as wrong:
+                self.note = f"The recording was not saved: {wrong}"

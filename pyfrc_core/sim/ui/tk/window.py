@@ -1,0 +1,226 @@
+"""The window: where everything is, and the loop that draws it."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+import tkinter as tk
+from tkinter import ttk
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from ....errors import UsageError
+from ...snapshot import Snapshot, Status
+from .center_view import CenterView
+from .device_view import DeviceView
+from .drive_view import DriveView
+from .gamepads import GamepadRouter, open_room
+from .joystick_view import WIDTH as JOYSTICK_WIDTH
+from .joystick_view import JoystickView
+from .joysticks import Sticks
+from .keys import Keys
+from .match_view import MatchView
+from .station_bar import StationBar
+from .theme import make_theme
+from .time_bar import TimeBar
+from .tooltip import Tooltip
+from .wording import status_texts
+
+if TYPE_CHECKING:
+    from ...simulation import Simulation
+
+#: How often the window is drawn, in seconds.
+_FRAME = 1 / 40
+#: The status line changes at every so many frames: faster, nobody can read it.
+_STATUS_FRAMES = 6
+
+#: So much of a note is shown; the tooltip has the rest.
+_MOST_NOTE = 90
+#: What is in the note's place while there is none.
+_HINT = "Ctrl+E or [ ] \\  enable   Enter  disable   Space  e-stop   F5  pause   F6  step"
+
+#: In the design's pixels.
+_WIDTH, _HEIGHT, _LEAST_WIDTH, _LEAST_HEIGHT = 1290, 696, 1000, 600
+
+
+class Window:
+    """One simulation's window. Shows snapshots, and passes on what its user does.
+
+    :param screen: the X display, where it is not the one of the environment
+    :raises UsageError: when there is no display
+    :raises SettingsError: when the field's picture cannot be shown
+    """
+
+    def __init__(self, simulation: Simulation, screen: str | None = None) -> None:
+        self._simulation = simulation
+        self._project = simulation.project
+        #: How often the window has been drawn.
+        self.frames = 0
+        self._snapshot: Snapshot | None = None
+        self._status: Status | None = None
+        self._due, self._alarm = 0.0, ""
+        self._noted = self._status_note = ""
+        #: What has gone wrong in the window itself, or Ctrl+C.
+        self.failure: BaseException | None = None
+        self.root = root = _open(screen)
+        root.report_callback_exception = self._on_exception
+        try:
+            self._build()
+        except BaseException:
+            root.destroy()
+            raise
+        root.protocol("WM_DELETE_WINDOW", root.quit)
+
+    def _build(self) -> None:
+        root, simulation = self.root, self._simulation
+        root.title(f"{simulation.project.root.resolve().name} - pyfrc")
+        theme = make_theme(root)
+        px = theme.px
+        width = min(px(_WIDTH), root.winfo_screenwidth())
+        height = min(px(_HEIGHT), root.winfo_screenheight() - px(60))
+        root.geometry(f"{width}x{height}")
+        root.minsize(min(px(_LEAST_WIDTH), width), min(px(_LEAST_HEIGHT), height))
+        self._tooltip = tooltip = Tooltip(root, theme)
+        gap = px(8)
+        self.station = StationBar(root, theme, tooltip, simulation)
+        self.station.frame.pack(side="top", fill="x", padx=gap, pady=gap)
+        line = ttk.Frame(root)
+        line.pack(side="bottom", fill="x", padx=px(12), pady=(0, px(5)))
+        self._line = ttk.Label(line, style="Muted.TLabel", font=theme.small)
+        self._line.pack(side="left")
+        self._note = ttk.Label(line, text=_HINT, style="Muted.TLabel", font=theme.small, anchor="e")
+        self._note.pack(side="right", fill="x", padx=(px(20), 0))
+        self._note.bind("<Enter>", lambda event: tooltip.expect(self._noted, event.x_root, event.y_root))
+        self._note.bind("<Leave>", lambda event: tooltip.hide())
+        self.time = TimeBar(root, theme, tooltip, simulation)
+        self.time.frame.pack(side="bottom", fill="x", padx=gap, pady=(px(6), px(4)))
+
+        middle = ttk.Frame(root)
+        middle.pack(fill="both", expand=True, padx=gap)
+        self.devices = DeviceView(middle, theme, tooltip, simulation, self.focus_field)
+        self.devices.frame.pack(side="left", fill="y")
+        right = ttk.Frame(middle, width=px(JOYSTICK_WIDTH + 2))
+        right.pack_propagate(False)
+        right.pack(side="right", fill="y")
+        self.center = CenterView(middle, theme, tooltip, simulation)
+        self.center.frame.pack(side="left", fill="both", expand=True, padx=gap)
+        self.field, self.console = self.center.field, self.center.console
+
+        self.sticks = Sticks(simulation)
+        room = open_room()
+        self.gamepads = None if room is None else GamepadRouter(room, self.sticks)
+        self.match = MatchView(right, theme, tooltip, simulation, self.focus_field)
+        self.match.frame.pack(side="top", fill="x")
+        config = simulation.project.sim_config
+        self.joystick = JoystickView(right, theme, tooltip, config, self.sticks, self.gamepads)
+        self.joystick.frame.pack(side="top", fill="x", pady=(gap, 0))
+        self.keys = Keys(root, simulation, self.sticks, self.time)
+        self.drive = DriveView(right, theme, self.keys, self.focus_field)
+        self.drive.frame.pack(side="top", fill="x", pady=(gap, 0))
+        self.focus_field()
+
+    # -- the loop -------------------------------------------------------------------------------------------------
+
+    def loop(self) -> None:
+        """Show the simulation until the window is closed."""
+        self.begin()
+        self.root.mainloop()
+        if self.failure is not None:
+            raise self.failure
+
+    def begin(self) -> None:
+        """Begin to draw, as events are handled."""
+        self._stop_drawing()
+        self._due = time.monotonic()
+        self._frame()
+
+    def close(self) -> None:
+        """Take the window away."""
+        with contextlib.suppress(tk.TclError):  # the display has gone
+            self._stop_drawing()
+            self._tooltip.hide()
+            self.keys.forget()
+            self.root.destroy()
+
+    def _stop_drawing(self) -> None:
+        if self._alarm:
+            self.root.after_cancel(self._alarm)
+            self._alarm = ""
+
+    def focus_field(self) -> None:
+        """Let the keys drive."""
+        self.field.canvas.focus_set()
+
+    def _frame(self) -> None:
+        self.draw()
+        now = time.monotonic()
+        self._due = max(self._due + _FRAME, now)
+        self._alarm = self.root.after(max(round((self._due - now) * 1000), 1), self._frame)
+
+    def draw(self) -> None:
+        """Show the newest snapshot."""
+        simulation = self._simulation
+        snapshot, status = simulation.snapshot, simulation.status
+        if self.gamepads is not None:
+            if self._status is not None and self._status.state == "starting" != status.state:
+                self.gamepads.tell_all_again()
+            self.gamepads.poll()
+        self.console.show(status.failure)
+        if snapshot is not self._snapshot or status is not self._status:
+            self._show(snapshot, status)
+        elif snapshot is not None and self.field.moved:
+            self.field.show(snapshot, status)
+        if self.frames % _STATUS_FRAMES == 0:
+            self._show_status(snapshot, status)
+        self.joystick.show()
+        self.root.update_idletasks()
+        self.frames += 1
+
+    def _show(self, snapshot: Snapshot | None, status: Status) -> None:
+        if self._simulation.project is not self._project:
+            self._project = self._simulation.project
+            self.devices.relabel(self._project.sim_config)
+            self.joystick.relabel(self._project.sim_config)
+        if snapshot is not None and snapshot is not self._snapshot:
+            self.sticks.adopt(snapshot.values)
+            self.field.show(snapshot, status)
+            self.devices.show(snapshot)
+            self.match.show(snapshot)
+        self.station.show(snapshot, status)
+        self.time.show(snapshot, status)
+        changed = self._status is None or self._status.state != status.state
+        if changed:
+            self.center.make_room_for_a_traceback(status.state == "failed")
+        self._snapshot, self._status = snapshot, status
+
+    def _show_status(self, snapshot: Snapshot | None, status: Status) -> None:
+        self._line.configure(text="   ·   ".join(status_texts(snapshot, status)))
+        if status.note != self._status_note:  # it is newer
+            self._status_note, self.time.note = status.note, ""
+        note = " ".join((self.field.problem or self.time.note or status.note).split())
+        if note != self._noted:
+            self._noted = note
+            short = note if len(note) <= _MOST_NOTE else f"{note[:_MOST_NOTE]}…"
+            self._note.configure(text=short or _HINT, style="Note.TLabel" if note else "Muted.TLabel")
+        self.center.show_pose(None if snapshot is None else snapshot.scene.robot)
+
+    def _on_exception(self, kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
+        # It is raised where the window was opened.
+        self.failure = error.with_traceback(traceback)
+        self.root.quit()
+
+
+def _open(screen: str | None) -> tk.Tk:
+    if sys.platform == "win32":
+        import ctypes
+
+        ctypes.windll.shcore.SetProcessDpiAwareness(1)  # sharp letters on high-density screens
+    try:
+        return tk.Tk(screenName=screen, className="pyfrc")
+    except tk.TclError as wrong:
+        raise UsageError(
+            f"the window cannot be opened: {wrong}",
+            remedy="Run without a window: pyfrc sim --ui none --mode practice. "
+            "In a container or over SSH: xvfb-run, or ssh -X.",
+        ) from None

@@ -1,0 +1,114 @@
+"""What is written in the window, and the arithmetic of its sliders: without a window."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from ....physics.pose import Pose
+from ...snapshot import Snapshot, Status
+
+#: The slowest and the fastest that the speed slider offers; beyond it is as fast as it goes.
+SLOWEST, FASTEST = 0.1, 8.0
+#: Where on the speed slider, from 0 to 1, "as fast as it goes" begins.
+_UNLIMITED = 0.94
+
+#: The alliance stations in words, in the order of their numbers, and as they are commanded.
+STATIONS = {f"{color.title()} {number}": f"{color}{number}" for color in ("red", "blue") for number in (1, 2, 3)}
+
+_MODES = {"autonomous": "Autonomous", "teleop": "Teleoperated", "test": "Test"}
+
+# Colours and the like, which programs write for terminals.
+_ESCAPES = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|[@-Z\\-_])|[\x00-\x08\x0b-\x1f\x7f]")
+
+
+def clock(seconds: float) -> str:
+    """A moment of robot time, as ``1:02.34``: what a packet is long can be seen."""
+    minutes, hundredths = divmod(round(max(seconds, 0.0) * 100), 6000)
+    return f"{minutes}:{hundredths // 100:02}.{hundredths % 100:02}"
+
+
+def speed_text(speed: float) -> str:
+    """How fast robot time is to go."""
+    return "max" if speed == 0 else f"{speed:.2g}x"
+
+
+def slider_of_speed(speed: float) -> float:
+    """Where the speed slider stands, from 0 to 1: as far from one double to the next everywhere."""
+    if speed == 0:
+        return 1.0
+    speed = min(max(speed, SLOWEST), FASTEST)
+    return _UNLIMITED * math.log(speed / SLOWEST) / math.log(FASTEST / SLOWEST)
+
+
+def speed_of_slider(position: float) -> float:
+    """The speed that a place of the slider stands for, in round numbers; it snaps to real time."""
+    if position >= (1 + _UNLIMITED) / 2:
+        return 0.0
+    exact: float = SLOWEST * (FASTEST / SLOWEST) ** (min(max(position, 0.0), _UNLIMITED) / _UNLIMITED)
+    if 0.93 < exact < 1.07:
+        return 1.0
+    return round(exact, 2) if exact < 1 else round(exact, 1)
+
+
+def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
+    """What the robot is doing: in words, and of which kind: ``wait``, ``error``, ``disabled`` or ``enabled``."""
+    if status.state == "failed":
+        return "No robot code", "error"
+    if not status.responding:
+        return "Not responding", "error"
+    if snapshot is None or status.state == "starting":
+        return "Starting…", "wait"
+    if snapshot.emergency_stopped:
+        return "Emergency stopped", "error"
+    mode = _MODES.get(snapshot.chosen_mode, snapshot.chosen_mode)
+    if snapshot.enabled:
+        return f"{mode} enabled", "enabled"
+    return f"{mode} disabled", "disabled"
+
+
+def status_texts(snapshot: Snapshot | None, status: Status) -> list[str]:
+    """The status line's parts."""
+    time = 0.0 if snapshot is None else snapshot.time
+    going = status.state == "running"
+    reached = f"Speed {status.reached:.2f}x of {speed_text(status.speed)}"
+    parts = [
+        f"Robot time {time:.2f} s",
+        reached if going else status.state.capitalize(),
+        f"Loop {status.loop_seconds * 1000:.1f} ms, worst {status.worst_loop_seconds * 1000:.1f} ms",
+        f"Overruns {status.overruns}",
+    ]
+    if snapshot is not None and snapshot.practice_since is not None:
+        parts.insert(1, f"Match: {snapshot.match_left:.0f} s left")
+    if status.network_address:
+        parts.append(f"NetworkTables {status.network_address}")
+    return parts
+
+
+def plain_output(text: str) -> str:
+    """What a program printed, without what is for terminals only."""
+    return _ESCAPES.sub("", text.replace("\r\n", "\n"))
+
+
+def number_text(value: float, decimals: int) -> str:
+    """A number in little room."""
+    if not math.isfinite(value):
+        return str(value)
+    if abs(value) >= 1e6:
+        return f"{value:.3g}"
+    text = f"{value:.{decimals}f}"
+    return text[1:] if float(text) == 0 and text.startswith("-") else text
+
+
+def pose_text(robot: Pose | None) -> str:
+    """Where the robot is."""
+    if robot is None:
+        return "no physics.py: the robot has no place (pyfrc create-physics writes one)"
+    degrees = (math.degrees(robot.angle) + 180) % 360 - 180
+    return f"x {robot.x:.2f} ft   y {robot.y:.2f} ft   heading {number_text(degrees, 1)}°"
+
+
+def station_name(station: object) -> str:
+    """An alliance station in words, from its number in WPILib."""
+    names = list(STATIONS)
+    return names[station - 1] if isinstance(station, int) and 1 <= station <= len(names) else ""

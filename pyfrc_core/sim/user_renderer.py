@@ -1,0 +1,176 @@
+"""What robot code draws on the simulated field."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Protocol
+
+from ..errors import UsageError
+from ..runtime.redirect import redirection
+from .scene import Line, Point, Pose, Text
+
+#: So many drawings stay on the field; when there are more, the oldest go.
+MOST_DRAWINGS = 500
+
+#: ``True``: as seen from the robot's centre; an (x, y): from that place on the robot.
+RobotCoordinates = bool | Point
+
+
+class Segment(Protocol):
+    """What is asked of a trajectory's segment: its place in feet, y to the left, and its duration in seconds."""
+
+    x: float
+    y: float
+    dt: float
+
+
+class UserRenderer:
+    """Draws on the simulated field. May be used from any thread.
+
+    Places are (x, y) in feet: on the field, x to the right and y downwards from its top left corner; in robot
+    coordinates, x forward and y to the robot's right. Where the robot is, is asked when something is drawn: a drawing
+    stays where it is when the robot moves on. The same drawn again is drawn once.
+
+    :param robot: answers where the robot is
+    """
+
+    def __init__(self, robot: Callable[[], Pose | None]) -> None:
+        self._robot = robot
+        self._lock = threading.Lock()
+        self._drawings: dict[str, Line | Text] = {}
+
+    def drawings(self) -> tuple[Line | Text, ...]:
+        """All that has been drawn, in order."""
+        with self._lock:
+            return tuple(self._drawings.values())
+
+    def draw_line(
+        self,
+        line_pts: Sequence[Point],
+        color: str = "#ff0000",
+        robot_coordinates: RobotCoordinates = False,
+        relative_to_first: bool = False,
+        arrow: bool = True,
+        scale: Point = (1, 1),
+        **kwargs: Any,
+    ) -> None:
+        """Draw a line through all of these points.
+
+        :param line_pts: a list of (x, y) pairs, in feet
+        :param color: as a 6-digit hex color
+        :param robot_coordinates: if True, the line starts at the robot's centre and is turned as the robot is; if an
+            (x, y), it starts at that place on the robot
+        :param relative_to_first: if True, the points are moved so that the first is (0, 0)
+        :param arrow: if True, there is an arrow at the end
+        :param scale: all points are multiplied by this (x, y)
+        :param kwargs: keyword options for ``tkinter``'s `create_line`
+        """
+        points = [_point(each) for each in line_pts]
+        if len(points) < 2:
+            raise UsageError(f"draw_line(line_pts): a line has two points or more, not {len(points)}")
+        if relative_to_first or robot_coordinates is not False:
+            first = points[0]
+            points = [(x - first[0], y - first[1]) for x, y in points]
+        self._add(Line(self._placed(points, robot_coordinates, scale), color, arrow, kwargs))
+
+    def draw_text(
+        self,
+        text: str,
+        pt: Point,
+        color: str = "#000000",
+        fontSize: int = 10,
+        robot_coordinates: RobotCoordinates = False,
+        scale: Point = (1, 1),
+        arrow: bool = True,
+        **kwargs: Any,
+    ) -> None:
+        """Write a text on the field, its middle at a point.
+
+        :param text: what to write
+        :param pt: an (x, y), in feet
+        :param color: as a 6-digit hex color
+        :param fontSize: in points
+        :param robot_coordinates: if True, the point is as seen from the robot's centre; if an (x, y), from that place
+            on the robot
+        :param scale: the point is multiplied by this (x, y)
+        :param arrow: changes nothing: texts have no arrow; calls that give it, as documented, work
+        :param kwargs: keyword options for ``tkinter``'s `create_text`
+        """
+        ((x, y),) = self._placed([_point(pt)], robot_coordinates, scale)
+        self._add(Text(str(text), x, y, color, fontSize, kwargs))
+
+    def draw_pathfinder_trajectory(
+        self,
+        trajectory: Iterable[Segment],
+        color: str = "#ff0000",
+        offset: Point | None = None,
+        scale: Point = (1, 1),
+        show_dt: float | bool = False,
+        dt_offset: float = 0.0,
+        **kwargs: Any,
+    ) -> None:
+        """Draw a trajectory of `robotpy-pathfinder` (or any other whose segments have `x`, `y` and `dt`).
+
+        It starts at the robot's centre, and goes the way the robot faces.
+
+        :param trajectory: a list of segments; their y grows to the left, as in pathfinder
+        :param color: as a 6-digit hex color
+        :param offset: an (x, y) on the robot where the path starts
+        :param scale: all points are multiplied by this (x, y)
+        :param show_dt: write the time along the path every so many seconds, or False
+        :param dt_offset: is added to each time shown
+        :param kwargs: keyword options for ``tkinter``'s `create_line`
+        """
+        segments = list(trajectory)
+        if len(segments) < 2:
+            raise UsageError(f"draw_pathfinder_trajectory: a path has two segments or more, not {len(segments)}")
+        start = segments[0]
+        path = [(each.x - start.x, start.y - each.y) for each in segments]
+        where: RobotCoordinates = True if offset is None else _point(offset)
+        placed = self._placed(path, where, scale)
+        self._add(Line(placed, color, True, kwargs))
+        if show_dt:
+            every, due, elapsed = 1.0 if show_dt is True else float(show_dt), 0.0, 0.0
+            for segment, (x, y) in zip(segments, placed, strict=True):
+                if elapsed >= due - 1e-9:
+                    self._add(Text(f"t={elapsed + dt_offset:.2f}", x, y, color))
+                    due += every
+                elapsed += segment.dt
+
+    def _placed(self, points: list[Point], robot_coordinates: RobotCoordinates, scale: Point) -> tuple[Point, ...]:
+        scale_x, scale_y = _point(scale)
+        points = [(x * scale_x, y * scale_y) for x, y in points]
+        if robot_coordinates is False:
+            return tuple(points)
+        dx, dy = (0.0, 0.0) if robot_coordinates is True else _point(robot_coordinates)
+        robot = self._robot() or Pose(0.0, 0.0, 0.0)
+        moved = (robot.moved(x + dx, y + dy, 0.0) for x, y in points)
+        return tuple((pose.x, pose.y) for pose in moved)
+
+    def _add(self, drawing: Line | Text) -> None:
+        key = repr(drawing)
+        with self._lock:
+            self._drawings.pop(key, None)
+            self._drawings[key] = drawing
+            if len(self._drawings) > MOST_DRAWINGS:
+                del self._drawings[next(iter(self._drawings))]
+
+
+def get_user_renderer() -> UserRenderer | None:
+    """What draws on the simulated field; None where no field is to be seen, as in tests."""
+    run = redirection.run
+    renderer = None if run is None else run.renderer
+    return renderer if isinstance(renderer, UserRenderer) else None
+
+
+def _point(value: Any) -> Point:
+    try:
+        x, y = value
+        x, y = float(x), float(y)
+    except (TypeError, ValueError):
+        raise UsageError(f"{value!r} is no point: give an (x, y), in feet") from None
+    if not math.isfinite(x + y):
+        raise UsageError(f"{value!r} is no place: its numbers are not finite")
+    return x, y

@@ -1,0 +1,65 @@
+"""``pyfrc sim --watch``: when a file of the project is saved, the simulation goes on with the new code."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from .simulation import Simulation
+
+#: How often to look, in wall seconds.
+_LOOK_SECONDS = 0.2
+#: Directories that hold no code of the robot's.
+_NOT_OURS = {"__pycache__", "node_modules", "site-packages", "tests", "venv"}
+
+
+class Watch:
+    """The files that make up a robot program: its Python files and ``sim/config.json``.
+
+    :param root: the directory of the robot's code
+    """
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+        self._seen = self._look()
+
+    def changed(self) -> bool:
+        """Whether a file has been saved, made or removed since this was last asked."""
+        before, self._seen = self._seen, self._look()
+        return before != self._seen
+
+    def _look(self) -> dict[str, tuple[int, int]]:
+        found = {}
+        for directory, below, files in os.walk(self._root):
+            below[:] = [name for name in below if name not in _NOT_OURS and not name.startswith(".")]
+            for name in files:
+                if name.endswith(".py") or name in ("config.json", "pyproject.toml"):
+                    try:
+                        status = Path(directory, name).stat()
+                    except OSError:  # gone again: an editor's
+                        continue
+                    found[str(Path(directory, name))] = (status.st_mtime_ns, status.st_size)
+        return found
+
+
+@contextmanager
+def watching(simulation: Simulation) -> Iterator[None]:
+    """While this lasts, have the simulation go on with the project's code as it is on the disk."""
+    over = threading.Event()
+    watch = Watch(simulation.project.root)
+
+    def look() -> None:
+        while not over.wait(_LOOK_SECONDS):
+            if watch.changed():
+                simulation.reload()
+
+    thread = threading.Thread(target=look, name="pyfrc sim: watch", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()

@@ -1,0 +1,103 @@
+"""A run as WPILib's data log, for AdvantageScope: each value that has changed, when it has.
+
+Modes and joysticks stand where robots' own logs have them (``DS:enabled``, ``DS:joystick0/axes``), the robot's place
+under ``/pose``, everything else under its path in `hal_data`: ``/hal_data/pwm[0].value``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from wpimath.geometry import Pose2d
+from wpiutil import DataLogWriter, wpistruct
+from wpiutil.log import (
+    BooleanArrayLogEntry,
+    BooleanLogEntry,
+    DoubleArrayLogEntry,
+    DoubleLogEntry,
+    IntegerArrayLogEntry,
+    StringLogEntry,
+)
+
+from ..errors import UsageError
+
+_DRIVER_STATION = {
+    "control.enabled": "DS:enabled",
+    "control.autonomous": "DS:autonomous",
+    "control.test": "DS:test",
+    "control.eStop": "DS:estop",
+}
+_STICK = re.compile(r"joysticks\[(\d)\]\.(axes|buttons|povs)")
+
+
+class WpiLog:
+    """Writes one file, from the beginning of a run.
+
+    :raises UsageError: when there can be no such file
+    """
+
+    def __init__(self, file: Path) -> None:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            file.write_bytes(b"")
+        except OSError as error:
+            raise UsageError(f"{file} cannot be written: {error.strerror}", remedy="--wpilog names a file.") from None
+        self._log = DataLogWriter(str(file), "pyfrc sim")
+        self._entries: dict[str, Any] = {}
+        self._pose: int | None = None
+
+    def write(self, now_us: int, changed: Mapping[str, Any], pose: Pose2d | None) -> None:
+        """Write what has changed by `now_us`, in microseconds of robot time."""
+        stamp = max(1, now_us)  # to WPILib, 0 is "now"
+        for path, value in changed.items():
+            self._entry(path, value)(value, stamp)
+        if pose is not None:
+            # Not by a StructLogEntry: of a DataLogWriter it says "Object is closed", in WPILib 2026.
+            if self._pose is None:
+                self._log.addStructSchema(Pose2d, stamp)
+                self._pose = self._log.start("/pose", f"struct:{wpistruct.getTypeName(Pose2d)}", "", stamp)
+            self._log.appendRaw(self._pose, wpistruct.pack(pose), stamp)
+
+    def close(self) -> None:
+        """Write what is still to be written."""
+        self._log.flush()
+        self._log.stop()
+
+    def _entry(self, path: str, value: Any) -> Callable[[Any, int], object]:
+        found = self._entries.get(path)
+        if found is None:
+            found = self._entries[path] = self._new_entry(path, value)
+        return found
+
+    def _new_entry(self, path: str, value: Any) -> Callable[[Any, int], object]:
+        log = self._log
+        name = _DRIVER_STATION.get(path, f"/hal_data/{path}")
+        if (stick := _STICK.fullmatch(path)) is not None:
+            name = f"DS:joystick{stick[1]}/{stick[2]}"
+            if stick[2] == "axes":
+                return DoubleArrayLogEntry(log, name).append
+            if stick[2] == "povs":
+                return IntegerArrayLogEntry(log, name).append
+            buttons = BooleanArrayLogEntry(log, name)
+            return lambda pressed, stamp: buttons.append(pressed[1:], stamp)  # WPILib's first button is its first
+        if isinstance(value, bool):
+            return _converting(BooleanLogEntry(log, name), bool)
+        if isinstance(value, (int, float)):
+            return _converting(DoubleLogEntry(log, name), float)
+        return _converting(StringLogEntry(log, name), str)
+
+
+def _converting(entry: Any, convert: Callable[[Any], Any]) -> Callable[[Any, int], object]:
+    """Appends to an entry; a value that has become something else meanwhile (None, as a text) is left out."""
+
+    def append(value: Any, stamp: int) -> None:
+        try:
+            converted = convert(value)
+        except (TypeError, ValueError):
+            return
+        entry.append(converted, stamp)
+
+    return append

@@ -1,0 +1,293 @@
+"""The field and what is drawn on it."""
+
+from __future__ import annotations
+
+import math
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from pyfrc.sim import get_user_renderer
+from pyfrc.sim.field.user_renderer import UserRenderer
+from pyfrc_core.config.findings import SettingsWarning
+from pyfrc_core.errors import PyfrcError, UsageError
+from pyfrc_core.project import Project
+from pyfrc_core.sim.field import field_of, tags_of
+from pyfrc_core.sim.picture import draw_picture
+from pyfrc_core.sim.scene import Field, Line, Pose, Scene, Shape, Tag, Target, Text
+from pyfrc_core.sim.user_renderer import MOST_DRAWINGS
+
+DOWN = Pose(10.0, 5.0, math.pi / 2)
+
+
+@pytest.fixture
+def renderer() -> UserRenderer:
+    """On a field with a robot that faces down."""
+    return UserRenderer(lambda: DOWN)
+
+
+def only_line(renderer: UserRenderer) -> Line:
+    (line,) = renderer.drawings()
+    assert isinstance(line, Line)
+    return line
+
+
+def points(line: Line) -> list[tuple[float, float]]:
+    return [(round(x, 6), round(y, 6)) for x, y in line.points]
+
+
+def test_nothing_draws_in_tests(make_project) -> None:
+    assert get_user_renderer() is None
+    project = make_project(
+        {
+            "robot.py": """
+                import wpilib
+                from pyfrc.sim import get_user_renderer
+
+
+                class MyRobot(wpilib.TimedRobot):
+                    def robotInit(self):
+                        self.renderer = get_user_renderer()
+            """,
+            "tests/test_renderer.py": """
+                def test_renderer(control, robot):
+                    with control.run_robot():
+                        assert robot.renderer is None
+            """,
+        }
+    )
+    result = project.run("test", "--", "-q")
+    assert result.code == 0, result.output
+
+
+def test_a_line_in_field_coordinates(renderer: UserRenderer) -> None:
+    renderer.draw_line([(1, 2), (3, 4)])
+    assert only_line(renderer) == Line(((1, 2), (3, 4)), "#ff0000", True, {})
+
+
+@pytest.mark.parametrize(
+    ("keywords", "expected"),
+    [
+        ({"robot_coordinates": True}, [(10, 5), (10, 7), (9, 7)]),
+        ({"robot_coordinates": (1, 0)}, [(10, 6), (10, 8), (9, 8)]),
+        ({"robot_coordinates": (0, 1)}, [(9, 5), (9, 7), (8, 7)]),
+        ({"relative_to_first": True}, [(0, 0), (2, 0), (2, 1)]),
+        ({"scale": (2, 3)}, [(6, 12), (10, 12), (10, 15)]),
+        ({"scale": (2, 3), "robot_coordinates": True}, [(10, 5), (10, 9), (7, 9)]),
+        ({"scale": (1, -1), "relative_to_first": True}, [(0, 0), (2, 0), (2, -1)]),
+    ],
+)
+def test_a_line_in_other_coordinates(keywords: dict, expected: list, renderer: UserRenderer) -> None:
+    renderer.draw_line([(3, 4), (5, 4), (5, 5)], **keywords)
+    assert points(only_line(renderer)) == expected
+
+
+def test_colors_arrows_and_tkinters_own_options(renderer: UserRenderer) -> None:
+    renderer.draw_line([(0, 0), (1, 1)], color="#00ff00", arrow=False, width=3, dash=(4, 4))
+    assert only_line(renderer) == Line(((0, 0), (1, 1)), "#00ff00", False, {"width": 3, "dash": (4, 4)})
+
+
+def test_a_text(renderer: UserRenderer) -> None:
+    renderer.draw_text("here", (1, 2))
+    renderer.draw_text("there", (2, 1), "#0000ff", fontSize=20, scale=(2, 2), arrow=True, anchor="w")
+    renderer.draw_text("robot", (1, 0), robot_coordinates=True)
+    renderer.draw_text("beside", (1, 0), robot_coordinates=(0, 2))
+    first, second, third, fourth = renderer.drawings()
+    assert first == Text("here", 1, 2, "#000000", 10, {})
+    assert second == Text("there", 4, 2, "#0000ff", 20, {"anchor": "w"})
+    assert (third.x, third.y) == pytest.approx((10, 6))
+    assert (fourth.x, fourth.y) == pytest.approx((8, 6))
+
+
+@dataclass
+class Segment:
+    """As of `robotpy-pathfinder`."""
+
+    x: float
+    y: float
+    dt: float = 0.5
+
+
+def test_a_trajectory(renderer: UserRenderer) -> None:
+    path = [Segment(5, 5), Segment(6, 5), Segment(7, 6), Segment(8, 6), Segment(9, 6)]
+    renderer.draw_pathfinder_trajectory(path, color="#0000ff", show_dt=1.0, dt_offset=2.0, width=2)
+    line, *texts = renderer.drawings()
+    # Forward is down; pathfinder's y grows to the robot's left, which is then to the right.
+    assert points(line) == [(10, 5), (10, 6), (11, 7), (11, 8), (11, 9)]
+    assert (line.color, line.options) == ("#0000ff", {"width": 2})
+    assert [(text.text, round(text.x), round(text.y)) for text in texts] == [
+        ("t=2.00", 10, 5),
+        ("t=3.00", 11, 7),
+        ("t=4.00", 11, 9),
+    ]
+
+
+def test_a_trajectory_with_an_offset_and_a_scale(renderer: UserRenderer) -> None:
+    renderer.draw_pathfinder_trajectory([Segment(0, 0), Segment(1, 0)], offset=(0, 2), scale=(3, 3))
+    assert points(only_line(renderer)) == [(8, 5), (8, 8)]
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda renderer: renderer.draw_line([(1, 1)]), "two points"),
+        (lambda renderer: renderer.draw_line([(1, 1), 3]), "no point"),
+        (lambda renderer: renderer.draw_line([(1, 1), (math.nan, 1)]), "not finite"),
+        (lambda renderer: renderer.draw_text("x", "here"), "no point"),
+        (lambda renderer: renderer.draw_pathfinder_trajectory([]), "two segments"),
+    ],
+)
+def test_what_cannot_be_drawn_is_said(call, told: str, renderer: UserRenderer) -> None:
+    with pytest.raises(UsageError, match=told):
+        call(renderer)
+    assert renderer.drawings() == ()
+
+
+def test_many_threads_draw_at_once(renderer: UserRenderer) -> None:
+    together = threading.Barrier(8)
+
+    def draw(thread: int) -> None:
+        together.wait()
+        for number in range(50):
+            renderer.draw_line([(thread, number), (number, thread)])
+            renderer.drawings()
+
+    threads = [threading.Thread(target=draw, args=(number,)) for number in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert {line.points for line in renderer.drawings()} == {
+        ((thread, number), (number, thread)) for thread in range(8) for number in range(50)
+    }
+
+
+def test_what_is_drawn_again_and_again_does_not_pile_up(renderer: UserRenderer) -> None:
+    for _ in range(10):
+        renderer.draw_text("same", (1, 1))
+    assert len(renderer.drawings()) == 1
+    for number in range(MOST_DRAWINGS + 5):
+        renderer.draw_text(str(number), (1, 1))
+    drawings = renderer.drawings()
+    assert len(drawings) == MOST_DRAWINGS
+    assert drawings[-1].text == str(MOST_DRAWINGS + 4)
+
+
+# -- the field -------------------------------------------------------------------------------------------------------
+
+
+def field(root: Path, text: str) -> Field:
+    (root / "sim").mkdir(exist_ok=True)
+    (root / "sim/config.json").write_text(text, encoding="utf-8")
+    return field_of(Project(root / "robot.py"))
+
+
+def test_the_field_of_a_project_without_a_word_about_it(tmp_path: Path) -> None:
+    found = field_of(Project(tmp_path / "robot.py"))
+    assert (found.width, found.height, found.robot_width, found.robot_length) == (
+        54.25,
+        pytest.approx(26.417, 0.001),
+        2,
+        3,
+    )
+    assert found.starts == {"start": (0, 0, 0)}
+
+
+def test_the_field_as_configured(tmp_path: Path) -> None:
+    (tmp_path / "sim").mkdir()
+    (tmp_path / "sim/field.png").write_bytes(b"")
+    found = field(
+        tmp_path,
+        """{"pyfrc": {"robot": {"w": 1, "l": 2, "starting_x": 3, "starting_angle": 180},
+        "field": {"w": 20, "h": 10, "px_per_ft": 30, "image": "field.png", "objects": [
+            {"color": "red", "rect": [1, 2, 3, 4]}, {"color": "#00ff00", "points": [[0, 0], [1, 0], [0, 1]]}]}}}""",
+    )
+    assert (found.width, found.height, found.px_per_ft) == (20, 10, 30)
+    assert found.starts == {"start": (3, 0, pytest.approx(math.pi))}
+    assert found.image == tmp_path / "sim/field.png"
+    assert found.objects == (
+        Shape("red", ((1, 2), (4, 2), (4, 6), (1, 6))),
+        Shape("#00ff00", ((0, 0), (1, 0), (0, 1))),
+    )
+
+
+def test_an_image_that_is_not_there_is_warned_of(tmp_path: Path) -> None:
+    with pytest.warns(SettingsWarning, match="nowhere.png"):
+        assert field(tmp_path, '{"pyfrc": {"field": {"image": "nowhere.png"}}}').image is None
+
+
+def test_a_field_of_no_size_says_where(tmp_path: Path) -> None:
+    with pytest.raises(PyfrcError, match=r"field\.w"):
+        field(tmp_path, '{"pyfrc": {"field": {"w": 0}}}')
+
+
+def test_the_seasons_tags(tmp_path: Path) -> None:
+    pytest.importorskip("robotpy_apriltag")
+    project = Project(tmp_path / "robot.py")
+    tags = tags_of(project.sim_config)
+    assert len(tags) == 32
+    assert all(-1 < tag.x < 55 and -1 < tag.y < 27 for tag in tags)
+    field(tmp_path, '{"pyfrc": {"field": {"season": 2019}}}')
+    assert tags_of(Project(tmp_path / "robot.py").sim_config) == ()
+
+
+# -- pictures --------------------------------------------------------------------------------------------------------
+
+SCENE = Scene(
+    Field(
+        20.0,
+        10.0,
+        15.0,
+        2.0,
+        3.0,
+        {"start": Pose(0, 0, 0)},
+        objects=(Shape("lime", ((15, 1), (19, 1), (19, 5), (15, 5))),),
+    ),
+    robot=Pose(12.0, 5.0, 0.0),
+    trail=((2.0, 5.0), (12.0, 5.0)),
+    drawings=(Line(((1, 1), (1, 9)), "#ff00ff"), Text("a text", 10, 8), Line(((3, 1), (3, 2)), "no colour")),
+    targets=(Target(5, 1, True), Target(6, 1, False)),
+)
+
+
+def test_a_picture_shows_what_is_on_the_field(tmp_path: Path) -> None:
+    pillow = pytest.importorskip("PIL.Image")
+    file = tmp_path / "new/path.png"
+    draw_picture(SCENE, file, former_trail=[(2, 9), (8, 9)])
+    with pillow.open(file) as picture:
+        width, height = picture.size
+        assert (width, height) == (1200, 610)
+
+        def at(x: float, y: float) -> tuple[int, int, int]:
+            return picture.getpixel((round(10 + x * 59), round(10 + y * 59)))
+
+        assert at(17, 3) == (0, 255, 0)
+        assert at(1, 5) == (255, 0, 255)
+        assert at(6, 5) == (0x00, 0x57, 0xB8)
+        assert at(5, 9) == (0xF0, 0xA0, 0x30)
+        assert at(13.5, 5.5) == (0xD0, 0, 0)
+        assert at(5, 1) == (0, 0xA0, 0x40)
+        assert at(6, 1) == at(18, 8) == (0xE8, 0xE8, 0xE8)
+
+
+def test_a_picture_of_tags_and_on_an_image(tmp_path: Path) -> None:
+    pillow = pytest.importorskip("PIL.Image")
+    image = tmp_path / "field.png"
+    pillow.new("RGB", (4, 2), "#123456").save(image)
+    scene = Scene(Field(20, 10, 15, 2, 3, {}, image, tags=(Tag(7, 10, 5, 0.0),)))
+    draw_picture(scene, tmp_path / "path.jpg")
+    with pillow.open(tmp_path / "path.jpg") as picture:
+        assert picture.getpixel((100, 100)) == pytest.approx((0x12, 0x34, 0x56), abs=3)
+    image.write_text("no picture")
+    with pytest.raises(UsageError, match=r"field.png is no picture"):
+        draw_picture(scene, tmp_path / "path.png")
+
+
+@pytest.mark.parametrize("name", ["path", "path.doc", "sub"])
+def test_a_picture_that_cannot_be_written(name: str, tmp_path: Path) -> None:
+    pytest.importorskip("PIL.Image")
+    (tmp_path / "sub.png").mkdir()
+    with pytest.raises(UsageError, match=r"path|sub"):
+        draw_picture(SCENE, tmp_path / (name if name != "sub" else "sub.png"))

@@ -1,0 +1,422 @@
+"""A simulation session: commands in, snapshots out; time travel; robots that fail."""
+
+from __future__ import annotations
+
+import math
+import socket
+import threading
+from collections.abc import Iterator
+from dataclasses import FrozenInstanceError, replace
+
+import ntcore
+import pytest
+from sim_robots import FILES, PATIENCE, run, settle, wait
+
+from pyfrc_core.errors import UsageError
+from pyfrc_core.project import Project
+from pyfrc_core.runtime.forks import FORK_IS_SAFE
+from pyfrc_core.runtime.scripts.script import load_script, parse_script
+from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.watch import Watch
+
+STILL = SimOptions(paused=True, speed=0)
+
+
+@pytest.fixture
+def project(make_project) -> Project:
+    made = make_project(FILES)
+    return Project(made.path / "robot.py")
+
+
+@pytest.fixture
+def simulation(project: Project) -> Iterator[Simulation]:
+    """The robot, at time 0."""
+    with Simulation(project, STILL) as simulation:
+        settle(simulation)
+        yield simulation
+
+
+def drive_forward(simulation: Simulation) -> None:
+    simulation.enable()
+    simulation.set_axis(0, 1, -1.0)
+
+
+def test_a_robot_that_has_just_been_switched_on(simulation: Simulation) -> None:
+    snapshot = simulation.snapshot
+    assert snapshot is not None
+    assert (snapshot.time, snapshot.mode, snapshot.enabled, snapshot.chosen_mode) == (0.0, "disabled", False, "teleop")
+    assert snapshot.values["pwm[0].value"] == 0
+    assert snapshot.values["dio[3].is_input"] is True
+    assert "pwm[2].value" not in snapshot.values  # the robot has made no such motor
+    assert snapshot.scene.robot == (10, 12, 0)
+    assert [text.text for text in snapshot.scene.drawings] == ["hello"]
+    assert (snapshot.scene.field.width, list(snapshot.scene.field.starts)) == (54.25, ["start", "left", "right"])
+    wait(simulation, lambda: "the robot is there" in simulation.take_output())
+    with pytest.raises(FrozenInstanceError):
+        snapshot.time = 1.0  # type: ignore[misc]
+    with pytest.raises(TypeError):
+        snapshot.values["pwm[0].value"] = 1  # type: ignore[index]
+
+
+def test_driving_as_from_a_driver_station(simulation: Simulation) -> None:
+    simulation.enable()
+    simulation.set_axis(0, 1, -0.5)
+    simulation.set_alliance("blue2")
+    simulation.set_game_message("LRL")
+    simulation.write({"dio[3].value": False})
+    wait(simulation, lambda: simulation.snapshot.values.get("dio[3].value") is False)  # also while time stands still
+    run(simulation, 2)
+    snapshot = simulation.snapshot
+    assert (snapshot.mode, snapshot.enabled) == ("teleop", True)
+    assert snapshot.values["pwm[0].value"] == pytest.approx(0.5, abs=0.01)
+    assert snapshot.values["alliance_station"] == 5  # as in traces
+    assert snapshot.values["event.game_specific_message"] == "LRL"
+    x, y, angle = snapshot.scene.robot
+    assert (x, y, angle) == pytest.approx((15, 12, 0), abs=0.2)  # 2 s at half of 5 ft/s
+    assert snapshot.distance == pytest.approx(x - 10, abs=0.1)
+    assert snapshot.mode_seconds["teleop"] == pytest.approx(2, abs=0.05)
+    assert snapshot.scene.trail[0] == pytest.approx((10, 12), abs=0.1)
+    simulation.disable()
+    run(simulation, 0.1)
+    assert (simulation.snapshot.mode, simulation.snapshot.values["pwm[0].value"]) == ("disabled", 0)
+    # Joystick data come in teleop only, unless sim/config.json says otherwise.
+    assert simulation.snapshot.values["joysticks[0].axes"][1] == 0
+
+
+def test_one_packet_is_a_fiftieth_of_a_second(simulation: Simulation) -> None:
+    for packets in (1, 2, 3):
+        simulation.step()
+        wait(simulation, lambda: simulation.snapshot.time == packets * 0.02)  # noqa: B023
+    simulation.step(5)
+    wait(simulation, lambda: simulation.snapshot.time == 0.16 and simulation.status.state == "paused")
+    simulation.run_until(1.0)
+    wait(simulation, lambda: simulation.snapshot.time == 1.0 and simulation.status.state == "paused")
+
+
+def test_autonomous_goes_by_the_chooser(simulation: Simulation) -> None:
+    (chooser,) = simulation.snapshot.choosers
+    assert (chooser.name, chooser.options, chooser.default) == (
+        "/SmartDashboard/Auto",
+        ("Forward", "Nothing"),
+        "Nothing",
+    )
+    simulation.choose(chooser.name, "Forward")
+    simulation.choose_mode("autonomous")
+    wait(simulation, lambda: simulation.snapshot.mode == "disabled autonomous")
+    assert simulation.snapshot.chosen_mode == "autonomous"
+    simulation.enable()
+    run(simulation, 1)
+    assert simulation.snapshot.mode == "autonomous"
+    assert simulation.snapshot.scene.robot.x > 14
+    assert simulation.snapshot.choosers[0].active == "Forward"
+
+
+def test_a_practice_match(simulation: Simulation) -> None:
+    simulation.practice()
+    seen = []
+    for _ in range(9):
+        run(simulation, 0.4)
+        snapshot = simulation.snapshot
+        seen.append((round(snapshot.time, 2), snapshot.mode, round(snapshot.match_left, 2)))
+    assert seen[1] == (0.8, "autonomous", 0.42)  # it began with the packet of 0.02 s
+    assert seen[2] == (1.2, "autonomous", 0.02)
+    assert seen[3] == (1.6, "teleop", 1.82)
+    assert seen[-1] == (3.6, "disabled", 0.0)
+    assert simulation.snapshot.practice_since is None
+
+
+def test_an_emergency_stop_lasts_until_the_robot_is_restarted(simulation: Simulation) -> None:
+    drive_forward(simulation)
+    run(simulation, 0.5)
+    simulation.emergency_stop()
+    run(simulation, 0.1)
+    assert simulation.snapshot.emergency_stopped
+    assert simulation.snapshot.values["pwm[0].value"] == 0
+    simulation.enable()
+    wait(simulation, lambda: "restart" in simulation.status.note)
+    assert not simulation.snapshot.enabled
+    simulation.restart()
+    wait(simulation, lambda: simulation.status.state == "paused" and simulation.snapshot.time == 0)
+    drive_forward(simulation)
+    run(simulation, 0.5)
+    assert not simulation.snapshot.emergency_stopped
+    assert simulation.snapshot.scene.robot.x > 11
+
+
+def test_putting_the_robot_elsewhere(simulation: Simulation) -> None:
+    simulation.place(20, 5, 90)
+    wait(simulation, lambda: simulation.snapshot.scene.robot == pytest.approx((20, 5, math.pi / 2)))
+    drive_forward(simulation)
+    run(simulation, 1)
+    assert simulation.snapshot.scene.robot == pytest.approx((20, 10, math.pi / 2), abs=0.2)  # 90 degrees is down
+    simulation.reset_position("right")
+    wait(simulation, lambda: simulation.snapshot.scene.robot == pytest.approx((2, 20, 0)))
+    with pytest.raises(UsageError, match="left"):
+        simulation.reset_position("lft")
+
+
+def test_starting_elsewhere(project: Project) -> None:
+    with Simulation(project, replace(STILL, start_position="left")) as simulation:
+        settle(simulation)
+        drive_forward(simulation)
+        run(simulation, 1)
+        assert simulation.snapshot.scene.robot == pytest.approx((2, 8, math.pi / 2), abs=0.2)
+
+
+def test_what_cannot_be_written_is_said(simulation: Simulation) -> None:
+    for target, value, told in (
+        ("pwm[99].value", 1.0, "pwm"),
+        ("joysticks[0].axes[1]", 7.0, "-1"),
+        ("nonsense", 1, "nonsense"),
+    ):
+        simulation.set_button(0, 1, False)
+        simulation.enable()
+        simulation.write({target: value})
+        wait(simulation, lambda: told in simulation.status.note)  # noqa: B023
+    run(simulation, 0.1)
+    assert simulation.status.state == "paused"
+
+
+def test_going_back_lands_on_the_same_snapshot(simulation: Simulation) -> None:
+    """In the middle of a match; and what was driven from there on can be driven again."""
+    simulation.practice()
+    run(simulation, 1)
+    there = simulation.snapshot
+    simulation.set_axis(0, 1, -1.0)
+    run(simulation, 2)
+    later, script = simulation.snapshot, simulation.script()
+    simulation.rewind(1.0)
+    wait(simulation, lambda: simulation.status.state == "paused")
+    assert simulation.snapshot == there
+    assert [recording.steps for recording in simulation.recordings] == [script.steps]
+    assert simulation.status.former_trail == later.scene.trail
+    simulation.set_axis(0, 1, -1.0)
+    run(simulation, 2)
+    assert simulation.snapshot == later
+    assert simulation.script().trace == script.trace
+    simulation.rewind(0)
+    wait(simulation, lambda: simulation.status.state == "paused")
+    assert (simulation.snapshot.time, simulation.snapshot.mode) == (0, "disabled")
+
+
+def test_a_recording_replays_to_the_same_trace(simulation: Simulation, project: Project, tmp_path) -> None:
+    """With everything in it that can come from outside, also after going back."""
+    simulation.choose("/SmartDashboard/Auto", "Forward")
+    simulation.practice()
+    run(simulation, 1.5)
+    simulation.set_axis(0, 0, 0.37)
+    simulation.set_axis(0, 1, -0.81)
+    simulation.set_button(0, 2, True)
+    simulation.set_pov(1, 0, 90)
+    simulation.plug(3, False)
+    simulation.place(20, 5, 90)
+    run(simulation, 1)
+    simulation.rewind(2.0)
+    wait(simulation, lambda: simulation.status.state == "paused")
+    simulation.write({"dio[3].value": False, "nt:/SmartDashboard/gain": 0.25})
+    run(simulation, 0.5)
+    files = simulation.save_all(tmp_path / "drive.jsonl")
+    assert [file.name for file in files] == ["drive.jsonl", "drive-1.jsonl"]
+    simulation.close()
+    script = load_script(files[0])
+    assert script.trace is not None
+    with Simulation(project, replace(STILL, script=script)) as again:
+        settle(again)
+        again.run_until((script.end_us - 1) / 1e6)
+        wait(again, lambda: again.snapshot.time == (script.end_us - 1) / 1e6)
+        assert again.script().trace == script.trace
+        # A script knows what a match did, and not that it was one.
+        assert again.snapshot == replace(simulation.snapshot, practice_since=None)
+
+
+def test_a_script_is_played_and_can_be_taken_over(project: Project) -> None:
+    script = parse_script(
+        [
+            '{"format": "pyfrc-input 1", "end": 10}',
+            '{"t": 0, "set": {"mode": "teleop"}}',
+            '{"t": 1, "set": {"joysticks[0].axes[1]": -1.0}}',
+        ]
+    )
+    with Simulation(project, replace(STILL, script=script, start_at=2.0)) as simulation:
+        settle(simulation)
+        assert simulation.snapshot.time == 2.0
+        assert simulation.snapshot.scene.robot.x == pytest.approx(15, abs=0.2)
+        simulation.set_axis(0, 1, 0.0)
+        run(simulation, 1)
+        assert simulation.snapshot.scene.robot.x == pytest.approx(15, abs=0.2)
+    with pytest.raises(UsageError, match="script's end"):
+        Simulation(project, replace(STILL, script=script, start_at=11.0))
+
+
+@pytest.mark.parametrize(
+    ("button", "headline"),
+    [
+        (5, "ZeroDivisionError: division by zero"),
+        (6, "hangs here"),
+        (7, "exit code 3"),
+    ],
+)
+def test_a_robot_that_fails_takes_nothing_with_it(
+    button: int, headline: str, simulation: Simulation, project: Project
+) -> None:
+    drive_forward(simulation)
+    run(simulation, 1)
+    before = simulation.snapshot
+    simulation.set_button(0, button, True)
+    run(simulation, 5)
+    status = simulation.status
+    assert status.state == "failed"
+    assert headline in status.failure.headline
+    line = next(
+        number
+        for number, text in enumerate(FILES["robot.py"].strip().splitlines(), 1)
+        if {5: "1 / 0", 6: "while True", 7: "os._exit"}[button] in text
+    )
+    place, _, what = status.failure.headline.partition(": ")
+    assert place in (f"robot.py:{line}", f"robot.py:{line + 1}"), what
+    simulation.rewind(1.0)
+    wait(simulation, lambda: simulation.status.state == "paused")
+    assert simulation.snapshot == before
+    run(simulation, 1)
+    assert simulation.status.state == "paused"
+
+
+def test_code_that_cannot_be_imported_says_where(make_project) -> None:
+    made = make_project({"robot.py": "import wpilib\n\n1 / 0\n"})
+    with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
+        settle(simulation)
+        assert simulation.status.failure.headline.startswith("robot.py:3: ZeroDivisionError")
+
+
+def test_a_robot_program_that_ends(make_project) -> None:
+    made = make_project(
+        {
+            "robot.py": """
+                import hal
+                import time
+                import wpilib
+
+
+                class MyRobot(wpilib.RobotBase):
+                    def startCompetition(self):
+                        hal.observeUserProgramStarting()
+                        time.sleep(0.5)
+
+                    def endCompetition(self):
+                        pass
+            """
+        }
+    )
+    with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
+        run(simulation, 5)
+        assert "ended by itself" in simulation.status.failure.headline
+        assert simulation.status.failure.time == pytest.approx(0.5, abs=0.03)
+
+
+def test_new_code_is_brought_to_the_same_moment(simulation: Simulation, project: Project) -> None:
+    drive_forward(simulation)
+    run(simulation, 2)
+    before = simulation.snapshot
+    watch = Watch(project.root)
+    assert not watch.changed()
+    robot = project.root / "robot.py"
+    robot.write_text(robot.read_text().replace("SPEED = 1.0", "SPEED = 0.5  # slower"))
+    assert watch.changed()
+    assert not watch.changed()
+    simulation.reload()
+    wait(simulation, lambda: simulation.status.state == "paused")
+    assert simulation.snapshot.time == pytest.approx(before.time, abs=1e-5)
+    assert simulation.snapshot.scene.robot.x == pytest.approx(15, abs=0.2)
+    assert simulation.status.former_trail == before.scene.trail
+    # A mistake that is saved, and corrected: the moment is not lost.
+    text = robot.read_text()
+    robot.write_text(text.replace("SPEED = 0.5", "SPEED = 0.5 / 0"))
+    simulation.reload()
+    wait(simulation, lambda: simulation.status.state == "failed")
+    robot.write_text(text.replace("SPEED = 0.5", "SPEED = 1.00"))
+    simulation.reload()
+    wait(simulation, lambda: simulation.status.state in ("paused", "running"))
+    assert simulation.snapshot.scene.robot == pytest.approx(before.scene.robot)
+
+
+def test_real_time_goes_on_by_itself(project: Project) -> None:
+    with Simulation(project, SimOptions(recording=False)) as simulation:
+        wait(simulation, lambda: simulation.snapshot is not None and simulation.snapshot.time > 0.1)
+        assert simulation.status.state == "running"
+        simulation.rewind(0.0)
+        assert "not recorded" in simulation.status.note
+        with pytest.raises(UsageError, match="not recorded"):
+            simulation.save(project.root / "script.jsonl")
+
+
+@pytest.mark.skipif(not FORK_IS_SAFE, reason="it is the only way here, and so tested by all others")
+def test_where_processes_cannot_be_forked(project: Project) -> None:
+    with Simulation(project, replace(STILL, fork=False)) as simulation:
+        drive_forward(simulation)
+        run(simulation, 1)
+        there = simulation.snapshot
+        run(simulation, 1)
+        simulation.rewind(1.0)
+        wait(simulation, lambda: simulation.status.state == "paused")
+        assert simulation.snapshot == there
+
+
+@pytest.mark.parametrize("speed", [-1, 0.001, 1e6, math.nan])
+def test_speeds_that_cannot_be(speed: float, project: Project) -> None:
+    with pytest.raises(UsageError, match="speed"):
+        Simulation(project, SimOptions(speed=speed))
+
+
+def test_a_recording_replays_in_pyfrc_replay(make_project, tmp_path) -> None:
+    made = make_project(FILES)
+    with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
+        drive_forward(simulation)
+        run(simulation, 1)
+        simulation.practice()
+        run(simulation, 1)
+        simulation.save(tmp_path / "drive.jsonl")
+    result = made.run("replay", tmp_path / "drive.jsonl")
+    assert "The trace equals the recorded one." in result.stdout, result.output
+
+
+def test_dashboards_see_the_robot_and_are_recorded(project: Project) -> None:
+    with socket.socket() as probe:
+        probe.bind(("", 0))
+        port = probe.getsockname()[1]
+    dashboard = ntcore.NetworkTableInstance.create()
+    heard = threading.Event()
+
+    def hear(event: ntcore.Event) -> None:
+        if event.data.value.value() == "Nothing":
+            heard.set()
+
+    choice = "/SmartDashboard/Auto/selected"
+    dashboard.addListener(
+        dashboard.getEntry("/SmartDashboard/Auto/active"),
+        ntcore.EventFlags.kValueAll | ntcore.EventFlags.kImmediate,
+        hear,
+    )
+    try:
+        with Simulation(project, replace(STILL, nt_port=port)) as simulation:
+            settle(simulation)
+            assert simulation.status.network_address == f"localhost:{port}"
+            dashboard.setServer("127.0.0.1", port)
+            dashboard.startClient4("dashboard")
+            assert heard.wait(PATIENCE)
+            dashboard.getEntry(choice).setString("Forward")
+            dashboard.flush()
+            told = {f"nt:{choice}": "Forward"}
+
+            def chosen() -> bool:
+                simulation.step()
+                return simulation.snapshot.choosers[0].active == "Forward"
+
+            wait(simulation, chosen)
+            assert told in [step.writes for step in simulation.script().steps]
+            # A second one finds the port taken, and says so.
+            with Simulation(project, replace(STILL, nt_port=port)) as another:
+                settle(another)
+                assert another.status.network_address is None
+                assert f"port {port} is taken" in another.status.note
+    finally:
+        ntcore.NetworkTableInstance.destroy(dashboard)

@@ -1,0 +1,644 @@
+"""The simulator's window on a virtual display, used as its user does: with real keys and a real mouse."""
+
+from __future__ import annotations
+
+import gc
+import math
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from textwrap import dedent
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from conftest import MakeProject, RobotProject
+from virtual_display import VirtualDisplay, missing, virtual_display
+
+if "PYFRC_NO_SKIPS" not in os.environ:
+    pytest.importorskip("tkinter", reason="this Python has no tkinter")
+
+from pyfrc_core.errors import SettingsError, UsageError
+from pyfrc_core.project import Project
+from pyfrc_core.runtime.scripts.script import load_script
+from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.scene import Tag, Target
+from pyfrc_core.sim.ui.choose import default_name, window
+from pyfrc_core.sim.ui.tk import TkFrontEnd
+from pyfrc_core.sim.ui.tk.window import Window
+
+if TYPE_CHECKING:
+    import tkinter as tk
+    from tkinter import ttk
+
+    from pyfrc_core.sim import Snapshot, Status
+    from pyfrc_core.sim.ui.tk.devices import Row
+    from pyfrc_core.sim.ui.tk.slider import Slider
+
+TEMPLATE = Path(__file__).parent.parent / "templates" / "tank"
+
+#: So often a test looks whether something has come true, waiting a little for the robot in between, before it gives up.
+_LOOKS, _PAUSE = 3000, 0.01
+
+ROBOT = {
+    "robot.py": """
+        import threading
+        from pathlib import Path
+
+        import wpilib
+        from pyfrc.sim import get_user_renderer
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.motor = wpilib.PWMSparkMax(2)
+                self.switch = wpilib.DigitalInput(3)
+                self.ready = wpilib.DigitalOutput(4)
+                self.pot = wpilib.AnalogInput(0)
+                self.encoder = wpilib.Encoder(0, 1)
+                self.claw = wpilib.DoubleSolenoid(wpilib.PneumaticsModuleType.CTREPCM, 0, 1)
+                self.spike = wpilib.Relay(0)
+                self.stick = wpilib.Joystick(0)
+                self.chooser = wpilib.SendableChooser()
+                self.chooser.setDefaultOption("Nothing", 0)
+                self.chooser.addOption("Everything", 1)
+                wpilib.SmartDashboard.putData("Auto", self.chooser)
+                self.renderer = get_user_renderer()
+                print("the robot is there")
+
+            def robotPeriodic(self):
+                self.ready.set(self.switch.get())
+
+            def teleopInit(self):
+                self.gyro = wpilib.AnalogGyro(1)
+                self.claw.set(wpilib.DoubleSolenoid.Value.kReverse)
+                self.spike.set(wpilib.Relay.Value.kForward)
+                if self.renderer is not None:
+                    self.renderer.draw_line([(1, 1), (5, 5)], color="#123456")
+                    self.renderer.draw_text("here", (5, 5), fontSize=9)
+                    self.renderer.draw_line([(1, 1), (5, 5)], no_such_option=1)
+
+            def teleopPeriodic(self):
+                self.motor.set(-self.stick.getY())
+                if self.stick.getY() < 0:
+                    Path(__file__).with_name("driven").touch()
+                if self.stick.getRawButton(1):
+                    raise RuntimeError("the arm has come off")
+                if self.stick.getRawButton(2):
+                    print("an endless loop begins", flush=True)
+                    while True:
+                        pass
+                if self.stick.getRawButton(3):
+                    threading.Thread(target=threading.Event().wait).start()
+                    print("a thread that never ends", flush=True)
+    """,
+    "sim/config.json": """
+        {"pyfrc": {"pwm": {"2": "Arm"}, "dio": {"3": "Limit"}, "game_specific_messages": ["LRL"],
+                   "robot": {"starting_x": 10, "starting_y": 12,
+                             "start_positions": [{"name": "left", "x": 2, "y": 3}, {"name": "right", "x": 2, "y": 20}]},
+                   "field": {"objects": [{"color": "#00ff00", "rect": [20, 5, 2, 2]}]}}}
+    """,
+    "physics.py": """
+        class PhysicsEngine:
+            def __init__(self, physics_controller):
+                self.physics_controller = physics_controller
+
+            def update_sim(self, hal_data, now, tm_diff):
+                self.physics_controller.drive(hal_data["pwm"][2]["value"] * 5, 0, tm_diff)
+                hal_data.setdefault("custom", {})["Arm"] = "up" if hal_data["dio"][3]["value"] else "down"
+    """,
+    "pyproject.toml": """
+        [tool.pyfrc.test]
+        hang_seconds = 0.5
+    """,
+}
+
+
+# Tk keeps a display that it has seen, and ends the process when that goes: it stays as long as the process.
+@pytest.fixture(scope="session")
+def display() -> Iterator[VirtualDisplay]:
+    if absent := missing():
+        pytest.skip(f"the window is tested on a virtual display: install {' and '.join(absent)}")
+    with virtual_display() as display:
+        yield display
+
+
+class User:
+    """Somebody at the window."""
+
+    def __init__(self, simulation: Simulation, window: Window, display: VirtualDisplay) -> None:
+        self.simulation, self.window, self.display = simulation, window, display
+
+    @property
+    def snapshot(self) -> Snapshot:
+        assert self.simulation.snapshot is not None
+        return self.simulation.snapshot
+
+    @property
+    def status(self) -> Status:
+        return self.simulation.status
+
+    def until(self, condition: Callable[[], Any]) -> None:
+        """Let the window work until this is so."""
+        if not self.sees(condition, _LOOKS):
+            raise AssertionError(f"this has not come true: {self.simulation.status} {self.simulation.snapshot}")
+
+    def sees(self, condition: Callable[[], Any], looks: int) -> bool:
+        """Whether this is so after so many looks, or earlier."""
+        for _ in range(looks):
+            self.window.root.update()
+            if self.window.failure is not None:
+                raise self.window.failure
+            if condition():
+                return True
+            self.simulation.wait_for(lambda: False, _PAUSE)
+        return False
+
+    def shown(self) -> None:
+        """Let the window draw what there is now."""
+        frames = self.window.frames
+        self.until(lambda: self.window.frames > frames + 1)
+
+    def keys(self, *words: str) -> None:
+        self.display.do(*words)
+
+    def press(self, key: str) -> None:
+        self.display.do("key", key)
+
+    def click(self, widget: tk.Misc, x: int | None = None, y: int | None = None, button: int = 1) -> None:
+        """Click on a widget, in its middle or at one of its pixels."""
+        self.display.do(*self._to(widget, x, y), "click", button)
+
+    def drag(self, widget: tk.Misc, start: tuple[int, int], end: tuple[int, int], button: int = 1) -> None:
+        self.display.do(*self._to(widget, *start), "mousedown", button, *self._to(widget, *end), "mouseup", button)
+
+    def row(self, label: str) -> Row:
+        """The device row with this label."""
+        return next(item.row for item in self.window.devices.items if item.row.label.strip() == label)
+
+    def click_row(self, label: str) -> None:
+        self.click(self.window.devices.canvas, *self.window.devices.center_of(self.row(label)))
+
+    def choose(self, box: ttk.Combobox, index: int) -> None:
+        """Choose from a box's list; as a person would, click again where a click has come to nothing."""
+        tcl = box.tk
+        listbox = str(tcl.call("ttk::combobox::PopdownWindow", str(box))) + ".f.l"
+
+        def is_open() -> int:
+            return int(tcl.call("winfo", "ismapped", listbox))
+
+        def choose() -> bool:
+            if not is_open():
+                self.click(box)
+                return self.sees(is_open, 100) and choose()
+            self.shown()  # where it is to stay
+            x, y, width, height = (int(each) for each in tcl.splitlist(tcl.call(listbox, "bbox", index)))
+            left, top = (int(tcl.call("winfo", f"root{axis}", listbox)) for axis in "xy")
+            self.display.do("mousemove", left + x + width // 2, top + y + height // 2, "click", 1)
+            return self.sees(lambda: not is_open(), 100) and box.current() == index
+
+        assert any(choose() for _ in range(10)), box.get()
+
+    @staticmethod
+    def _to(widget: tk.Misc, x: int | None, y: int | None) -> tuple[str | int, ...]:
+        widget.update_idletasks()
+        x = widget.winfo_width() // 2 if x is None else x
+        y = widget.winfo_height() // 2 if y is None else y
+        return "mousemove", widget.winfo_rootx() + x, widget.winfo_rooty() + y
+
+
+#: What belongs to Tk can be tidied away in no thread but this one; and a failed test keeps it for a while.
+_KEPT: list[object] = []
+
+Sit = Callable[..., User]
+
+
+@pytest.fixture
+def sit(display: VirtualDisplay) -> Iterator[Sit]:
+    """Opens a window on a simulation, and somebody sits down at it."""
+    opened: list[User] = []
+
+    def sit(project: Path, options: SimOptions | None = None) -> User:
+        simulation = Simulation(Project(project / "robot.py"), options)
+        user = User(simulation, Window(simulation, display.name), display)
+        opened.append(user)
+        simulation.start()
+        user.window.begin()
+        user.window.root.wait_visibility()
+        user.window.field.canvas.focus_force()
+        user.until(lambda: user.status.state in ("running", "paused") and simulation.snapshot is not None)
+        user.until(lambda: user.window.devices.items)
+        return user
+
+    yield sit
+    for user in opened:
+        user.window.close()
+        user.simulation.close()
+        _KEPT.append(user.window.root.tk)
+        del user.window
+    gc.collect()
+
+
+@pytest.fixture
+def user(sit: Sit, make_project: MakeProject) -> User:
+    """Somebody at the test robot's window."""
+    return sit(make_project(ROBOT).path)
+
+
+@pytest.fixture
+def tank(tmp_path: Path) -> Path:
+    """The project that `pyfrc init` makes."""
+    shutil.copytree(TEMPLATE, tmp_path / "tank")
+    return tmp_path / "tank"
+
+
+def slide(user: User, slider: Slider, place: float) -> None:
+    x, y = slider.pixel_of(place), slider.winfo_height() // 2
+    user.drag(slider, (round(slider.pixel_of(slider.position)), y), (round(x), y))
+
+
+def test_driving_by_keys_in_all_kinds_of_time(sit: Sit, tank: Path) -> None:
+    """The tank template: driven forwards, paused, stepped, slowed down, brought back, reset."""
+    user = sit(tank)
+    window, simulation = user.window, user.simulation
+    start = user.snapshot.scene.robot
+    assert start is not None
+    assert not user.snapshot.enabled
+    user.keys("keydown", "bracketleft", "keydown", "bracketright", "key", "backslash")
+    user.keys("keyup", "bracketleft", "keyup", "bracketright")
+    user.until(lambda: user.snapshot.mode == "teleop")
+    user.keys("keydown", "w")
+    user.until(lambda: user.snapshot.scene.robot.x > start.x + 2)
+    assert user.snapshot.scene.robot.y == pytest.approx(start.y, abs=0.1)
+    user.press("F5")
+    user.until(lambda: user.status.state == "paused")
+    user.keys("keyup", "w")
+    user.until(lambda: user.snapshot.values["joysticks[0].axes"][1] == 0)
+
+    # What is seen is where the robot is.
+    user.shown()
+    x0, y0, x1, y1 = window.field.canvas.bbox("bumpers")
+    robot = user.snapshot.scene.robot
+    assert ((x0 + x1) / 2, (y0 + y1) / 2) == pytest.approx(window.field.view.to_screen(robot.x, robot.y), abs=2)
+    assert window.field.canvas.find_withtag("trail")
+
+    before = user.snapshot.time
+    user.press("F6")
+    user.until(lambda: user.snapshot.time != before)
+    user.until(lambda: user.status.state == "paused")
+    assert round(user.snapshot.time - before, 9) == 0.02
+    user.click(window.time.step)
+    user.until(lambda: user.snapshot.time > before + 0.03)
+    user.until(lambda: user.status.state == "paused")
+    assert round(user.snapshot.time - before, 9) == 0.04
+
+    slide(user, window.time.speed, 0.0)
+    user.until(lambda: user.status.speed == 0.1)
+    slide(user, window.time.speed, 1.0)
+    user.until(lambda: user.status.speed == 0)
+
+    slide(user, window.time.timeline, 0.5)
+    user.until(lambda: simulation.recordings and user.status.state == "paused" and user.snapshot.time < before)
+    assert user.status.former_trail
+    assert user.snapshot.time == pytest.approx((before + 0.04) / 2, abs=0.031)  # a packet, a pixel
+    user.press("F5")
+    user.until(lambda: user.snapshot.time > before)
+
+    user.press("Return")
+    user.until(lambda: user.snapshot.mode == "disabled")
+    seen: list[Snapshot] = []
+
+    def stands() -> bool:
+        seen.append(user.snapshot)
+        return any(
+            then.time < user.snapshot.time - 1 and then.scene.robot == user.snapshot.scene.robot for then in seen
+        )
+
+    user.until(stands)
+    user.click(window.match.reset)
+    user.until(lambda: user.snapshot.scene.robot[:2] == pytest.approx(start[:2], abs=1e-6))
+
+
+def test_modes_emergency_stop_and_restart(user: User) -> None:
+    station = user.window.station
+    user.click(station.mode_buttons["autonomous"])
+    user.until(lambda: user.snapshot.mode == "disabled autonomous")
+    user.shown()
+    assert (station.mode.get(), station.state.cget("text")) == ("autonomous", "Autonomous disabled")
+    user.click(station.enable)
+    user.until(lambda: user.snapshot.mode == "autonomous")
+    user.shown()
+    assert station.enable.instate(["disabled"])
+    user.press("space")
+    user.until(lambda: user.snapshot.emergency_stopped)
+    user.press("ctrl+e")
+    user.until(lambda: "restart" in user.status.note)
+    assert not user.snapshot.enabled
+    user.press("F9")
+    user.until(lambda: user.status.state == "running" and not user.snapshot.emergency_stopped)
+    user.until(lambda: station.practice.instate(["!disabled"]))
+    user.click(station.practice)
+    user.until(lambda: user.snapshot.mode == "autonomous" and user.snapshot.practice_since is not None)
+
+
+def test_devices_are_shown_and_set(user: User) -> None:
+    devices = user.window.devices
+    assert [panel.title for panel in devices.rows.panels][:2] == ["PWM", "Digital I/O"]
+    assert user.row("2  Arm").kind == "meter"
+    user.click_row("3  Limit")
+    user.until(lambda: user.snapshot.values["dio[4].value"] is False)
+    user.until(lambda: user.snapshot.values["custom.Arm"] == "down")
+    user.click_row("Encoder 0")
+    user.until(lambda: user.window.root.focus_get().winfo_class() == "Entry")
+    user.keys("type", "123")  # what is typed there neither drives nor presses buttons
+    user.press("Return")
+    user.until(lambda: user.snapshot.values["encoder[0].count"] == 123)
+    assert not any(user.snapshot.values["joysticks[0].buttons"])
+    voltage = next(item for item in devices.items if item.row.paths == ("analog_in[0].voltage",))
+    y = devices.center_of(voltage.row)[1]
+    user.drag(devices.canvas, (voltage.place.left + 20, y), (voltage.place.left + 40, y))
+    user.until(lambda: user.snapshot.values["analog_in[0].voltage"] == voltage.value_at(voltage.place.left + 40))
+
+    # What the robot makes later is shown from then on.
+    titles = [panel.title for panel in devices.rows.panels]
+    user.press("ctrl+e")
+    user.until(lambda: [panel.title for panel in devices.rows.panels] != titles)
+    assert user.row("Analog 1").paths == ("analog_gyro[1].angle",)
+    user.until(lambda: user.snapshot.values["relay[0].fwd"] is True)
+
+    # A word of help, when the mouse rests on a row.
+    user.keys(*map(str, user._to(devices.canvas, *devices.center_of(user.row("3  Limit")))))
+    user.until(lambda: "DIO 3" in user.window.devices._tooltip.text)
+
+
+def test_joysticks_by_mouse(user: User) -> None:
+    joystick = user.window.joystick
+    canvas = joystick.canvas
+    user.press("ctrl+e")
+    user.until(lambda: user.snapshot.mode == "teleop")
+    x, y = joystick.center_of(("button", 5))
+    user.display.do(*user._to(canvas, x - 30, y), "mousedown", 1)
+    user.until(lambda: user.snapshot.values["joysticks[0].buttons"][5])
+    user.display.do("mouseup", 1)
+    user.until(lambda: not user.snapshot.values["joysticks[0].buttons"][5])
+    x, y = joystick.center_of(("pov", 0))
+    user.click(canvas, x + 25, y, button=3)
+    user.until(lambda: user.snapshot.values["joysticks[0].povs"] == (90,))
+    x, y = joystick.center_of(("pad", 0))
+    user.drag(canvas, (x, y), (x, y - 200), button=3)  # beyond its end, and it stays there
+    user.until(lambda: user.snapshot.values["pwm[2].value"] == 1)
+    user.drag(canvas, (x, y - 20), (x, y - 25))  # and this springs back
+    user.until(lambda: user.snapshot.values["pwm[2].value"] == 0)
+    x, y = joystick.center_of(("axis", 3))
+    user.click(canvas, x + 30, y)
+    user.until(lambda: user.snapshot.values["joysticks[0].axes"][3] > 0.2)
+    x, y = joystick.center_of(("button", 1))
+    joystick.chosen.set(4)
+    joystick._make()
+    user.click(canvas, x - 30, y, button=3)
+    user.until(lambda: user.snapshot.values["joysticks[4].buttons"][1])
+
+
+def test_the_field_and_what_robot_code_draws(user: User) -> None:
+    field = user.window.field
+    canvas, start = field.canvas, user.snapshot.scene.robot
+    assert start is not None
+    user.press("ctrl+e")
+    user.until(lambda: canvas.find_withtag("drawing"))
+    user.shown()
+    line, text = canvas.find_withtag("drawing")
+    assert (canvas.type(line), canvas.itemcget(line, "fill"), canvas.itemcget(line, "arrow")) == (
+        "line", "#123456", "last"
+    )  # fmt: skip
+    assert canvas.coords(line) == pytest.approx(field.view.line([(1, 1), (5, 5)]), abs=0.5)
+    assert canvas.itemcget(text, "text") == "here"
+    assert "no_such_option" in field.problem  # and is said where notes are
+    shapes = [item for item in canvas.find_withtag("field") if canvas.type(item) == "polygon"]
+    assert [canvas.itemcget(shape, "fill") for shape in shapes] == ["#00ff00"]
+
+    whole = field.view.scale
+    x, y = (round(each) for each in field.view.to_screen(20, 20))
+    user.click(canvas, x, y, button=4)  # the wheel
+    user.until(lambda: field.view.scale > whole)
+    user.shown()
+    assert field.view.to_field(x, y) == pytest.approx((20, 20), abs=0.1)
+    assert canvas.coords(line) == pytest.approx(field.view.line([(1, 1), (5, 5)]), abs=0.5)
+    user.drag(canvas, (x, y), (x + 40, y + 10))
+    user.until(lambda: field.view.to_field(x + 40, y + 10) == pytest.approx((20, 20), abs=0.1))
+    user.drag(canvas, *(tuple(round(each) for each in field.view.to_screen(*place)) for place in ((10, 12), (13, 15))))
+    user.until(lambda: user.snapshot.scene.robot[:2] == pytest.approx((13, 15), abs=0.2))
+    user.shown()
+    robot = user.snapshot.scene.robot
+    user.drag(
+        canvas,
+        *(tuple(round(each) for each in field.view.to_screen(*place)) for place in (robot[:2], (robot.x, robot.y + 5))),
+        button=3,
+    )
+    user.until(lambda: user.snapshot.scene.robot.angle == pytest.approx(math.pi / 2, abs=0.1))
+    user.click(user.window.match.reset)
+    user.until(lambda: user.snapshot.scene.robot == pytest.approx(start, abs=1e-6))
+
+
+def test_targets_tags_and_trails(user: User) -> None:
+    """What a scene may have besides, without a robot that has it."""
+    field, shown = user.window.field, user.snapshot
+    user.press("F5")
+    user.until(lambda: user.status.state == "paused")
+    user.shown()
+    way = tuple((0.1 * number, 5.0 + math.sin(number / 20)) for number in range(450))
+    targets = Target(30.0, 10.0, True), Target(30.0, 20.0, False)
+    season = replace(shown.scene.field, tags=(Tag(7, 40.0, 10.0, math.pi),))
+    for length in (2, 99, 100, 101, 102, 450, 120, 0, 450):  # it grows by pieces, and goes back
+        scene = replace(shown.scene, field=season, trail=way[:length], targets=targets)
+        field.show(replace(shown, scene=scene), user.status)
+        drawn = [field.canvas.coords(piece) for piece in field.canvas.find_withtag("trail")]
+        points = [pair for piece in drawn for pair in zip(piece[::2], piece[1::2], strict=True)]
+        expected = [field.view.to_screen(*point) for point in way[:length]] if length else []
+        assert len(set(points)) == len(expected)
+        assert all(
+            point == pytest.approx(place, abs=0.6) for point, place in zip(dict.fromkeys(points), expected, strict=True)
+        )
+    rings = [field.canvas.bbox(item) for item in field.canvas.find_withtag("target")]
+    middles = {(round((x0 + x1) / 2), round((y0 + y1) / 2)) for x0, y0, x1, y1 in rings}
+    places = {tuple(round(each) for each in field.view.to_screen(target.x, target.y)) for target in targets}
+    assert len(middles) == 2
+    assert all(min(math.dist(middle, place) for place in places) < 2 for middle in middles)
+    texts = [item for item in field.canvas.find_withtag("field") if field.canvas.type(item) == "text"]
+    assert [field.canvas.itemcget(text, "text") for text in texts] == ["7"]
+
+
+def test_choices_before_a_match(user: User) -> None:
+    match = user.window.match
+    user.until(lambda: match._choosers)
+    user.shown()
+    (_, label, box) = next(iter(match._choosers.values()))
+    assert (label.cget("text"), box.get()) == ("Auto", "Nothing")
+    user.choose(box, 0)
+    user.until(lambda: user.snapshot.choosers[0].active == "Everything")
+    user.choose(match._alliance, 5)
+    user.until(lambda: user.snapshot.values["alliance_station"] == 6)
+    user.shown()
+    assert match._alliance.get() == "Blue 3"
+    user.click(match._message, 10)
+    user.keys("type", "RRL")
+    user.press("Return")
+    user.until(lambda: user.snapshot.values["event.game_specific_message"] == "RRL")
+    assert "LRL" in match._message.cget("values")
+    assert not user.snapshot.emergency_stopped
+
+    user.choose(user.window.drive.layout, 1)  # two joysticks
+    user.press("ctrl+e")
+    user.until(lambda: user.snapshot.enabled)
+    user.keys("keydown", "Up")
+    user.until(lambda: user.snapshot.values["joysticks[1].axes"][1] == -1)
+    user.keys("keyup", "Up")
+    user.until(lambda: user.snapshot.values["joysticks[1].axes"][1] == 0)
+
+
+def test_saving_the_recording(user: User, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    names = iter(["", str(tmp_path / "nowhere" / "run.jsonl"), str(tmp_path / "run.jsonl")])
+    monkeypatch.setattr("tkinter.filedialog.asksaveasfilename", lambda **_: next(names))
+    (tmp_path / "nowhere").write_text("a file, and no directory", encoding="utf-8")
+    user.click(user.window.time.save)
+    user.click(user.window.time.save)
+    user.until(lambda: "not saved" in user.window._note.cget("text"))
+    user.click(user.window.time.save)
+    user.until(lambda: "Saved" in user.window._note.cget("text"))
+    assert load_script(tmp_path / "run.jsonl").end_us > 0
+
+
+def test_a_robot_that_crashes_is_restarted(user: User) -> None:
+    console = user.window.console
+    user.until(lambda: "the robot is there" in console.text.get("1.0", "end"))
+    user.press("ctrl+e")
+    user.until(lambda: user.snapshot.mode == "teleop")
+    user.keys("keydown", "1")
+    user.until(lambda: user.status.state == "failed")
+    user.keys("keyup", "1")
+    user.until(console.restart.winfo_ismapped)
+    assert "RuntimeError: the arm has come off" in console.headline.cget("text")
+    assert console.headline.cget("text").startswith("robot.py:")
+    text = console.text.get("1.0", "end")
+    assert "in teleopPeriodic" in text
+    assert "pyfrc_core" not in text  # only the user's own lines
+    user.shown()
+    user.click(console.restart)
+    user.until(lambda: user.status.state == "running" and not console.restart.winfo_ismapped())
+    assert user.snapshot.mode == "disabled"
+
+
+@pytest.mark.parametrize("what", ["an endless loop", "a thread that never ends"])
+def test_closing_whatever_the_robot_does(what: str, sit: Sit, make_project: MakeProject) -> None:
+    user = sit(make_project(ROBOT).path)
+    user.press("ctrl+e")
+    user.until(lambda: user.snapshot.mode == "teleop")
+    key = "2" if what == "an endless loop" else "3"
+    user.keys("keydown", key)
+    user.until(lambda: what in user.window.console.text.get("1.0", "end"))
+    user.keys("keyup", key)
+    if what == "an endless loop":
+        user.until(lambda: user.status.state == "failed" or not user.status.responding)
+    root = user.window.root
+    # What a window manager tells the window when its cross is clicked.
+    root.after(1, lambda: root.tk.eval(root.tk.call("wm", "protocol", ".", "WM_DELETE_WINDOW")))
+    user.window.loop()
+    user.simulation.close()
+    assert user.status.state == "closed"
+
+
+def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None:
+    """`pyfrc sim` opens the window, and ends when it is closed; what was done in it can be replayed."""
+    project = make_project(ROBOT)
+    command = [sys.executable, "-m", "pyfrc", "sim", "--nt-port", "0", "--record", "run.jsonl"]
+    with subprocess.Popen(
+        command, cwd=project.path, env=display.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as running:
+        try:
+            window = display.do("search", "--sync", "--onlyvisible", "--name", f"{project.path.name} - pyfrc")
+            display.do("windowfocus", window)
+            display.do("key", "ctrl+e", "keydown", "w")
+            for _ in range(_LOOKS):
+                if (project.path / "driven").exists():
+                    break
+                with suppress(subprocess.TimeoutExpired):
+                    running.wait(_PAUSE)
+            display.do("keyup", "w", "key", "ctrl+q")
+            output, _ = running.communicate(timeout=60)
+        finally:
+            running.kill()
+    assert running.returncode == 0, output
+    assert '"mode": "teleop"' in (project.path / "run.jsonl").read_text(encoding="utf-8")
+    replayed = project.run("replay", "run.jsonl")
+    assert replayed.code == 0, replayed.output
+
+
+# -- what cannot be shown ---------------------------------------------------------------------------------------------
+
+
+def with_image(files: Mapping[str, str], name: str) -> dict[str, str]:
+    return {**files, "sim/config.json": f'{{"pyfrc": {{"field": {{"image": "{name}"}}}}}}'}
+
+
+def test_a_picture_of_the_field(make_project: MakeProject, sit: Sit) -> None:
+    project: RobotProject = make_project(with_image(ROBOT, "field.ppm"))
+    # Left half red, right half blue; y downwards: the upper half is darker.
+    halves = [bytes([level, 0, 0]) * 8 + bytes([0, 0, level]) * 8 for level in (100, 200)]
+    (project.path / "sim/field.ppm").write_bytes(b"P6 16 8 255\n" + halves[0] * 4 + halves[1] * 4)
+    user = sit(project.path, SimOptions(paused=True))
+    user.shown()
+    field = user.window.field
+    picture, size = field._picture, field._simulation.field
+    assert picture is not None
+    left, top = (max(round(each), 0) for each in field.view.to_screen(0, 0))
+
+    def color(x: float, y: float) -> tuple[int, int, int]:
+        across, down = field.view.to_screen(x * size.width, y * size.height)
+        return picture.get(round(across) - left, round(down) - top)
+
+    assert [color(x, y) for x, y in ((0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75))] == [
+        (100, 0, 0), (0, 0, 100), (200, 0, 0), (0, 0, 200)
+    ]  # fmt: skip
+
+
+def test_a_picture_that_tk_cannot_read(make_project: MakeProject, display: VirtualDisplay) -> None:
+    project = make_project(with_image(ROBOT, "field.jpg"))
+    (project.path / "sim/field.jpg").write_bytes(b"\xff\xd8\xff\xe0 no picture")
+    simulation = Simulation(Project(project.path / "robot.py"))
+    with pytest.raises(SettingsError, match="PNG") as raised:
+        Window(simulation, display.name)
+    assert "sim/config.json" in str(raised.value)
+    assert "field.jpg" in str(raised.value)
+
+
+def test_no_display(make_project: MakeProject, monkeypatch: pytest.MonkeyPatch) -> None:
+    simulation = Simulation(Project(make_project(ROBOT).path / "robot.py"))
+    monkeypatch.setenv("DISPLAY", ":987654")
+    with pytest.raises(UsageError, match="--ui none"):
+        TkFrontEnd().run(simulation)
+    if sys.platform == "linux":
+        monkeypatch.delenv("DISPLAY")
+        monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+        assert default_name()[0] == "none"
+        with pytest.raises(UsageError, match="needs a display"):
+            window("tk")
+
+
+def test_no_tkinter(make_project: MakeProject, display: VirtualDisplay) -> None:
+    project = make_project(ROBOT)
+    program = dedent("""
+        import sys
+        sys.modules["tkinter"] = None
+        from pyfrc_cli.start import main
+        main()
+    """)
+    done = subprocess.run(
+        [sys.executable, "-c", program, "sim", "--ui", "tk"],
+        cwd=project.path, env=display.environment, capture_output=True, text=True, check=False, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "tkinter" in done.stderr
+    assert "Traceback" not in done.stderr

@@ -1,0 +1,481 @@
+"""What the simulator's window shows and does, without a window: rows, keys, zoom, words, gamepads."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+if "PYFRC_NO_SKIPS" not in os.environ:
+    pytest.importorskip("tkinter", reason="this Python has no tkinter")
+
+from pyfrc_core.config.sim import SimConfig
+from pyfrc_core.physics.pose import Pose
+from pyfrc_core.sim import Field, Scene, Snapshot, Status
+from pyfrc_core.sim.snapshot import Failure
+from pyfrc_core.sim.ui.tk.devices import SETTABLE, DeviceRows, Row, panels_of
+from pyfrc_core.sim.ui.tk.gamepads import HINT, GamepadRouter, Reading, hat_angle
+from pyfrc_core.sim.ui.tk.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
+from pyfrc_core.sim.ui.tk.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical
+from pyfrc_core.sim.ui.tk.theme import scale_for
+from pyfrc_core.sim.ui.tk.viewport import FARTHEST, NEAREST, Viewport
+from pyfrc_core.sim.ui.tk.wording import (
+    FASTEST,
+    SLOWEST,
+    clock,
+    mode_text,
+    number_text,
+    plain_output,
+    pose_text,
+    slider_of_speed,
+    speed_of_slider,
+    station_name,
+    status_texts,
+)
+
+FIELD = Field(54.25, 26.5, 20.0, 2.0, 3.0, {"start": Pose(0.0, 0.0, 0.0)})
+
+
+def snapshot(mode: str = "disabled", **changes: Any) -> Snapshot:
+    return replace(Snapshot(time=1.5, mode=mode, scene=Scene(FIELD)), **changes)
+
+
+# -- the device panels ------------------------------------------------------------------------------------------------
+
+VALUES = {
+    "control.enabled": False,
+    "alliance_station": 1,
+    "fpga_button": False,
+    "user_program_state": None,
+    "power.vin_voltage": 12.0,
+    "pwm[3].value": 0.25,
+    "pwm[3].raw_value": 1500,
+    "pwm[0].value": 0.0,
+    "dio[1].value": True,
+    "dio[1].is_input": True,
+    "dio[2].value": False,
+    "dio[2].is_input": False,
+    "encoder[0].count": 7,
+    "encoder[0].distance_per_pulse": 0.5,
+    "counter[1].count": 3,
+    "analog_in[0].voltage": 1.25,
+    "analog_out[1].voltage": 2.0,
+    "analog_gyro[0].angle": 90.0,
+    "relay[0].fwd": True,
+    "relay[0].rev": False,
+    "duty_cycle[0].output": 0.5,
+    "d0_pwm[0].duty_cycle": 0.5,
+    **{f"pcm[0][{channel}].value": channel == 2 for channel in range(8)},
+    **{f"ph[1][{channel}].value": False for channel in range(16)},
+    "pcm_compressor[0].on": True,
+    "pcm_compressor[0].pressure_switch": False,
+    "pdp[0].voltage": 12.0,
+    "pdp[0].current": (0.0, 4.5),
+    "addressable_led[0].data": ((0, 0, 255),),
+    "accelerometer.x": 0.0,
+    'CAN["Gyro:ADXRS450[0]"].angle_x': 45.0,
+    'CAN["SPARK MAX [3]"].Velocity': 100.0,
+    'CAN["SPARK MAX [3]"].Inverted': False,
+    'CAN["SPARK MAX [3]"].Mode': "velocity",
+    "robot.navx_spi_4_angle": 1.0,
+    'custom["My Label"]': "---",
+}
+
+CONFIG = SimConfig.model_validate(
+    {
+        "pwm": {3: "Arm"},
+        "dio": {1: "Limit switch"},
+        "CAN": {3: "Shooter"},
+        "solenoid": {2: "Claw"},
+        "joysticks": {0: {"axes": {1: "Left side", 8: "Knob"}, "buttons": {3: "Shoot"}}},
+    }
+)
+
+
+def rows(values: dict[str, Any], config: SimConfig = CONFIG) -> dict[str, dict[str, Row]]:
+    """The rows by panel and label."""
+    return {panel.title: {row.label.strip(): row for row in panel.rows} for panel in panels_of(values, config)}
+
+
+def test_each_device_has_its_row() -> None:
+    shown = {title: [(row.label.strip(), row.kind) for row in panel.values()] for title, panel in rows(VALUES).items()}
+    assert shown == {
+        "PWM": [("0", "meter"), ("3  Arm", "meter"), ("0  (DIO as PWM)", "meter")],
+        "Digital I/O": [("1  Limit switch", "switch"), ("2", "lamp"), ("Duty cycle 0", "slider")],
+        "Analog inputs": [("0", "slider")],
+        "Analog outputs": [("1", "meter")],
+        "Relays": [("0", "relay")],
+        "Pneumatics": [("PCM 0", "lamps"), ("Compressor", "lamp"), ("Pressure switch", "switch"), ("PH 1", "lamps")],
+        "Encoders and counters": [("Encoder 0", "number"), ("Counter 1", "number")],
+        "Gyros": [("Analog 0", "slider"), ("ADXRS450[0]", "text"), ("angle_x", "slider")],
+        "CAN and SimDevices": [
+            ("SPARK MAX [3]  Shooter", "text"),
+            ("Velocity", "number"),
+            ("Inverted", "switch"),
+            ("Mode", "text"),
+        ],
+        "Power": [("Battery", "slider"), ("PDP 0", "slider"), ("Currents", "bars")],
+        "roboRIO": [("User button", "switch"), ("Accelerometer x", "slider"), ("LEDs 0", "leds")],
+        "Other values": [("navx_spi_4_angle", "number")],
+        "Custom": [("My Label", "text")],
+    }
+
+
+def test_each_row_shows_values_that_there_are() -> None:
+    for panel in rows(VALUES).values():
+        for row in panel.values():
+            assert all(path in VALUES for path in row.paths)
+            assert row.tooltip
+            assert row.low < row.high
+            if row.kind in SETTABLE:
+                assert len(row.paths) == 1
+    assert len(rows(VALUES)["Pneumatics"]["PH 1"].paths) == 16
+    assert "2 Claw" in rows(VALUES)["Pneumatics"]["PCM 0"].tooltip
+
+
+def test_only_what_the_robot_has_made_is_shown() -> None:
+    assert rows({}) == {}
+    assert list(rows({"pwm[0].value": 0.0})) == ["PWM"]
+
+
+def test_rows_are_made_anew_only_when_something_came_or_went() -> None:
+    model = DeviceRows(CONFIG)
+    assert model.look(VALUES)
+    panels = model.panels
+    assert not model.look({**VALUES, "pwm[0].value": 1.0, "control.enabled": True})
+    assert model.panels is panels
+    assert model.look({**VALUES, "pwm[7].value": 0.0})
+    assert model.look({**VALUES, "pwm[7].value": 0.0, "dio[1].is_input": False})
+    assert model.look({})
+    assert model.panels == ()
+
+
+@given(st.text(min_size=1), st.one_of(st.text(), st.integers(), st.lists(st.integers()), st.none()))
+def test_custom_labels_may_be_anything(label: str, value: object) -> None:
+    from pyfrc_core.hal.paths import join
+
+    path = join("custom", label)
+    assert [row.paths for row in rows({path: value})["Custom"].values()] == [(path,)]
+
+
+# -- zoom -------------------------------------------------------------------------------------------------------------
+
+lengths = st.floats(1, 200)
+pixels = st.integers(1, 4000)
+near = st.floats(0.2, 5)
+
+
+@st.composite
+def viewports(draw: st.DrawFn) -> Viewport:
+    view = Viewport.whole(draw(lengths), draw(lengths), draw(pixels), draw(pixels))
+    view = view.zoomed(draw(near), draw(pixels), draw(pixels))
+    return view.panned(draw(st.integers(-500, 500)), draw(st.integers(-500, 500)))
+
+
+@given(viewports(), st.floats(-50, 250), st.floats(-50, 250))
+def test_from_the_field_to_the_screen_and_back(view: Viewport, x: float, y: float) -> None:
+    there = view.to_screen(x, y)
+    assert view.to_field(*there) == pytest.approx((x, y), abs=1e-6)
+    assert view.line([(x, y), (x, y)]) == pytest.approx([*there, *there], rel=1e-9, abs=1e-6)
+
+
+@given(lengths, lengths, pixels, pixels)
+def test_the_whole_field_is_to_be_seen(width: float, height: float, across: int, down: int) -> None:
+    view = Viewport.whole(width, height, across, down)
+    (left, top), (right, bottom) = view.to_screen(0, 0), view.to_screen(width, height)
+    assert 0 <= left < right <= across  # x to the right
+    assert 0 <= top < bottom <= down  # y downwards
+    assert (right - left) / (bottom - top) == pytest.approx(width / height)
+
+
+@given(st.floats(0.5, 2), st.floats(0.1, 0.9), st.floats(0.1, 0.9))
+def test_zooming_leaves_what_is_under_the_mouse(factor: float, across: float, down: float) -> None:
+    view = Viewport.whole(54, 27, 800, 400)
+    x, y = across * 800, down * 400
+    place = view.to_field(x, y)
+    zoomed = view.zoomed(2, x, y).zoomed(factor, x, y)
+    if 0 < zoomed.center_x < 54 and 0 < zoomed.center_y < 27:
+        assert zoomed.to_field(x, y) == pytest.approx(place)
+
+
+def test_zoom_has_ends_and_the_field_stays_in_sight() -> None:
+    view = Viewport.whole(54, 27, 800, 400)
+    assert view.zoomed(1000, 0, 0).zoom == NEAREST
+    assert view.zoomed(0.001, 0, 0).zoom == FARTHEST
+    lost = view.panned(-1e9, 1e9)
+    assert (lost.center_x, lost.center_y) == (54, 0)
+    resized = view.panned(10, 0).resized(400, 0)
+    assert (resized.width, resized.height, resized.center_x) == (400, 1, view.panned(10, 0).center_x)
+
+
+@pytest.mark.parametrize(
+    ("dpi", "width", "height", "points", "scale"),
+    [
+        (96, 1366, 768, False, 1.0),
+        (100, 1366, 768, False, 1.0),  # nearly as the design: letters stay sharp
+        (192, 3840, 2160, False, 2.0),
+        (144, 1366, 768, False, 1366 / 1300),  # what fits
+        (72, 1440, 900, True, 1.0),  # macOS scales by itself
+        (96, 800, 600, False, 0.75),
+    ],
+)
+def test_scaling(dpi: float, width: int, height: int, points: bool, scale: float) -> None:
+    assert scale_for(dpi, width, height, points=points) == pytest.approx(scale)
+
+
+# -- keys -------------------------------------------------------------------------------------------------------------
+
+
+def driver(layout: str, *keys: str) -> KeyDriver:
+    made = KeyDriver(next(each for each in LAYOUTS if each.name == layout))
+    for key in keys:
+        made.press(key)
+    return made
+
+
+@pytest.mark.parametrize(
+    ("layout", "keys", "axes"),
+    [
+        ("Tank: both sides", "w", {(0, 1): -1.0, (1, 1): -1.0}),
+        ("Tank: both sides", "s", {(0, 1): 1.0, (1, 1): 1.0}),
+        ("Tank: both sides", "d", {(0, 1): -0.6, (1, 1): 0.6}),
+        ("Tank: both sides", "wd", {(0, 1): -1.0, (1, 1): -0.4}),
+        ("Tank: both sides", "ws", {}),
+        ("Two joysticks", "wd", {(0, 0): 1.0, (0, 1): -1.0}),
+        ("Two joysticks", "q", {(0, 2): -1.0}),
+        ("Gamepad", "we", {(0, 1): -1.0, (0, 3): 1.0}),
+        ("Tank: both sides", "xyz", {}),
+    ],
+)
+def test_keys_move_axes(layout: str, keys: str, axes: dict[tuple[int, int], float]) -> None:
+    moved = driver(layout, *keys).axes()
+    assert {control: value for control, value in moved.items() if value} == pytest.approx(axes)
+
+
+def test_arrows_and_shift() -> None:
+    assert driver("Two joysticks", "Up", "Left").axes()[(1, 1)] == -1.0
+    assert driver("Gamepad", "Right").axes()[(0, 4)] == 1.0
+    assert driver("Two joysticks", "Shift_L", "W").axes()[(0, 1)] == -GENTLE
+
+
+@pytest.mark.parametrize("layout", [each.name for each in LAYOUTS])
+@given(keys=st.lists(st.sampled_from([*"wasdqe", "Up", "Down", "Left", "Right", "Shift_R", "space"])))
+def test_axes_stay_between_their_ends_and_go_back(layout: str, keys: list[str]) -> None:
+    made = driver(layout, *keys)
+    assert all(-1 <= value <= 1 for value in made.axes().values())
+    for key in keys:
+        made.release(key.upper() if len(key) == 1 else key)  # Caps Lock may have been pressed in between
+    assert not any(made.axes().values())
+    assert not any(made.buttons().values())
+
+
+def test_digits_are_buttons_whether_or_not_shift_is_held() -> None:
+    made = driver("Gamepad", "4", "0")
+    assert {button for button, pressed in made.buttons().items() if pressed} == {(0, 4), (0, 10)}
+    made.release("dollar")
+    made.release_all()
+    assert not any(made.buttons().values())
+    assert canonical("dollar") == "4"
+
+
+def test_three_keys_at_once_enable() -> None:
+    made = driver("Gamepad", "bracketleft", "bracketright")
+    assert not made.asks_to_enable
+    made.press("backslash")
+    assert made.asks_to_enable
+
+
+# -- joysticks --------------------------------------------------------------------------------------------------------
+
+
+class Told:
+    """Stands in for a simulation: keeps what joysticks have been told."""
+
+    def __init__(self) -> None:
+        self.calls: list[tuple[Any, ...]] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *args: self.calls.append((name, *args))
+
+
+def sticks() -> tuple[Sticks, Told]:
+    told = Told()
+    return Sticks(told), told  # type: ignore[arg-type]
+
+
+def test_labels_of_joysticks() -> None:
+    assert axis_labels(CONFIG, 0) == {0: "0 X", 1: "Left side", 2: "2 Z", 3: "3 Throttle", 4: "4", 5: "5", 8: "Knob"}
+    assert button_labels(CONFIG, 0) == {1: "Trigger", 2: "Top", 3: "Shoot"}
+    assert button_labels(CONFIG, 5) == {1: "Trigger", 2: "Top"}
+
+
+def test_what_the_robot_has_is_shown() -> None:
+    made, told = sticks()
+    values = {
+        "joysticks[0].axes": (0.0, -0.5, *[0.0] * 10),
+        "joysticks[0].buttons": (False, True, *[False] * 11),
+        "joysticks[0].povs": (90,),
+    }
+    made.adopt(values)
+    first, second = made.sticks[:2]
+    assert (first.axes[1], first.buttons[1], first.pov, first.plugged) == (-0.5, True, 90, True)
+    assert not second.plugged
+    # What is moved here is not undone by a snapshot that says nothing new.
+    made.move(0, 1, 1.0)
+    made.adopt(values)
+    assert first.axes[1] == 1.0
+    assert told.calls == [("set_axis", 0, 1, 1.0)]
+    made.adopt({**values, "joysticks[0].povs": (RELEASED,)})
+    assert (first.axes[1], first.pov) == (-0.5, RELEASED)
+
+
+def test_a_pov_is_told_only_what_is_new() -> None:
+    made, told = sticks()
+    made.turn(2, 90)
+    made.turn(2, 90)
+    made.turn(2, RELEASED)
+    made.plug(2, False)
+    assert told.calls == [("set_pov", 2, 0, 90), ("set_pov", 2, 0, RELEASED), ("plug", 2, False)]
+
+
+@given(st.integers(0, 7), st.floats(0.01, 100))
+def test_directions_of_a_pov(eighth: int, far: float) -> None:
+    angle = math.radians(eighth * 45)
+    assert direction(far * math.sin(angle), -far * math.cos(angle)) == eighth * 45
+
+
+# -- gamepads ---------------------------------------------------------------------------------------------------------
+
+
+class Pad:
+    def __init__(self, name: str) -> None:
+        self.name, self.reading = name, Reading((0.0, 0.0), (False, False))
+
+    def read(self) -> Reading:
+        return self.reading
+
+
+class Room:
+    def __init__(self, *pads: Pad) -> None:
+        self.pads = list(pads)
+
+    def look(self) -> list[Pad]:
+        return self.pads
+
+
+def test_a_gamepad_moves_a_joystick() -> None:
+    made, told = sticks()
+    pad = Pad("Stick")
+    router = GamepadRouter(Room(pad), made)
+    router.poll()
+    assert (router.names, told.calls) == (("Stick",), [])
+    pad.reading = Reading((0.5, -1.0), (False, True), 90)
+    router.poll()
+    router.poll()
+    assert told.calls == [
+        ("set_axis", 0, 0, 0.5),
+        ("set_axis", 0, 1, -1.0),
+        ("set_button", 0, 2, True),
+        ("set_pov", 0, 0, 90),
+    ]
+    told.calls.clear()
+    pad.reading = replace(pad.reading, axes=(0.504, -1.0))  # a tremble
+    router.poll()
+    assert told.calls == []
+    router.tell_all_again()
+    router.poll()
+    assert ("set_axis", 0, 1, -1.0) in told.calls
+
+
+def test_a_gamepad_that_is_pulled_out_lets_go() -> None:
+    made, told = sticks()
+    pad = Pad("Stick")
+    pad.reading = Reading((0.5,), (True,), 0)
+    room = Room(pad)
+    router = GamepadRouter(room, made)
+    router.poll()
+    room.pads = []
+    told.calls.clear()
+    router.poll()
+    router.poll()
+    assert told.calls == [("set_axis", 0, 0, 0.0), ("set_button", 0, 1, False), ("set_pov", 0, 0, RELEASED)]
+
+
+def test_gamepads_go_where_the_user_says() -> None:
+    made, told = sticks()
+    first, second = Pad("A"), Pad("B")
+    router = GamepadRouter(Room(first, second), made)
+    router.assigned = {0: 1, 1: None}
+    first.reading = Reading((0.9, 0.0))
+    second.reading = Reading((0.3, 0.0))
+    router.poll()
+    assert told.calls == [("set_axis", 0, 0, 0.3)]
+    assert "pyfrc[gamepads]" in HINT
+
+
+def test_hats() -> None:
+    assert [hat_angle(*way) for way in ((0, 0), (0, 1), (1, 0), (0, -1), (-1, 1))] == [RELEASED, 0, 90, 180, 315]
+
+
+# -- words ------------------------------------------------------------------------------------------------------------
+
+
+def test_times() -> None:
+    assert [clock(seconds) for seconds in (0, 0.02, 59.999, 754.3)] == ["0:00.00", "0:00.02", "1:00.00", "12:34.30"]
+
+
+@given(st.floats(SLOWEST, FASTEST))
+def test_the_speed_slider_stands_where_the_speed_is(speed: float) -> None:
+    assert speed_of_slider(slider_of_speed(speed)) == pytest.approx(speed, rel=0.08)
+
+
+def test_the_speed_slider_has_real_time_and_no_limit() -> None:
+    assert speed_of_slider(0) == SLOWEST
+    assert speed_of_slider(slider_of_speed(1.0)) == 1.0
+    assert speed_of_slider(slider_of_speed(8)) == FASTEST
+    assert speed_of_slider(1) == 0 == speed_of_slider(slider_of_speed(0))
+    assert slider_of_speed(0.5) - slider_of_speed(0.25) == pytest.approx(slider_of_speed(4) - slider_of_speed(2))
+
+
+@pytest.mark.parametrize(
+    ("shown", "status", "words"),
+    [
+        (None, Status(), ("Starting…", "wait")),
+        (snapshot(), Status("running"), ("Teleoperated disabled", "disabled")),
+        (snapshot("disabled autonomous"), Status("paused"), ("Autonomous disabled", "disabled")),
+        (snapshot("teleop"), Status("running"), ("Teleoperated enabled", "enabled")),
+        (snapshot("test", emergency_stopped=True), Status("running"), ("Emergency stopped", "error")),
+        (snapshot("teleop"), Status("failed", failure=Failure("x", "", 1)), ("No robot code", "error")),
+        (snapshot("teleop"), Status("running", responding=False), ("Not responding", "error")),
+    ],
+)
+def test_what_the_robot_is_doing(shown: Snapshot | None, status: Status, words: tuple[str, str]) -> None:
+    assert mode_text(shown, status) == words
+
+
+def test_the_status_line() -> None:
+    running = Status("running", reached=0.987, loop_seconds=0.0015, worst_loop_seconds=0.012, overruns=3)
+    assert status_texts(snapshot(), running) == [
+        "Robot time 1.50 s",
+        "Speed 0.99x of 1x",
+        "Loop 1.5 ms, worst 12.0 ms",
+        "Overruns 3",
+    ]
+    practising = status_texts(
+        snapshot("autonomous", practice_since=0.0, match_left=12.0), Status("paused", network_address="127.0.0.1:5810")
+    )
+    assert practising[1:3] == ["Match: 12 s left", "Paused"]
+    assert practising[-1] == "NetworkTables 127.0.0.1:5810"
+
+
+def test_small_words() -> None:
+    assert plain_output("\x1b[31mred\x1b[0m\r\n\x07bell\ttab") == "red\nbell\ttab"
+    assert [number_text(value, 2) for value in (-0.001, 1.005, 2e9, math.inf)] == ["0.00", "1.00", "2e+09", "inf"]
+    assert [station_name(station) for station in (0, 1, 6, None)] == ["", "Red 1", "Blue 3", ""]
+    assert pose_text(Pose(1.0, 2.5, math.radians(270))) == "x 1.00 ft   y 2.50 ft   heading -90.0°"
+    assert "create-physics" in pose_text(None)

@@ -1,0 +1,54 @@
+"""A virtual display of a test's own, and a user at it: real X events, sent by `xdotool`."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+#: What it takes: Debian's packages xvfb and xdotool.
+PROGRAMS = ("Xvfb", "xdotool")
+
+
+def missing() -> list[str]:
+    """The programs that are not here."""
+    return [program for program in PROGRAMS if shutil.which(program) is None]
+
+
+class VirtualDisplay:
+    """A screen that nobody sees.
+
+    :param name: such as ``:7``
+    """
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.environment = {**os.environ, "DISPLAY": name}
+
+    def do(self, *words: str | int) -> str:
+        """One command of `xdotool`, or several; answers what it prints."""
+        done = subprocess.run(
+            ["xdotool", *map(str, words)], env=self.environment, capture_output=True, text=True, check=True, timeout=60
+        )
+        return done.stdout.strip()
+
+
+@contextmanager
+def virtual_display(width: int = 1366, height: int = 768, dpi: int = 96) -> Iterator[VirtualDisplay]:
+    """A display of its own number, which the server chooses: others may be made at the same time."""
+    read, write = os.pipe()
+    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-dpi", str(dpi)]
+    server = subprocess.Popen(
+        [*command, "-nolisten", "tcp"], pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    os.close(write)
+    try:
+        with os.fdopen(read) as numbers:
+            number = numbers.readline().strip()  # it is ready when it tells
+        assert number, "Xvfb has not started"
+        yield VirtualDisplay(f":{number}")
+    finally:
+        server.terminate()
+        server.wait()
