@@ -5,9 +5,10 @@ RUN := $(VENV)/bin/python -m
 
 .PHONY: demo test check clean
 
-demo: $(VENV)/installed  ## make a robot project in demo/ and run its tests with coverage
+demo: $(VENV)/installed  ## make a robot project in demo/, run its tests, deploy it to a look-alike of a roboRIO
 	test -d demo || $(RUN) pyfrc init demo
 	$(RUN) pyfrc test --project demo --coverage
+	$(RUN) tests.roborio -- $(VENV)/bin/pyfrc deploy --project demo --robot
 
 test: $(VENV)/installed-dev  ## run this project's own tests; ARGS go to pytest
 	$(RUN) pytest -n auto --dist worksteal $(ARGS)

@@ -14,9 +14,20 @@ from pyfrc_core._version import __version__
 #: Each command, its module, and its line in the help: known here so that the help needs to import none of them.
 COMMANDS = {
     "init": ("pyfrc_cli.init", "Make a new robot project from a template."),
+    "fuzz": ("pyfrc_cli.fuzz", "Mash the robot in many matches, and keep the shortest way to each failure."),
     "replay": ("pyfrc_cli.replay", "Run the robot as a recorded input script says."),
+    "sim": ("pyfrc_cli.sim", "Drive the robot on the desk: simulate it, in a window or without one."),
     "test": ("pyfrc_cli.test", "Run the robot project's tests."),
+    "coverage": ("pyfrc_cli.coverage", "Measure which lines of the robot run in another command."),
+    "profile": ("pyfrc_cli.profile", "Measure how long the robot's functions take in another command."),
+    "profiler": ("pyfrc_cli.profile", "The older name of: profile."),
+    "add-tests": ("pyfrc_cli.add_tests", "Add the ready-made tests to the robot project."),
+    "create-tests": ("pyfrc_cli.add_tests", "The older name of: add-tests."),
     "create-physics": ("pyfrc_cli.create_physics", "Write a physics.py and sim/config.json that fit the robot."),
+    "deploy": ("pyfrc_cli.deploy", "Bring the robot program onto the robot, and start it there."),
+    "deploy-info": ("pyfrc_cli.deploy_info", "Show what is on the robot, and which earlier releases."),
+    "undeploy": ("pyfrc_cli.undeploy", "Stop the robot program and remove it from the robot."),
+    "console": ("pyfrc_cli.console", "Show what the robot program prints."),
     "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
 }
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import sys
 
-_RUN_ROBOTS = {"create-physics", "replay", "test"}
+_RUN_ROBOTS = {"create-physics", "fuzz", "replay", "test"}
 
 
 def main() -> None:

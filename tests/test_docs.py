@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import re
 import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+
+from pyfrc_core.scaffold import TEMPLATES
 
 ROOT = Path(__file__).parents[1]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -81,12 +85,91 @@ def test_the_examples_in_the_replay_guide_work(new_project) -> None:
         assert result.code == 0, result.output
 
 
+def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
+    """The robot has a bug, which is found, kept and replayed; repaired, it has none."""
+    document = "docs/fuzzing.md"
+    project = make_project(files(document))
+    campaigns = [command for command in commands(document) if "--time" in command]
+    for command in commands(document):
+        if command not in campaigns:
+            result = project.run(*shlex.split(command)[1:])
+            assert result.code == 1, result.output
+        if "--runs" in command:
+            *lines, last = result.stdout.splitlines()
+            told = [line for line in lines if not re.match(r"[\d,]+ match", line)]  # how far it was by then
+            assert "\n".join([*told, last]) in blocks(document, "text")[0], result.output
+    robot = project.path / "robot.py"
+    robot.write_text(robot.read_text("utf-8").replace("270: -0.5}", "270: -0.5, 315: -0.3}"), "utf-8")
+    project.write({"pyproject.toml": blocks(document, "toml")[0]})
+    assert len(campaigns) == 2
+    for command in ["pyfrc test", *campaigns]:
+        result = project.run(*shlex.split(re.sub(r"--time \d+", "--time 1", command))[1:])
+        assert result.code == 0, result.output
+
+
+def test_the_examples_in_the_simulation_guide_work(new_project) -> None:
+    pytest.importorskip("PIL")
+    document = "docs/simulation.md"
+    for command in commands(document):
+        result = new_project.run(*shlex.split(command)[1:])
+        assert result.code == 0, result.output
+    assert (new_project.path / "runs/path.png").is_file()
+    new_project.write(files(document))
+    result = new_project.run("sim", "--ui", "none", "--mode", "auto", "--seconds", "1", "--project", "drawing")
+    assert result.code == 0, result.output
+    done = subprocess.run(
+        [sys.executable, "tools/drive.py"], cwd=new_project.path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "failure: None\nmode: autonomous\nleft motor: 0.49" in done.stdout, done.stdout
+
+
+def test_the_commands_in_the_measuring_guide_work(new_project) -> None:
+    for command in commands("docs/measuring.md"):
+        if "--html profile.html" in command:
+            pytest.importorskip("pyinstrument")
+        result = new_project.run(*shlex.split(command)[1:])
+        assert result.code == 0, result.output
+    coverage, profile = ("htmlcov/index.html", "coverage.xml", "coverage.json"), ("json", "pstats", "html")
+    for file in (*coverage, *(f"profile.{each}" for each in profile)):
+        assert (new_project.path / file).is_file(), file
+
+
 @pytest.mark.parametrize("command", commands("docs/testing.md") + commands("docs/physics.md"))
 def test_the_commands_in_the_guides_work(command: str, new_project) -> None:
     program, *arguments = shlex.split(command)
     assert program == "pyfrc"
     result = new_project.run(*arguments)
     assert result.code == 0, result.output
+
+
+def test_the_page_on_getting_started_leads_to_a_driving_robot(make_project) -> None:
+    """Its commands, one after the other, each in the directory to which those before it have led."""
+    project = make_project({})
+    place = project.path
+    for command in commands("docs/getting_started.md"):
+        program, *arguments = shlex.split(command)
+        if program == "cd":
+            place /= arguments[0]
+            continue
+        assert program == "pyfrc"
+        result = project.run(*arguments, cwd=place)
+        assert result.code == 0, result.output
+        if arguments[0] == "sim":
+            assert re.search(r"distance driven: .*\([1-9][0-9.]* m\)", result.stdout)
+    assert place != project.path
+
+
+def test_the_page_on_getting_started_lists_the_templates(make_project) -> None:
+    page = (ROOT / "docs/getting_started.md").read_text("utf-8")
+    assert re.findall(r"^\| `([a-z-]+)` \|", page, re.MULTILINE) == list(TEMPLATES)
+    written = make_project({})
+    written.run("init")
+    named = re.findall(
+        r"^\| `([^`*]+)`", page.partition("Each project has")[2].partition("## Test it")[0], re.MULTILINE
+    )
+    assert len(named) >= 7
+    assert [name for name in named if not (written.path / name).exists()] == []
 
 
 def test_the_readmes_example_passes(new_project) -> None:

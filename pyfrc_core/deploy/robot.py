@@ -45,7 +45,7 @@ m.main(r)
 """
 COMMAND = f"{_PYTHON} -X utf8 -u -c '{_BOOTSTRAP}'"
 #: In the order in which they need each other; the last one's `main` is run.
-_MODULES = ("__init__", "wire", "disk", "places", "releases", "deploying", "program", "serve")
+_MODULES = ("__init__", "wire", "disk", "places", "releases", "compiling", "deploying", "program", "serve")
 
 #: Seconds without a word from the robot after which the link counts as lost.
 _ANSWER_SECONDS = 20.0

@@ -139,7 +139,9 @@ def _before(robot: Robot, deployed: Deployed) -> int | None:
     """The release to go back to from this one."""
     if not deployed.unchanged:
         return deployed.previous
-    return next((each.previous for each in robot.facts.releases if each.number == deployed.release), None)
+    previous = {each.number: each.previous for each in robot.facts.releases}
+    before = previous.get(deployed.release) if deployed.release is not None else None
+    return before if before in previous else None  # it may have had to make room
 
 
 def _tell_deployed(deployed: Deployed, connection: Connection, options: DeployOptions, talk: Conversation) -> None:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import UsageError
 from ..project import Project
+from ..text_files import write_whole
+from .never_run import never_run, summary
+from .processes import announced, is_announced, measure_here, save_here
 
 if TYPE_CHECKING:
     from coverage import Coverage
+
+#: `measure_here` and `save_here`, for the processes that tests are isolated in.
+__all__ = ["CoverageOptions", "Measured", "begin", "measure_here", "measuring", "save_here"]
 
 
 @dataclass(frozen=True)
@@ -29,6 +34,7 @@ class CoverageOptions:
     enabled: bool
     html: Path | None = None
     xml: Path | None = None
+    json: Path | None = None
     fail_under: float | None = None
 
 
@@ -39,28 +45,20 @@ class Measured:
     status: int = 0
 
 
-#: How processes that are started anew hear of it: an environment variable with the settings, as JSON.
-_SETTINGS = "PYFRC_COVERAGE"
+def begin(settings: dict[str, Any]) -> Callable[[], None]:
+    """Begin to measure in this process; answers what keeps what was measured. A fork goes on measuring by itself."""
+    from coverage import Coverage
 
+    measurement = Coverage(data_suffix=True, **settings)
+    # A process that waits for others runs no line of the project, and need not complain of it.
+    measurement.set_option("run:disable_warnings", ["no-data-collected"])
+    measurement.start()
 
-def measure_here() -> None:
-    """Measure in this process, if it is part of a run that is measured. A fork goes on measuring by itself."""
-    if _SETTINGS in os.environ:
-        from coverage import Coverage
+    def save() -> None:
+        measurement.stop()
+        measurement.save()
 
-        measurement = Coverage(data_suffix=True, **json.loads(os.environ[_SETTINGS]))
-        # A process that waits for others runs no line of the project, and need not complain of it.
-        measurement.set_option("run:disable_warnings", ["no-data-collected"])
-        measurement.start()
-
-
-def save_here() -> None:
-    """Keep what was measured in this process, if anything was."""
-    coverage = sys.modules.get("coverage")
-    current = coverage.Coverage.current() if coverage is not None else None
-    if current is not None:
-        current.stop()
-        current.save()
+    return save
 
 
 @contextmanager
@@ -74,10 +72,12 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
     if not options.enabled:
         yield result
         return
+    if is_announced("coverage"):
+        raise UsageError("coverage is measured already", remedy="Leave out one of: pyfrc coverage, test --coverage.")
     from coverage import Coverage
     from coverage.exceptions import CoverageException
 
-    for file, is_taken in ((options.html, Path.is_file), (options.xml, Path.is_dir)):
+    for file, is_taken in ((options.html, Path.is_file), (options.xml, Path.is_dir), (options.json, Path.is_dir)):
         if file is not None and is_taken(file):
             raise UsageError(f"the report cannot be written to {file}: something else is there already")
     # What each process measured lies here until it is combined; nothing of it is left in the project.
@@ -88,35 +88,41 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
             "omit": [*(f"{tests}/*" for tests in project.test_directories), "*/site-packages/*"],
             "config_file": str(project.pyproject) if project.pyproject.is_file() else False,
         }
-        os.environ[_SETTINGS] = json.dumps(settings)
         try:
-            measure_here()
-            try:
+            with announced("coverage", settings):
                 yield result
-            finally:
-                save_here()
-                del os.environ[_SETTINGS]
             combined = Coverage(**settings)
             combined.combine([directory])
-            result.status = _report(combined, options)
+            result.status = _report(combined, options, Path(directory, "report.json"))
         except (CoverageException, ValueError) as error:
             where = project.pyproject.name if "config" in str(error).lower() else None
             raise UsageError(f"coverage: {error}", where=where) from error
 
 
-def _report(combined: Coverage, options: CoverageOptions) -> int:
+def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:
+    """Tell what was measured; answers the exit code.
+
+    :param as_json: where coverage.py's own JSON goes, which tells what the other reports do not
+    """
     from coverage.exceptions import NoDataError
 
     print()
     try:
         # A file that cannot be parsed is told and left out: it need not be one that the robot uses.
         total = combined.report(show_missing=True, ignore_errors=True, file=sys.stdout)
+        combined.json_report(outfile=str(as_json), ignore_errors=True)
+        text = as_json.read_text("utf-8")
+        if unused := summary(never_run(json.loads(text))):
+            print(unused)
         if options.html is not None:
             combined.html_report(directory=str(options.html), ignore_errors=True)
             print(f"coverage as web pages: {options.html / 'index.html'}")
         if options.xml is not None:
             combined.xml_report(outfile=str(options.xml), ignore_errors=True)
             print(f"coverage as XML: {options.xml}")
+        if options.json is not None:
+            write_whole(options.json, [text])
+            print(f"coverage as JSON: {options.json}")
     except NoDataError:
         print("coverage: no line of the project was run", file=sys.stderr)
         return 1

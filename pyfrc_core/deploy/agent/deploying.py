@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-import ctypes
 import hashlib
 import json
 import os
-import py_compile
-import signal
-import time
 import zlib
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from .compiling import compile_below, compiled_forms, link_compiled
 from .disk import BLOCK, files_below, flush, free_bytes, link_or_copy, remove, sha256_of, write_whole
-from .places import CODE, COMMAND, DEBUG_COMMAND, Refusal
+from .places import COMMAND, DEBUG_COMMAND, Refusal
 from .releases import Record, Releases, start_commands
 from .wire import Said, Wire
 
 #: Bytes to be left free on the robot's disk after a deploy, for the program's own files.
 _RESERVE = 256 * 1024
 _DEPLOY_JSON = "deploy.json"
-_SET_DEATH_SIGNAL = 1  # prctl
-_TURN = 0.01  # seconds between two looks at the process that compiles
-_TURNS_A_SIGN = 300
 
 
 class Wanted(NamedTuple):
@@ -157,6 +151,7 @@ class Deploy:
         code = self._releases.code()
         if self._in_place and code is not None:
             wanted = [each for each in self._wanted if not _has(at_hand, each, code)]
+            _refuse_clashes(wanted, code)
         else:
             wanted = self._wanted
         at_hand = self._make_room(wanted, at_hand)
@@ -234,7 +229,7 @@ class Deploy:
                 pass
             elif same is not None:
                 link_or_copy(same, file)
-                _link_compiled(same, file)
+                link_compiled(same, file)
                 continue
             else:
                 _copy(received.get(each.sha256) or at_hand.copy(each), each, file)
@@ -280,7 +275,7 @@ class Deploy:
         for each in wanted:
             target = code / each.path
             target.parent.mkdir(parents=True, exist_ok=True)
-            for compiled in _compiled(target):
+            for compiled in compiled_forms(target):
                 remove(compiled)
             (self._places.incoming / each.path).replace(target)
         remove(self._places.incoming)
@@ -297,6 +292,21 @@ class Deploy:
         flush(self._places.home)
         self._releases.set_debug(self._debug)
         return {"release": current, "previous": current, "taken": None, "unchanged": not wanted}
+
+
+def _refuse_clashes(wanted: list[Wanted], code: Path) -> None:
+    """:raises Refusal: when a file cannot take its place in the directory `code` without anything being deleted"""
+    for each in wanted:
+        *above, _ = each.path.split("/")
+        places = [code.joinpath(*above[: depth + 1]) for depth in range(len(above))]
+        clash = next((place for place in places if os.path.lexists(place) and not place.is_dir()), None)
+        if clash is not None or (code / each.path).is_dir():
+            kind = "directory" if clash is None else "file"
+            raise Refusal(
+                "path",
+                f"{(clash or code / each.path).relative_to(code).as_posix()!r} is a {kind} on the robot",
+                "Deploy without --in-place, which deletes nothing.",
+            )
 
 
 def plan(releases: Releases, files: Iterable[Any]) -> Said:
@@ -316,57 +326,6 @@ def plan(releases: Releases, files: Iterable[Any]) -> Said:
         "files": len(missing),
         "bytes": sum(each.size for each in missing),
     }
-
-
-def compile_below(directory: Path, debug: bool, still_busy: Callable[[], None]) -> None:
-    """Compile what is not compiled yet, in a process of its own: its memory is not ours, and its end is not either.
-
-    :param still_busy: called now and then, since a robot takes a second for ten files
-    """
-    optimize = "" if debug else 1
-    sources = [(name, file) for name, file in files_below(directory) if name.endswith(".py")]
-    sources = [each for each in sources if not Path(_cache_of(each[1], optimize)).exists()]
-    if not sources:
-        return
-    child = os.fork()
-    if child == 0:
-        try:
-            ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
-            level = 0 if debug else 1
-            for name, file in sources:
-                py_compile.compile(str(file), _cache_of(file, optimize), f"{CODE}/{name}", quiet=2, optimize=level)
-        finally:
-            os._exit(0)
-    turns = 0
-    while os.waitpid(child, os.WNOHANG)[0] == 0:
-        turns += 1
-        if turns % _TURNS_A_SIGN == 0:
-            still_busy()
-        time.sleep(_TURN)
-
-
-def _cache_of(file: Path, optimize: Any) -> str:
-    from importlib.util import cache_from_source
-
-    return cache_from_source(str(file), optimization=optimize)
-
-
-def _compiled(source: Path) -> list[Path]:
-    """The compiled forms of a source file that are there."""
-    cache = source.parent / "__pycache__"
-    if source.suffix != ".py" or not cache.is_dir():
-        return []
-    return [each for each in cache.iterdir() if each.name.rsplit(".cpython-", 1)[0] == source.stem]
-
-
-def _link_compiled(source: Path, target: Path) -> None:
-    for compiled in _compiled(source):
-        cache = target.parent / "__pycache__"
-        cache.mkdir(exist_ok=True)
-        try:
-            link_or_copy(compiled, cache / compiled.name)
-        except OSError:
-            continue  # it is compiled anew, then
 
 
 def _copy(source: Path | None, wanted: Wanted, file: Path) -> None:

@@ -36,7 +36,7 @@ def flush(directory: Path) -> None:
 def write_whole(file: Path, text: str, mode: int = 0o644) -> None:
     """Write a file so that nobody, not even after a power cut, finds half of it."""
     beside = file.with_name(f".{file.name}.new")
-    with beside.open("w", encoding="utf-8") as stream:
+    with beside.open("w", encoding="utf-8", errors="surrogateescape") as stream:
         stream.write(text)
         stream.flush()
         os.fsync(stream.fileno())
@@ -91,6 +91,11 @@ def remove(path: Path) -> None:
     else:
         with suppress(FileNotFoundError):
             path.unlink()
+
+
+def remove_if_possible(path: Path) -> None:
+    """Remove of a file or directory what we may: others of the robot's users may have put theirs into it."""
+    shutil.rmtree(path, ignore_errors=True)
 
 
 def link_or_copy(source: Path, target: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import json
+import os
 import time
 from pathlib import Path
 from types import TracebackType
@@ -45,6 +46,7 @@ class Places:
         self.releases = self.own / "releases"
         #: Where the next release is put together.
         self.incoming = self.own / "incoming"
+        self.lock = self.own / "lock"
         self.debug_flag = self.of("/tmp/frcdebug")
 
     def of(self, path: str) -> Path:
@@ -56,18 +58,19 @@ class Lock:
     """Held by whoever changes the robot's programs; it is let go when its process ends, however that ends."""
 
     def __init__(self, places: Places, who: str) -> None:
-        self._file = places.own / "lock"
+        self._file = places.lock
         self._who = who
         self._stream: TextIO | None = None
 
     def __enter__(self) -> None:
-        self._file.parent.mkdir(parents=True, exist_ok=True)
-        stream = self._file.open("a+", encoding="utf-8")
         give_up = time.monotonic() + _GRACE
         while True:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            stream = self._file.open("a+", encoding="utf-8")
             try:
                 fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                break
+                if self._is_still(stream):
+                    break
             except OSError:
                 if time.monotonic() > give_up:
                     stream.seek(0)
@@ -79,11 +82,19 @@ class Lock:
                         "Wait until that is done; a laptop that is gone loses its turn after 20 seconds.",
                         holder=holder,
                     ) from None
+            stream.close()
             time.sleep(0.02)
         self._stream = stream
         stream.truncate(0)
         stream.write(json.dumps({"who": self._who}))
         stream.flush()
+
+    def _is_still(self, stream: TextIO) -> bool:
+        """Whether this is the lock's file, and not one that an undeploy has removed while we waited for it."""
+        try:
+            return os.path.samestat(os.fstat(stream.fileno()), self._file.stat())
+        except FileNotFoundError:
+            return False
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None

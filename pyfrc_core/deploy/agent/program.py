@@ -18,6 +18,7 @@ _PATHS = "/etc/profile.d/natinst-path.sh"
 #: The console's ports: for listeners of any kind, and for the Driver Station.
 _CONSOLES = (1741, 1740)
 _ERROR, _TEXT = 11, 12
+_PLACES_OF_CODE = (f"{CODE}/".encode(), f"{HOME}/.pyfrc/releases/".encode())
 _KEEP_ALIVE = b"\0\0"
 _STARTED = "Robot program startup complete"
 _TURN = 0.1  # seconds between two looks at the program
@@ -38,7 +39,9 @@ def processes() -> set[int]:
                 words = Path(entry.path, "cmdline").read_bytes().split(b"\0")
             except OSError:
                 continue
-            if any(word.startswith((f"{CODE}/".encode(), f"{HOME}/.pyfrc/releases/".encode())) for word in words):
+            # Not whoever looks at a file there, by tail -f or an editor.
+            is_python = words[0].rpartition(b"/")[2].startswith(b"python")
+            if is_python and any(word.startswith(_PLACES_OF_CODE) for word in words):
                 found.add(int(entry.name))
     return found
 

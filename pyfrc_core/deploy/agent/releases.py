@@ -7,16 +7,20 @@ complete before it has that name, and never has it any more once its removal has
 from __future__ import annotations
 
 import json
+import os
 import re
+from contextlib import suppress
+from itertools import count
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from .disk import everything_below, exchange, flush, link_or_copy, remove, text_of, write_whole
+from .disk import everything_below, exchange, flush, link_or_copy, remove, remove_if_possible, text_of, write_whole
 from .places import CODE, COMMAND, DEBUG_COMMAND, HOME, Places, Refusal
 
 Record = dict[str, Any]
 
 _KEPT = 3
+_TRASH = "trash-"
 _DIRECT = HOME + "/.pyfrc/releases"
 _OTHER_TOOLS_CODE = (".py", ".pyi", ".pyc")
 
@@ -144,13 +148,24 @@ class Releases:
 
     def set_debug(self, debug: bool) -> None:
         """Let the robot start the program for debugging, or the ordinary way."""
-        if debug:
-            self.places.debug_flag.touch()
-        else:
-            remove(self.places.debug_flag)
+        # Of another user, it can stay: both start commands name the same program.
+        with suppress(PermissionError):
+            if debug:
+                self.places.debug_flag.touch()
+            else:
+                remove(self.places.debug_flag)
 
     def take_over(self, number: int) -> None:
-        """Write the record under which another tool's directory is going to be a release."""
+        """Write the record under which another tool's directory is going to be a release.
+
+        :raises Refusal: when the directory cannot be moved
+        """
+        if not os.access(self.places.code, os.W_OK):
+            raise Refusal(
+                "disk",
+                f"{CODE} belongs to another user of the robot, and so cannot be moved out of the way",
+                f"Give it to lvuser, as admin on the robot: chown -R lvuser:ni {CODE}",
+            )
         commands = {name: text_of(self.places.home / name) for name in (COMMAND, DEBUG_COMMAND)}
         deployed = text_of(self.places.code / "deploy.json")
         try:
@@ -173,7 +188,9 @@ class Releases:
                 self.take_over(taken)
             self.switch(number, self.record(number)["commands"], taken)
         for each in self.places.own.iterdir():
-            if each.name not in ("lock", "releases"):
+            if each.name.startswith(_TRASH):
+                remove_if_possible(each)
+            elif each not in (self.places.lock, self.places.releases):
                 remove(each)
         for name in (COMMAND, DEBUG_COMMAND):
             remove(self.places.home / f".{name}.new")
@@ -201,10 +218,14 @@ class Releases:
                 keep.add(number)
         for number in numbers:
             if number not in keep:
-                trash = self.places.own / f"trash-{number}"
+                trash = self._free_name(_TRASH)
                 self.directory(number).rename(trash)
                 remove(self._record_file(number))
-                remove(trash)
+                remove_if_possible(trash)
+
+    def _free_name(self, prefix: str) -> Path:
+        names = (self.places.own / f"{prefix}{number}" for number in count(1))
+        return next(name for name in names if not name.exists())
 
     def _kept(self) -> set[str]:
         """The releases that the robot may start as things are."""
@@ -245,8 +266,10 @@ class Releases:
                     link_or_copy(path, between)
                     between.replace(target)
                     carried[name] = inode
-            except (FileNotFoundError, FileExistsError, NotADirectoryError, IsADirectoryError):
-                continue  # the program has removed it, or the new one has a file where the old had a directory
+            except (FileNotFoundError, FileExistsError, NotADirectoryError, IsADirectoryError, PermissionError):
+                # The program has removed it, or the new one has a file where the old had a directory; or it is
+                # another user's, which the program could not read either.
+                continue
         return carried
 
     def settle(self, number: int) -> None:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from .deploying import Deploy, plan
-from .disk import files_below, flush, free_bytes, remove, sha256_of, text_of
+from .disk import files_below, flush, free_bytes, remove, remove_if_possible, sha256_of, text_of
 from .places import COMMAND, DEBUG_COMMAND, Lock, Places, Refusal
 from .program import KILL_SCRIPT, Program, processes, stop
 from .releases import Releases
@@ -151,7 +151,7 @@ class Agent:
             try:
                 return Deploy(self._releases, self._wire, request).run()
             except BaseException:
-                _remove_quietly(self._places.incoming)
+                remove_if_possible(self._places.incoming)  # what is left the next deploy clears up
                 raise
 
     def _restart(self) -> Said:
@@ -213,18 +213,19 @@ class Agent:
             stop(self._places, start=False)
             there = self._places.code.exists() or self._places.code.is_symlink()
             remove(self._places.code)
-        remove(self._places.own)
-        flush(self._places.home)
+            for each in self._places.own.iterdir():
+                if each != self._places.lock:
+                    remove(each)
+            # Last, and while it is held: whoever waits for it begins with a new one.
+            remove(self._places.lock)
+            with suppress(OSError):
+                self._places.own.rmdir()
+            flush(self._places.home)
         return {"removed": there}
 
 
 def _changed(files: dict[str, str], directory: Path) -> list[str]:
     return sorted(path for path, sha256 in files.items() if sha256_of(directory / path) != sha256)
-
-
-def _remove_quietly(path: Path) -> None:
-    with suppress(OSError):  # what is left the next deploy clears up
-        remove(path)
 
 
 def _version_of(package: str) -> str | None:

@@ -1,0 +1,87 @@
+"""What `pyfrc profile` costs: how much longer the loop of a robot takes while it is measured.
+
+Run it with ``python benchmarks/profile_cost.py``; README.md beside it says what is measured, and how.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+HERE = Path(__file__).resolve()
+ROBOTS = HERE.parents[1] / "tests" / "robots"
+
+#: A match's length, in seconds of robot time.
+SECONDS = 150
+WAYS = ("plain", "profiled", "cProfile")
+
+
+def measure(way: str) -> float:
+    """The processor seconds that `SECONDS` of the robot in the current directory take, teleoperated."""
+    process_time = time.process_time
+    from pyfrc_core.hal import modes
+    from pyfrc_core.measure.processes import announced
+    from pyfrc_core.project import find_project
+    from pyfrc_core.runtime.redirect import redirection
+    from pyfrc_core.runtime.robot import RobotRun
+
+    project = find_project(Path.cwd())
+    with ExitStack() as closing:
+        directory = closing.enter_context(tempfile.TemporaryDirectory())
+        if way != "plain":
+            settings = {
+                "root": str(project.root),
+                "directory": directory,
+                "stacks": False,
+                "calls": way == "cProfile",
+            }
+            closing.enter_context(announced("profile", settings))
+        redirection.install(project.files)
+        run = RobotRun()
+        robot_class = project.load()
+        run.open()
+        run.construct(robot_class)
+        run.start()
+        modes.set_mode(enabled=True)
+        begin = process_time()
+        run.run_until(SECONDS * 1_000_000)
+        seconds = process_time() - begin
+        run.close()
+    return seconds
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--rounds", type=int, default=7, help="samples of each, 7 by default")
+    parser.add_argument("--only", action="append", metavar="ROBOT", help="only this sample robot; may be repeated")
+    parser.add_argument("--one", choices=WAYS, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.one:
+        print(json.dumps(measure(options.one)))
+        return
+    print(f"{'robot':<10} {'loop':>10} {'profiled':>14} {'with cProfile':>16}")
+    for robot in options.only or ("timed", "command", "magic", "fastloop", "square"):
+        samples: dict[str, list[float]] = {way: [] for way in WAYS}
+        for _ in range(options.rounds):
+            for way in WAYS:
+                done = subprocess.run(
+                    [sys.executable, str(HERE), "--one", way],
+                    cwd=ROBOTS / robot,
+                    capture_output=True,
+                    text=True,
+                    check=True,
+                )
+                samples[way].append(float(done.stdout.splitlines()[-1]))
+        plain, profiled, calls = (min(samples[way]) for way in WAYS)
+        loop = f"{plain / (SECONDS / 0.02) * 1e6:.1f} µs"
+        print(f"{robot:<10} {loop:>10} {profiled / plain - 1:>+14.0%} {calls / plain - 1:>+16.0%}")
+
+
+if __name__ == "__main__":
+    main()

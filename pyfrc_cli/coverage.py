@@ -1,0 +1,49 @@
+"""`pyfrc coverage`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from .wrapping import WRAPPING, wrapped_command
+
+
+@click.command("coverage", context_settings=WRAPPING)
+@click.option("--html", metavar="DIR", type=click.Path(path_type=Path), help="Write the report as web pages, too.")
+@click.option("--xml", metavar="FILE", type=click.Path(path_type=Path), help="Write it as Cobertura XML, too.")
+@click.option(
+    "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Write it as coverage.py's JSON, too."
+)
+@click.option(
+    "--fail-under",
+    metavar="PERCENT",
+    type=click.FloatRange(0, 100),
+    help="Fail when less of the project is covered.",
+)
+@click.argument("command_line", metavar="COMMAND [OPTIONS]...", nargs=-1, required=True, type=click.UNPROCESSED)
+@click.pass_context
+def command(
+    context: click.Context,
+    html: Path | None,
+    xml: Path | None,
+    as_json: Path | None,
+    fail_under: float | None,
+    command_line: tuple[str, ...],
+) -> None:
+    """Measure which lines of the robot project run in another command: test, sim, fuzz or replay.
+
+    The options of this command stand before that one's name: pyfrc coverage --html htmlcov test -j 2
+
+    \b
+    Exit codes: the other command's, if it failed; else
+    1 too little is covered, 2 wrong usage.
+    """
+    wrapped = wrapped_command(context, command_line, ("test", "sim", "fuzz", "replay"))
+    from pyfrc_core.measure.coverage import CoverageOptions, measuring
+
+    options = CoverageOptions(enabled=True, html=html, xml=xml, json=as_json, fail_under=fail_under)
+    with measuring(wrapped.project, options) as measured:
+        status = wrapped.run()
+    sys.exit(status or measured.status)

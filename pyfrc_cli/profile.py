@@ -1,0 +1,63 @@
+"""`pyfrc profile`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from .wrapping import WRAPPING, wrapped_command
+
+
+@click.command("profile", context_settings=WRAPPING)
+@click.option(
+    "-o",
+    "--outfile",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Have cProfile count every call, too, and write this for pstats and its like. Costs much more.",
+)
+@click.option(
+    "--html",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Draw where the time went as a web page, with: pip install pyfrc[profile]",
+)
+@click.option(
+    "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Write all that was measured as JSON."
+)
+@click.option(
+    "--top",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=20,
+    show_default=True,
+    help="How many functions, and lines, to print.",
+)
+@click.argument("command_line", metavar="COMMAND [OPTIONS]...", nargs=-1, required=True, type=click.UNPROCESSED)
+@click.pass_context
+def command(
+    context: click.Context,
+    outfile: Path | None,
+    html: Path | None,
+    as_json: Path | None,
+    top: int,
+    command_line: tuple[str, ...],
+) -> None:
+    """Measure how long the robot's functions take in another command: test, sim, fuzz or replay.
+
+    Of each function that WPILib, commands2 or magicbot calls: how its times are distributed; when and where the loop
+    overran its period, and because of what; on which lines the time went. The options of this command stand before
+    the other one's name: pyfrc profile --json profile.json test -j 1
+
+    \b
+    Exit codes: the other command's; 2 wrong usage.
+    """
+    wrapped = wrapped_command(context, command_line, ("test", "sim", "fuzz", "replay"))
+    from pyfrc_core.measure.profile import ProfileOptions, profiling
+
+    options = ProfileOptions(outfile, html, as_json, top)
+    with profiling(wrapped.project, options, f"pyfrc {' '.join(command_line)}"):
+        status = wrapped.run()
+    sys.exit(status)

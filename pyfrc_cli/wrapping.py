@@ -1,0 +1,62 @@
+"""Commands that measure another command while it runs: `pyfrc coverage test`, `pyfrc profile replay script.jsonl`."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .main import COMMANDS
+from .project_options import chosen_project
+
+if TYPE_CHECKING:
+    from pyfrc_core.project import Project
+
+#: For the wrapping command: what stands behind the wrapped command's name is for that.
+WRAPPING: dict[str, Any] = {"help_option_names": ["-h", "--help"], "allow_interspersed_args": False}
+
+
+@dataclass(frozen=True)
+class Wrapped:
+    """A command with its options, about to be run.
+
+    :param project: the robot project that it is about
+    """
+
+    name: str
+    project: Project
+    _context: click.Context
+
+    def run(self) -> int:
+        """Run it; answers its exit code."""
+        try:
+            with self._context:
+                self._context.command.invoke(self._context)
+        except SystemExit as ended:
+            return ended.code if isinstance(ended.code, int) else int(ended.code is not None)
+        except click.exceptions.Exit as ended:
+            return ended.exit_code
+        except (KeyboardInterrupt, click.Abort):
+            click.secho("interrupted", err=True)  # what was measured until now is still of interest
+            return 2
+        return 0
+
+
+def wrapped_command(context: click.Context, words: Sequence[str], wrappable: Sequence[str]) -> Wrapped:
+    """The command that these words say.
+
+    :param context: that of the command which wraps it
+    :param wrappable: the names of the commands that it may be
+    :raises click.UsageError: when it is none of them, or its options are wrong
+    """
+    name, *arguments = words
+    known = [each for each in wrappable if each in COMMANDS]
+    if name not in known:
+        raise click.UsageError(f"{name!r} is not a command to be measured: those are {', '.join(known)}.", context)
+    command: click.Command = importlib.import_module(COMMANDS[name][0]).command
+    inner = command.make_context(name, arguments, parent=context)
+    options = inner.params
+    return Wrapped(name, chosen_project(options["directory"], options["main"], options["robot_class"]), inner)

@@ -1,0 +1,173 @@
+"""`pyfrc profile`: how long the robot's functions take, in whichever process and thread they run."""
+
+from __future__ import annotations
+
+import cProfile
+import json
+import os
+import pstats
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import wraps
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from ..errors import UsageError
+from ..project import Project
+from ..robot_files import RobotFiles
+from ..text_files import write_whole
+from .figures import Figures, added_up
+from .flame import flame_is_to_be_had, write_flame
+from .processes import announced, is_announced
+from .profile_report import as_json, as_text
+from .replacements import Replacements
+from .stopwatch_cost import measured_cost
+
+
+@dataclass(frozen=True)
+class ProfileOptions:
+    """Which reports are wanted beside the one that is printed.
+
+    :param pstats: a file for Python's `pstats`, and for what reads its format
+    :param html: a web page with a flame view
+    :param json: all that was measured
+    :param top: how many functions and lines to print
+    """
+
+    pstats: Path | None = None
+    html: Path | None = None
+    json: Path | None = None
+    top: int = 20
+
+
+class _CallProfile:
+    """`cProfile` around the timed functions of this process, one call at a time, in whichever thread."""
+
+    def __init__(self) -> None:
+        self._profile = cProfile.Profile()
+        self._on = False
+
+    def wrap(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """The function, profiled when it is called from outside of the others."""
+
+        def profiled(*args: Any, **kwargs: Any) -> Any:
+            __tracebackhide__ = True
+            if self._on:
+                return function(*args, **kwargs)
+            self._on = True
+            self._profile.enable()
+            try:
+                return function(*args, **kwargs)
+            finally:
+                self._profile.disable()
+                self._on = False
+
+        try:
+            return wraps(function)(profiled)
+        except (AttributeError, TypeError):  # something callable that is no function
+            return profiled
+
+    def forget(self) -> None:
+        """Begin anew, in a fork."""
+        self._profile = cProfile.Profile()
+        self._on = False
+
+    def keep(self, file: Path) -> None:
+        """Write what was called, if anything was."""
+        self._profile.create_stats()
+        if self._profile.stats:
+            self._profile.dump_stats(file)
+
+
+def begin(settings: dict[str, Any]) -> Callable[[], None]:
+    """Begin to measure in this process; answers what keeps what was measured. A fork goes on measuring by itself."""
+    from .sampler import Sampler
+    from .stopwatch import Stopwatch
+    from .user_functions import UserFunctions
+
+    figures, files = Figures(), RobotFiles(Path(settings["root"]))
+    stopwatch = Stopwatch(figures, files)
+    sampler = Sampler(figures, files, settings["stacks"])
+    calls = _CallProfile() if settings["calls"] else None
+    replacements, numbers = Replacements(), count()
+    UserFunctions(stopwatch, files, calls.wrap if calls is not None else lambda function: function).find(replacements)
+    sampler.sample_runs(replacements)
+
+    def in_fork() -> None:
+        figures.forget()
+        stopwatch.forget()
+        sampler.forget()
+        if calls is not None:
+            calls.forget()
+
+    if hasattr(os, "register_at_fork"):
+        os.register_at_fork(after_in_child=in_fork)
+
+    def save() -> None:
+        sampler.stop()
+        name = f"{os.getpid()}-{next(numbers)}"
+        figures.keep(Path(settings["directory"], f"{name}.figures"))
+        figures.forget()
+        if calls is not None:
+            calls.keep(Path(settings["directory"], f"{name}.pstats"))
+            calls.forget()
+        replacements.undo()
+
+    return save
+
+
+@contextmanager
+def profiling(project: Project, options: ProfileOptions, command: str) -> Iterator[None]:
+    """Measure while this lasts, then report, whatever came of it.
+
+    :param command: what is measured, as it is to be called in the reports
+    """
+    if is_announced("profile"):
+        raise UsageError("a profile is being measured already")
+    for file in (options.pstats, options.html, options.json):
+        if file is not None and file.is_dir():
+            raise UsageError(f"the profile cannot be written to {file}: that is a directory")
+    if options.html is not None:
+        flame_is_to_be_had()
+    # What each process measured lies here until it is added up.
+    with tempfile.TemporaryDirectory(prefix="pyfrc-profile-") as directory:
+        settings = {
+            "root": str(project.root),
+            "directory": directory,
+            "stacks": options.html is not None,
+            "calls": options.pstats is not None,
+        }
+        try:
+            with announced("profile", settings):
+                yield
+        finally:
+            _report(Path(directory), options, command)
+
+
+def _report(directory: Path, options: ProfileOptions, command: str) -> None:
+    figures = added_up(sorted(directory.glob("*.figures")))
+    profiled_calls = _add_up_calls(sorted(directory.glob("*.pstats")), options.pstats)
+    cost = measured_cost(figures, profiled_calls)
+    print()
+    print(as_text(figures, cost, options.top))
+    if options.pstats is not None and profiled_calls:
+        print(f"profile for pstats: {options.pstats}")
+    if options.html is not None:
+        write_flame(figures, options.html, command)
+        print(f"profile as a web page: {options.html}")
+    if options.json is not None:
+        write_whole(options.json, [json.dumps(as_json(figures, cost, command), indent=1), "\n"])
+        print(f"profile as JSON: {options.json}")
+
+
+def _add_up_calls(files: list[Path], wanted: Path | None) -> int:
+    """Write the `pstats` of all processes to one file; answers how many calls they are of."""
+    if wanted is None or not files:
+        return 0
+    total = pstats.Stats(*map(str, files))
+    wanted.parent.mkdir(parents=True, exist_ok=True)
+    total.dump_stats(wanted)
+    return total.total_calls  # type: ignore[attr-defined,no-any-return]

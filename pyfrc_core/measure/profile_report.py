@@ -1,0 +1,167 @@
+"""What a profile says: as text for people, as JSON for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict
+from itertools import groupby
+from typing import Any
+
+from .figures import Figures, Line, Measurand, Overrun, distribution
+from .stopwatch import WHOLE_LOOP
+from .stopwatch_cost import Cost
+from .wording import counted, table
+
+#: So many of the robot times at which a function made the loop overrun are printed.
+_TIMES = 4
+
+
+def as_text(figures: Figures, cost: Cost, top: int) -> str:
+    """The report to print.
+
+    :param top: how many functions, and lines, to show
+    """
+    times = _by_total(figures)
+    if not times:
+        return "profile: no function of the robot was called"
+    return "\n".join(
+        [
+            *_functions(times, top),
+            *_overruns(figures),
+            *_lines(figures, top),
+            *_cost(cost, figures.samples),
+        ]
+    )
+
+
+def as_json(figures: Figures, cost: Cost, command: str) -> dict[str, Any]:
+    """All that was measured; the names tell the units."""
+    return {
+        "command": command,
+        "functions": [
+            {
+                **what._asdict(),
+                "count": spread.count,
+                "p50_ms": spread.p50,
+                "p95_ms": spread.p95,
+                "p99_ms": spread.p99,
+                "max_ms": spread.longest,
+                "total_ms": spread.total,
+            }
+            for what, spread in ((what, distribution(figures.times[what])) for what in _by_total(figures))
+        ],
+        "overruns": [
+            {
+                "robot_time_s": round(overrun.seconds, 6),
+                "mode": overrun.mode,
+                "function": overrun.culprit.name,
+                "place": overrun.culprit.place,
+                "loop_ms": overrun.took_ns / 1e6,
+                "function_ms": overrun.culprit_ns / 1e6,
+                "held_up_ms": overrun.held_up_ns / 1e6,
+                "period_ms": overrun.period_ns / 1e6,
+                "test": overrun.test,
+            }
+            for overrun in figures.overruns
+        ],
+        "lines": [
+            {**line._asdict(), "computing_ms": computing / 1e6, "waiting_ms": waiting / 1e6}
+            for line, (computing, waiting) in _slowest_lines(figures)
+        ],
+        "cost": {**asdict(cost), "share": cost.share, "samples": figures.samples},
+    }
+
+
+def _by_total(figures: Figures) -> dict[Measurand, Any]:
+    """What was called, the loop first, then by the time that all calls took together."""
+    called = {what: times for what, times in figures.times.items() if len(times)}
+    order = sorted(called, key=lambda what: (what != WHOLE_LOOP, -sum(called[what]), what))
+    return {what: called[what] for what in order}
+
+
+def _functions(times: dict[Measurand, Any], top: int) -> Iterator[str]:
+    yield "How long each call took, in milliseconds:"
+    rows: list[tuple[str, ...]] = [("function", "place", "calls", "p50", "p95", "p99", "max", "total")]
+    for what in list(times)[:top]:
+        spread = distribution(times[what])
+        numbers = (spread.p50, spread.p95, spread.p99, spread.longest)
+        rows.append(
+            (what.name, what.place, str(spread.count), *(f"{each:.3f}" for each in numbers), f"{spread.total:.1f}")
+        )
+    yield from table(rows, left=2)
+    if len(times) > top:
+        yield f"  and {counted(len(times) - top, 'more function')} (--top {len(times)})"
+
+
+def _overruns(figures: Figures) -> Iterator[str]:
+    yield ""
+    if not figures.overruns:
+        yield "No turn of the loop took longer than its period."
+        return
+    yield f"{counted(len(figures.overruns), 'turn')} of a loop took longer than its period:"
+    rows = [("function", "place", "mode", "times", "worst", "held up", "period", "at robot time")]
+    for group in _grouped(figures.overruns):
+        first, worst = group[0], max(group, key=lambda overrun: overrun.culprit_ns)
+        rows.append(
+            (
+                first.culprit.name,
+                first.culprit.place,
+                first.mode,
+                str(len(group)),
+                f"{worst.culprit_ns / 1e6:.1f} ms",
+                f"{worst.held_up_ns / 1e6:.1f} ms",
+                f"{first.period_ns / 1e6:g} ms",
+                _moments(group),
+            )
+        )
+    yield from table(rows, left=3, left_at_end=1)
+    if any(overrun.held_up_ns > overrun.took_ns / 2 for overrun in figures.overruns):
+        yield "  Held up: this computer did something else then, or the robot's code waited for the world outside."
+
+
+def _grouped(overruns: Iterable[Overrun]) -> list[list[Overrun]]:
+    """Those of the same function in the same mode, the most frequent first."""
+
+    def same(overrun: Overrun) -> tuple[Measurand, str, int]:
+        return overrun.culprit, overrun.mode, overrun.period_ns
+
+    groups = [list(group) for _, group in groupby(sorted(overruns, key=same), same)]
+    return sorted(groups, key=len, reverse=True)
+
+
+def _moments(overruns: Sequence[Overrun]) -> str:
+    moments = sorted({round(overrun.seconds, 2) for overrun in overruns})
+    text = ", ".join(f"{moment:.2f}" for moment in moments[:_TIMES])
+    return f"{text} s" if len(moments) <= _TIMES else f"{text}, ... {moments[-1]:.2f} s"
+
+
+def _lines(figures: Figures, top: int) -> Iterator[str]:
+    slowest = _slowest_lines(figures)
+    if not slowest:
+        return
+    yield ""
+    yield "The lines that took longest, in milliseconds, by samples:"
+    rows = [("line", "function", "computing", "waiting")]
+    rows += [
+        (line.place, line.function, f"{computing / 1e6:.1f}", f"{waiting / 1e6:.1f}")
+        for line, (computing, waiting) in slowest[:top]
+    ]
+    yield from table(rows, left=2)
+
+
+def _slowest_lines(figures: Figures) -> list[tuple[Line, list[int]]]:
+    return sorted(figures.lines.items(), key=lambda item: (-sum(item[1]), item[0]))
+
+
+def _cost(cost: Cost, samples: int) -> Iterator[str]:
+    yield ""
+    parts = [f"{cost.timing_ns / 1e6:.1f} ms for timing ({cost.call_ns / 1e3:.2f} µs a call)"]
+    parts.append(f"{cost.sampling_ns / 1e6:.1f} ms for {counted(samples, 'sample')}")
+    if cost.calls_ns:
+        parts.append(f"{cost.calls_ns / 1e6:.1f} ms for cProfile, which is in the figures above")
+    text = f"What measuring has cost: {', '.join(parts)}"
+    if cost.share is not None:
+        text += (
+            f"; {cost.share:.0%} of the {(cost.robot_ns / 1e6) / (1 + cost.share):.1f} ms that the robot took by itself"
+        )
+    yield text + "."

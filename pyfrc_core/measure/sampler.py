@@ -1,0 +1,109 @@
+"""Looks, some hundred times a second, which line the robot's code is at.
+
+Hand-written since it must sample whichever thread of the robot has its turn, in forks too, and nothing of what runs the
+robot: pyinstrument samples the thread that has started it. It draws the flame view of what is found here.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from _thread import get_ident
+from time import perf_counter_ns
+from types import FrameType
+
+from ..robot_files import RobotFiles, is_pyfrc
+from ..runtime.cooperative import real_thread_start
+from ..runtime.redirect import redirection
+from ..runtime.robot import RobotRun
+from ..runtime.threads import real_allocate_lock, real_thread_join
+from .figures import Figures
+from .replacements import Replacements
+from .stopwatch import innermost_line, is_waiting
+
+_SECONDS = 0.0025
+#: A process that was held up by others did not spend that time on the line that it is found at.
+_LONGEST_NS = 20_000_000
+
+
+class Sampler:
+    """Samples the lines of the robot's code while a robot runs in this process."""
+
+    def __init__(self, figures: Figures, files: RobotFiles, stacks: bool) -> None:
+        self._figures = figures
+        self._files = files
+        self._stacks = stacks
+        self._over = real_allocate_lock()
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begin, in this process."""
+        if self._thread is not None:
+            return
+        self._over = real_allocate_lock()
+        self._over.acquire()
+        self._thread = threading.Thread(target=self._sample, name="pyfrc sampler", daemon=True)
+        real_thread_start(self._thread)
+
+    def stop(self) -> None:
+        """End, and have what was found in the figures."""
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            self._over.release()
+            real_thread_join(thread)
+
+    def sample_runs(self, replacements: Replacements) -> None:
+        """Sample each robot's run, until the replacements are undone."""
+        real_open, real_close = RobotRun.open, RobotRun.close
+
+        def open_run(run: RobotRun) -> None:
+            real_open(run)
+            self.start()
+
+        def close_run(run: RobotRun) -> None:
+            self.stop()
+            real_close(run)
+
+        replacements.replace(RobotRun, "open", open_run)
+        replacements.replace(RobotRun, "close", close_run)
+
+    def forget(self) -> None:
+        """The thread is not in this fork."""
+        self._thread = None
+
+    def _sample(self) -> None:
+        # Python's switch interval stays as it is: a shorter one makes the robot's threads take their turns more slowly.
+        figures, last = self._figures, perf_counter_ns()
+        while not self._over.acquire(timeout=_SECONDS):
+            now = perf_counter_ns()
+            self._look(min(now - last, _LONGEST_NS))
+            last = now
+            figures.samples += 1
+            figures.sampling_ns += perf_counter_ns() - now
+
+    def _look(self, spent_ns: int) -> None:
+        run = redirection.run
+        if run is None or not run.in_motion:
+            return
+        running = run.threads.running
+        ident = running.ident if running is not None else run.threads.driver
+        frame = sys._current_frames().get(ident) if ident is not None and ident != get_ident() else None
+        line = innermost_line(frame, self._files)
+        if line is None or is_waiting(frame, self._files):
+            return
+        self._figures.on_line(line, spent_ns, 0)
+        if self._stacks:
+            stack = self._stack(frame)
+            self._figures.stacks[stack] = self._figures.stacks.get(stack, 0) + spent_ns
+
+    def _stack(self, frame: FrameType | None) -> tuple[tuple[str, str, int], ...]:
+        """The calls from the robot's outermost function on, but for pyfrc's own."""
+        calls, outermost = [], 0
+        while frame is not None:
+            code = frame.f_code
+            if not is_pyfrc(code.co_filename):
+                calls.append((getattr(code, "co_qualname", code.co_name), code.co_filename, frame.f_lineno))
+                if self._files.is_robot_code(code.co_filename):
+                    outermost = len(calls)
+            frame = frame.f_back
+        return tuple(reversed(calls[:outermost]))

@@ -1,0 +1,215 @@
+"""Which functions of a robot are timed: those that WPILib, commands2 and magicbot call each loop, or when they choose.
+
+They are found when their classes are made, and when they are handed over as callbacks: so the robot's modules must not
+have been imported yet.
+"""
+
+from __future__ import annotations
+
+import sys
+import typing
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from types import FunctionType
+from typing import Any
+
+import wpilib
+import wpilib.event
+import wpiutil
+
+from ..robot_files import RobotFiles
+from ..runtime.clock import to_us
+from ..runtime.notifier import Notifier
+from ..runtime.robot import RobotRun
+from ..runtime.threads import RobotThreads
+from ..runtime.timed_loop import TimedLoop
+from .figures import Measurand
+from .replacements import Replacements
+from .stopwatch import WHOLE_LOOP, Stopwatch
+
+_MODES = ("robot", "disabled", "autonomous", "teleop", "test", "simulation", "_simulation")
+#: What is called of a robot. Not its constructor, which runs before there is a loop.
+_OF_A_ROBOT = {f"{mode}{when}" for mode in _MODES for when in ("Init", "Periodic", "Exit")}
+_NOT_OF_A_LOOP = {"startCompetition", "endCompetition"}
+_OF_A_COMMAND = {"initialize", "execute", "end", "isFinished"}
+_OF_A_SUBSYSTEM = {"periodic", "simulationPeriodic"}
+_OF_A_COMPONENT = {"execute", "on_enable", "on_disable"}
+#: Where commands and triggers are given functions: the class, its method, the arguments by number and by name.
+_GIVEN_TO_COMMANDS = (
+    ("FunctionalCommand", "__init__", (1, 2, 3, 4), ("onInit", "onExecute", "onEnd", "isFinished")),
+    ("ConditionalCommand", "__init__", (3,), ("condition",)),
+    ("WaitUntilCommand", "__init__", (1,), ("condition",)),
+    ("SelectCommand", "__init__", (2,), ("selector",)),
+    ("DeferredCommand", "__init__", (1,), ("supplier",)),
+    ("Command", "onlyWhile", (1,), ("condition",)),
+    ("Command", "finallyDo", (1,), ("end",)),
+    ("Command", "handleInterrupt", (1,), ("handler",)),
+    ("Trigger", "__init__", (1, 2), ("condition",)),
+)
+
+
+class UserFunctions:
+    """Has the functions of a robot timed."""
+
+    def __init__(self, stopwatch: Stopwatch, files: RobotFiles, wrap: Callable[[Callable[..., Any]], Any]) -> None:
+        self._stopwatch = stopwatch
+        self._files = files
+        self._wrap = wrap
+        self._done: set[type] = set()
+
+    def find(self, replacements: Replacements) -> None:
+        """From now on, until the replacements are undone."""
+        for base in (wpilib.RobotBase, wpiutil.Sendable):
+            replacements.replace(base, "__init_subclass__", classmethod(self._when_derived_from(base)))
+        replacements.replace(TimedLoop, "add", self._adding(TimedLoop.add))
+        self._time_arguments(replacements, wpilib.event.EventLoop, "bind", (1,), ("action",))
+        for name in ("__init__", "setCallback"):
+            self._time_arguments(replacements, Notifier, name, (1,), ("handler",))
+        for name in ("sleep_until", "wait"):
+            replacements.replace(RobotThreads, name, self._stopwatch.waiting(getattr(RobotThreads, name)))
+        real_open = RobotRun.open
+
+        def open_run(run: RobotRun) -> None:
+            self._time_callbacks_of_commands(replacements)
+            real_open(run)
+
+        replacements.replace(RobotRun, "open", open_run)
+
+    def timed(self, function: Callable[..., Any], kind: str, name: str = "", period_ns: int | None = None) -> Any:
+        """The function, timed."""
+        name, place = name or _name_of(function), _place_of(function, self._files)
+        return self._stopwatch.timed(self._wrap(function), Measurand(kind, name, place), period_ns)
+
+    def _when_derived_from(self, base: Any) -> Callable[..., None]:
+        def init_subclass(cls: Any, **arguments: Any) -> None:
+            super(base, cls).__init_subclass__(**arguments)
+            self._on_class(cls)
+
+        return init_subclass
+
+    # -- classes --------------------------------------------------------------------------------------------------
+
+    def _on_class(self, cls: type) -> None:
+        """A class has been made that derives from WPILib's, perhaps a library's."""
+        if issubclass(cls, wpilib.RobotBase):
+            self._time_robot(cls)
+        elif _derives_from(cls, "commands2.command", "Command"):
+            self._time_methods(cls, _OF_A_COMMAND, "command")
+        elif _derives_from(cls, "commands2.subsystem", "Subsystem"):
+            self._time_methods(cls, _OF_A_SUBSYSTEM, "subsystem")
+
+    def _time_robot(self, cls: type) -> None:
+        if issubclass(cls, wpilib.IterativeRobotBase):
+            self._time_methods(cls, _OF_A_ROBOT, "robot")
+        elif _derives_from(cls, "magicbot.magicrobot", "MagicRobot"):
+            self._time_methods(cls, _OF_A_ROBOT, "robot")
+            for component in _components(cls):
+                self._time_component(component)
+        else:  # with a loop of its own, whose parts only it knows
+            methods = {name for name, value in vars(cls).items() if isinstance(value, FunctionType)}
+            self._time_methods(cls, {name for name in methods if name[:2] != "__"} - _NOT_OF_A_LOOP, "robot")
+
+    def _time_component(self, cls: type) -> None:
+        """A class of `MagicRobot`'s, of which also what it inherits from a library is of interest: a state machine."""
+        if cls in self._done or cls.__module__.partition(".")[0] in ("magicbot", "wpilib"):
+            return
+        self._done.add(cls)
+        self._time_methods(cls, _OF_A_COMPONENT, "component")
+        inherited = getattr(cls, "execute", None)
+        if "execute" not in vars(cls) and isinstance(inherited, FunctionType):
+            if self._files.is_robot_code(inherited.__code__.co_filename):
+                return  # timed where it is
+            cls.execute = self.timed(inherited, "component", f"{cls.__qualname__}.execute")  # type: ignore[attr-defined]
+
+    def _time_methods(self, cls: type, names: Iterable[str], kind: str) -> None:
+        for name in sorted(names):
+            method = vars(cls).get(name)
+            if isinstance(method, FunctionType) and self._files.is_robot_code(method.__code__.co_filename):
+                setattr(cls, name, self.timed(method, kind))
+
+    # -- callbacks ------------------------------------------------------------------------------------------------
+
+    def _adding(self, real: Callable[..., None]) -> Callable[..., None]:
+        """`TimedLoop.add`, for the loop itself and for callbacks with their own rate."""
+
+        def add(loop: TimedLoop, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
+            period_ns = to_us(period) * 1000
+            if getattr(call, "__name__", "") == "_loopFunc":
+                call = self._stopwatch.timed(self._wrap(call), WHOLE_LOOP, period_ns)
+            else:
+                call = self.timed(call, "periodic", period_ns=period_ns)
+            real(loop, call, period, offset)
+
+        return add
+
+    def _time_callbacks_of_commands(self, replacements: Replacements) -> None:
+        """What commands and triggers are made of; commands2 is there by now, if the robot uses it."""
+        if "commands2" not in sys.modules:
+            return
+        import commands2.button
+
+        for where, method, positions, names in _GIVEN_TO_COMMANDS:
+            owner = getattr(commands2, where, None) or getattr(commands2.button, where)
+            self._time_arguments(replacements, owner, method, positions, names)
+
+    def _time_arguments(
+        self, replacements: Replacements, owner: type, name: str, positions: Iterable[int], names: Iterable[str]
+    ) -> None:
+        """Time the callbacks that a method is given, if they are the robot's own functions."""
+        if (owner, name) in replacements:
+            return
+        real = getattr(owner, name)
+
+        def call(*arguments: Any, **by_name: Any) -> Any:
+            __tracebackhide__ = True
+            given = list(arguments)
+            for position in positions:
+                if position < len(given):
+                    given[position] = self._callback(given[position])
+            for each in names:
+                if each in by_name:
+                    by_name[each] = self._callback(by_name[each])
+            return real(*given, **by_name)
+
+        replacements.replace(owner, name, call)
+
+    def _callback(self, function: Any) -> Any:
+        code = _code_of(function)
+        if code is None or not self._files.is_robot_code(code.co_filename):
+            return function
+        return self.timed(function, "callback")
+
+
+def _components(cls: type) -> Iterator[type]:
+    """The classes of which `MagicRobot` makes its components, as far as they can be told by now."""
+    try:
+        hints = typing.get_type_hints(cls)
+    except Exception:  # magicbot tells what is wrong with them
+        return
+    for hint in hints.values():
+        if isinstance(hint, type) and not issubclass(hint, (wpiutil.Sendable, int, float, str)):
+            yield hint
+
+
+def _derives_from(cls: type, module: str, name: str) -> bool:
+    """Whether a class is a library's or derives from it, without importing that."""
+    return any(base.__module__ == module and base.__name__ == name for base in cls.__mro__)
+
+
+def _code_of(function: Any) -> Any:
+    if isinstance(function, partial):
+        function = function.func
+    return getattr(getattr(function, "__func__", function), "__code__", None)
+
+
+def _name_of(function: Any) -> str:
+    if isinstance(function, partial):
+        function = function.func
+    return str(getattr(function, "__qualname__", type(function).__name__)).replace("<locals>.", "")
+
+
+def _place_of(function: Any, files: RobotFiles) -> str:
+    code = _code_of(function)
+    if code is None or not files.is_robot_code(code.co_filename):
+        return ""
+    return f"{files.relative(code.co_filename)}:{code.co_firstlineno}"

@@ -1,0 +1,21 @@
+"""How reports put numbers: tables, and nouns with their plural."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+
+def counted(number: int, noun: str) -> str:
+    """``1 line``, ``2 lines``."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
+def table(rows: Sequence[Sequence[str]], left: int, left_at_end: int = 0) -> Iterator[str]:
+    """The lines of a table; its first `left` and last `left_at_end` columns are aligned to the left."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        cells = [
+            cell.ljust(width) if at < left or at >= len(row) - left_at_end else cell.rjust(width)
+            for at, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        yield ("  " + "  ".join(cells)).rstrip()

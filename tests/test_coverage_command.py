@@ -1,0 +1,232 @@
+"""`pyfrc coverage`: a line counts wherever it runs, the figures are coverage.py's, and what never ran is told."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from conftest import MakeProject, RobotProject
+
+from pyfrc_core.measure.never_run import Unused, never_run, summary
+
+#: Each of its helpers runs in one place only.
+ROBOT = """
+    import threading
+
+    import wpilib
+
+    import helpers
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.stick = wpilib.Joystick(0)
+            self.notifier = wpilib.Notifier(helpers.in_a_notifier)
+            threading.Thread(target=self.work, daemon=True).start()
+
+        def work(self):
+            wpilib.wait(0.1)
+            helpers.in_a_thread()
+
+        def autonomousInit(self):
+            helpers.in_autonomous()
+
+        def teleopInit(self):
+            self.notifier.startSingle(0.1)
+
+        def teleopPeriodic(self):
+            if self.stick.getRawButton(3):
+                helpers.with_button_pressed()
+"""
+
+HELPERS = """
+    def in_a_thread():
+        return 1
+
+
+    def in_a_notifier():
+        return 1
+
+
+    def in_autonomous():
+        return 1
+
+
+    def with_button_pressed():
+        return 1
+
+
+    class Unused:
+        def short(self):
+            return 1
+
+        def long(self):
+            first = 1
+            second = 2
+
+            def inner():
+                return first + second
+
+            return inner()
+
+        def only_documented(self):
+            \"\"\"There is nothing in it to be run.\"\"\"
+"""
+
+TESTS = """
+    def test_autonomous(control):
+        control.set_autonomous(enabled=True)
+        control.run_test(lambda tm: tm < 1)
+
+
+    def test_teleop(control):
+        control.set_operator_control(enabled=True)
+        control.run_test(lambda tm: tm < 1)
+"""
+
+FILES = {"robot.py": ROBOT, "helpers.py": HELPERS, "tests/test_a.py": TESTS}
+
+
+@pytest.fixture(scope="module")
+def project(make_shared_project: MakeProject) -> RobotProject:
+    return make_shared_project(FILES)
+
+
+def measured(project: RobotProject, *command: str) -> dict[str, Any]:
+    """What coverage.py says as JSON of a command that passes."""
+    result = project.run("coverage", "--json", "coverage.json", *command)
+    assert result.code == 0, result.output
+    assert list(project.path.rglob(".coverage*")) == []
+    report: dict[str, Any] = json.loads((project.path / "coverage.json").read_text("utf-8"))
+    return report
+
+
+def functions_run(report: dict[str, Any]) -> set[str]:
+    functions = report["files"]["helpers.py"]["functions"]
+    return {name for name, function in functions.items() if name and function["executed_lines"]}
+
+
+@pytest.mark.parametrize("isolation", ["auto", "spawn", "none"])
+def test_lines_in_threads_and_isolated_tests_count(project: RobotProject, isolation: str) -> None:
+    tests = () if isolation != "none" else ("--", "-k", "teleop")
+    report = measured(project, "test", "--isolation", isolation, *tests)
+    expected = {"in_a_thread", "in_a_notifier", "in_autonomous"} - ({"in_autonomous"} if tests else set())
+    assert functions_run(report) == expected
+
+
+def test_lines_that_only_a_fuzz_match_runs_count(project: RobotProject) -> None:
+    report = measured(project, "fuzz", "--runs", "2", "-j", "2")
+    assert functions_run(report) == {"in_a_thread", "in_a_notifier", "in_autonomous", "with_button_pressed"}
+
+
+def test_the_figures_equal_those_of_coverage_by_hand(project: RobotProject) -> None:
+    assert project.run("test", "--record", "scripts", "--", "-k", "teleop").code == 0
+    (script,) = (project.path / "scripts").glob("*teleop.jsonl")
+    report = measured(project, "replay", str(script))
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("COVERAGE_", "PYTEST_"))}
+    for by_hand in (
+        ["run", "--source", ".", "--omit", "tests/*", "-m", "pyfrc", "replay", str(script)],
+        ["json", "-o", "by-hand.json"],
+    ):
+        subprocess.run(
+            [sys.executable, "-m", "coverage", *by_hand],
+            cwd=project.path,
+            env=environment | {"PYTHONHASHSEED": "0", "COVERAGE_FILE": str(project.temporary / "by-hand")},
+            check=True,
+            capture_output=True,
+        )
+    expected = json.loads((project.path / "by-hand.json").read_text("utf-8"))
+    assert report["files"] == expected["files"]
+    assert report["totals"] == expected["totals"]
+    assert 0 < report["totals"]["percent_covered"] < 100
+
+
+def test_all_reports_and_the_functions_never_run(project: RobotProject) -> None:
+    result = project.run("coverage", "--html", "pages", "--xml", "out/coverage.xml", "--fail-under", "40", "test")
+    assert result.code == 0, result.output
+    assert (project.path / "pages/index.html").is_file()
+    classes = ElementTree.parse(project.path / "out/coverage.xml").getroot().iter("class")
+    assert sorted(each.attrib["filename"] for each in classes) == ["helpers.py", "robot.py"]
+    lines = project.line("helpers.py", "def long"), project.line("helpers.py", "def inner")
+    never = result.stdout.partition("Functions never run, worst first:\n")[2].splitlines()
+    assert never[0] == "helpers.py: 4 functions, 7 lines"
+    assert never[1] == f"  Unused.long (helpers.py:{lines[0]}), 4 lines"
+    assert f"  Unused.long.inner (helpers.py:{lines[1]}), 1 line" in never
+    assert "only_documented" not in result.stdout
+
+
+def test_too_little_is_a_failure(project: RobotProject) -> None:
+    result = project.run("coverage", "--fail-under", "99.5", "test", "-j", "1", "--", "-q")
+    assert result.code == 1
+    assert "2 passed" in result.stdout
+    assert "is less than the 99.5 % asked for" in result.stderr
+
+
+def test_a_command_that_fails_keeps_its_exit_code_and_is_reported(make_project: MakeProject) -> None:
+    project = make_project({**FILES, "tests/test_a.py": TESTS + "\n        assert False\n"})
+    result = project.run("coverage", "--fail-under", "1", "test")
+    assert result.code == 1
+    assert re.search(r"^robot\.py +\d+ ", result.stdout, re.MULTILINE)
+    none = project.run("coverage", "test", "--", "-k", "no_such_test")
+    assert none.code == 5
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        ((), "Missing argument 'COMMAND"),
+        (("tets",), "'tets' is not a command to be measured: those are test, "),
+        (("init",), "'init' is not a command to be measured"),
+        (("test", "--no-such-option"), "No such option"),
+        (("test", "--coverage"), "coverage is measured already"),
+        (("coverage", "test"), "'coverage' is not a command to be measured"),
+        (("--xml", ".", "test"), "something else is there already"),
+        (("test", "--project", "nowhere"), "there is no directory nowhere"),
+    ],
+)
+def test_what_cannot_be_is_said(project: RobotProject, words: tuple[str, ...], complaint: str) -> None:
+    result = project.run("coverage", *words)
+    assert result.code == 2
+    assert complaint in result.stderr
+    assert "Traceback" not in result.output
+
+
+def test_the_wrapped_commands_project_is_measured(project: RobotProject, tmp_path: Path) -> None:
+    result = project.run("coverage", "test", "--project", str(project.path), cwd=tmp_path)
+    assert result.code == 0, result.output
+    assert re.search(r"helpers\.py +\d+ ", result.stdout)
+
+
+def test_the_worst_file_comes_first_and_in_it_the_longest_function() -> None:
+    def function(missing: list[int], executed: list[int], start: int) -> dict[str, Any]:
+        return {"missing_lines": missing, "executed_lines": executed, "start_line": start}
+
+    report = {
+        "files": {
+            "good.py": {"functions": {"run": function([3], [2], 1), "": function([9], [], 1)}},
+            "bad.py": {"functions": {"short": function([2], [], 1), "long": function([5, 6], [], 4)}},
+            "worst.py": {"functions": {"f": function([2, 3, 4, 5], [], 1)}},
+            "as_bad.py": {"functions": {"f": function([2, 3, 4], [], 1)}},
+        }
+    }
+    found = never_run(report)
+    assert found == {
+        "worst.py": [Unused("f", 1, 4)],
+        "as_bad.py": [Unused("f", 1, 3)],
+        "bad.py": [Unused("long", 4, 2), Unused("short", 1, 1)],
+    }
+    assert list(found) == ["worst.py", "as_bad.py", "bad.py"]
+    assert summary({}) == ""
+    assert "bad.py: 2 functions, 3 lines\n  long (bad.py:4), 2 lines" in summary(found)
+
+
+def test_lines_that_a_simulation_runs_count(project: RobotProject) -> None:
+    report = measured(project, "sim", "--ui", "none", "--mode", "practice", "--nt-port", "0")
+    assert functions_run(report) == {"in_a_thread", "in_a_notifier", "in_autonomous"}

@@ -1,0 +1,404 @@
+"""`pyfrc profile`: times that agree with a stopwatch, overruns with their culprit, and all of it out of any process."""
+
+from __future__ import annotations
+
+import json
+import os
+import pstats
+import re
+import sys
+from collections.abc import Mapping
+from math import ceil
+from typing import Any
+
+import pytest
+from conftest import MakeProject, Result, RobotProject
+
+needs_fork = pytest.mark.skipif(not hasattr(os, "fork") or sys.platform == "darwin", reason="there is no safe fork")
+
+TELEOP = """
+    def test_teleop(control):
+        control.set_operator_control(enabled=True)
+        control.run_test(lambda tm: tm < 0.2)
+"""
+
+BOTH_MODES = """
+    def test_autonomous(control):
+        control.set_autonomous(enabled=True)
+        control.run_test(lambda tm: tm < 0.2)
+
+    def test_teleop(control):
+        control.set_operator_control(enabled=True)
+        control.run_test(lambda tm: tm < 0.2)
+"""
+
+#: Has a stopwatch of its own, with a clock that is not robot time, and writes down what it says.
+SLOW_ROBOT = """
+    import json
+    import time
+    from pathlib import Path
+
+    import wpilib
+
+
+    def real_time():
+        return time.clock_gettime(time.CLOCK_MONOTONIC)
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.took = []
+
+        def robotPeriodic(self):
+            pass
+
+        def autonomousPeriodic(self):
+            self.work(0.001)
+
+        def teleopPeriodic(self):
+            self.work(PLANTED)
+
+        def work(self, seconds):
+            begin = real_time()
+            while real_time() - begin < seconds:
+                pass
+            self.took.append(real_time() - begin)
+
+        def endCompetition(self):
+            Path(__file__).with_name("took.json").write_text(json.dumps(self.took))
+            super().endCompetition()
+"""
+
+
+def profile(project: RobotProject, *command: str, options: tuple[str, ...] = ()) -> tuple[Result, dict[str, Any]]:
+    """Profile a command that passes, and answer what was written as JSON as well."""
+    result = project.run("profile", "--json", "profile.json", *options, *command)
+    assert result.code == 0, result.output
+    return result, json.loads((project.path / "profile.json").read_text("utf-8"))
+
+
+def by_name(report: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    return {function["name"]: function for function in report["functions"]}
+
+
+# -- times ----------------------------------------------------------------------------------------------------------
+
+
+def test_percentiles_agree_with_a_stopwatch_in_the_robot(make_project: MakeProject) -> None:
+    robot = SLOW_ROBOT.replace("PLANTED", "0.002 + 0.0002 * len(self.took)")
+    project = make_project({"robot.py": robot, "tests/test_a.py": TELEOP.replace("0.2", "1.0")})
+    _, report = profile(project, "test", "-j", "1")
+    took = sorted(json.loads((project.path / "took.json").read_text()))
+    function = by_name(report)["MyRobot.teleopPeriodic"]
+    assert function["count"] == len(took) == 49
+    for share, name in ((0.5, "p50_ms"), (0.95, "p95_ms"), (0.99, "p99_ms")):
+        by_stopwatch = 1000 * took[ceil(share * len(took)) - 1]
+        assert function[name] == pytest.approx(by_stopwatch, rel=0.05), name
+
+
+@pytest.mark.parametrize("isolation", [pytest.param("fork", marks=needs_fork), "spawn", "none"])
+def test_a_slow_function_is_named_with_its_mode_and_time(make_project: MakeProject, isolation: str) -> None:
+    project = make_project({"robot.py": SLOW_ROBOT.replace("PLANTED", "0.03"), "tests/test_a.py": BOTH_MODES})
+    tests = ("test_teleop",) if isolation == "none" else ("test_autonomous", "test_teleop")
+    result, report = profile(project, "test", "--isolation", isolation, "--", "-k", " or ".join(tests))
+    place = project.place("robot.py", "def teleopPeriodic")
+    overruns = [each for each in report["overruns"] if each["mode"] == "teleop"]
+    turns = [round(each["robot_time_s"] / 0.02) for each in overruns]
+    assert turns == list(range(1, len(overruns) + 1))
+    assert len(turns) >= 8
+    # On a busy computer a turn may have been held up for longer than the function took, elsewhere.
+    named = [each for each in overruns if each["function"] == "MyRobot.teleopPeriodic"]
+    assert len(named) > len(overruns) / 2
+    assert {(each["place"], each["period_ms"]) for each in named} == {(place, 20)}
+    assert all(each["function_ms"] >= 30 and each["test"].endswith("::test_teleop") for each in named)
+    assert re.search(
+        rf"^  MyRobot\.teleopPeriodic +{place} +teleop +{len(named)} .* 0\.\d\d", result.stdout, re.MULTILINE
+    )
+    assert {line["function"] for line in report["lines"][:2]} <= {"MyRobot.work", "real_time"}
+    if "test_autonomous" in tests:  # merged from another process
+        assert by_name(report)["MyRobot.autonomousPeriodic"]["count"] >= 8
+    assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
+
+
+def test_what_waits_takes_as_long_as_on_a_robot(make_project: MakeProject) -> None:
+    robot = """
+        import time
+
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def teleopPeriodic(self):
+                if round(wpilib.Timer.getFPGATimestamp(), 3) == 0.1:
+                    self.rest()
+
+            def rest(self):
+                time.sleep(0.5)
+    """
+    project = make_project({"robot.py": robot, "tests/test_a.py": TELEOP.replace("0.2", "2")})
+    _, report = profile(project, "test")
+    function = by_name(report)["MyRobot.teleopPeriodic"]
+    assert function["max_ms"] == pytest.approx(500, rel=0.2)
+    assert function["p50_ms"] < 100
+    (overrun,) = [each for each in report["overruns"] if each["function_ms"] > 400]
+    assert (overrun["function"], overrun["robot_time_s"]) == ("MyRobot.teleopPeriodic", 0.1)
+    (line,) = [line for line in report["lines"] if line["waiting_ms"]]
+    assert (line["place"], line["waiting_ms"]) == (project.place("robot.py", "time.sleep"), 500)
+
+
+# -- which functions ------------------------------------------------------------------------------------------------
+
+COMMAND_ROBOT = """
+    import commands2
+    import commands2.button
+    import wpilib
+
+
+    class Arm(commands2.Subsystem):
+        def periodic(self):
+            pass
+
+        def helper(self):
+            pass
+
+
+    class Lift(commands2.Command):
+        def initialize(self):
+            self.loops = 0
+
+        def execute(self):
+            self.loops += 1
+
+        def isFinished(self):
+            return self.loops == 3
+
+        def end(self, interrupted):
+            assert not interrupted
+
+
+    asked = []
+
+
+    def third_time():
+        asked.append(True)
+        return len(asked) > 3
+
+
+    class MyRobot(commands2.TimedCommandRobot):
+        def robotInit(self):
+            self.arm = Arm()
+            self.beats = 0
+            self.addPeriodic(self.fast, 0.01)
+            self.notifier = wpilib.Notifier(self.beat)
+            self.notifier.startPeriodic(0.05)
+            commands2.button.Trigger(third_time).onTrue(Lift())
+
+        def fast(self):
+            self.arm.helper()
+
+        def beat(self):
+            self.beats += 1
+
+        def teleopInit(self):
+            commands2.RunCommand(self.running, self.arm).schedule()
+
+        def running(self):
+            pass
+"""
+
+
+def test_commands_subsystems_and_callbacks_are_timed(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": COMMAND_ROBOT, "tests/test_a.py": TELEOP})
+    _, report = profile(project, "test")
+    functions = by_name(report)
+    kinds = {name: function["kind"] for name, function in functions.items() if function["place"]}
+    assert kinds == {
+        "MyRobot.robotInit": "robot",
+        "MyRobot.teleopInit": "robot",
+        "MyRobot.fast": "periodic",
+        "MyRobot.beat": "callback",
+        "MyRobot.running": "callback",
+        "third_time": "callback",
+        "Arm.periodic": "subsystem",
+        "Lift.initialize": "command",
+        "Lift.execute": "command",
+        "Lift.isFinished": "command",
+        "Lift.end": "command",
+    }
+    assert functions["MyRobot.fast"]["place"] == project.place("robot.py", "def fast")
+    assert {name: functions[name]["count"] for name in ("Lift.initialize", "Lift.execute", "Lift.end")} == {
+        "Lift.initialize": 1,
+        "Lift.execute": 3,
+        "Lift.end": 1,
+    }
+
+
+def test_magicbots_components_and_the_turns_of_its_loop_are_timed(make_project: MakeProject) -> None:
+    files = {
+        "parts.py": """
+            import time
+
+            import magicbot
+
+
+            class Arm:
+                def execute(self):
+                    pass
+
+
+            class Plan(magicbot.StateMachine):
+                @magicbot.state(first=True)
+                def go(self):
+                    pass
+
+                @magicbot.default_state
+                def idle(self):
+                    begin = time.clock_gettime(time.CLOCK_MONOTONIC)
+                    while time.clock_gettime(time.CLOCK_MONOTONIC) - begin < 0.03:
+                        pass
+        """,
+        "robot.py": """
+            import magicbot
+
+            from parts import Arm, Plan
+
+
+            class MyRobot(magicbot.MagicRobot):
+                plan: Plan
+                arm: Arm
+
+                def createObjects(self):
+                    pass
+
+                def teleopPeriodic(self):
+                    pass
+        """,
+        "tests/test_a.py": TELEOP,
+    }
+    project = make_project(files)
+    _, report = profile(project, "test")
+    functions = by_name(report)
+    assert {"MyRobot.teleopPeriodic", "Arm.execute", "Plan.execute", "the whole loop"} <= functions.keys()
+    slow = [each for each in report["overruns"] if each["function"] == "Plan.execute"]
+    assert {each["mode"] for each in slow} == {"teleop"}
+
+
+def test_the_parts_of_a_plain_loop_are_timed(make_project: MakeProject) -> None:
+    robot = """
+        import wpilib
+
+
+        class MyRobot(wpilib.RobotBase):
+            going = True
+
+            def startCompetition(self):
+                while self.going:
+                    self.work()
+                    wpilib.wait(0.02)
+
+            def work(self):
+                pass
+
+            def endCompetition(self):
+                self.going = False
+    """
+    project = make_project({"robot.py": robot, "tests/test_a.py": TELEOP})
+    _, report = profile(project, "test")
+    functions = by_name(report)
+    assert set(functions) == {"the whole loop", "MyRobot.work"}
+    assert functions["the whole loop"]["count"] >= 9
+
+
+# -- the command ----------------------------------------------------------------------------------------------------
+
+SMALL_ROBOT = """
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def teleopPeriodic(self):
+            self.helper()
+
+        def helper(self):
+            sum(range(1000))
+"""
+
+
+def test_pstats_have_each_call_of_all_processes(make_project: MakeProject) -> None:
+    project = make_project(
+        {"robot.py": SMALL_ROBOT, "tests/test_a.py": TELEOP + TELEOP.replace("test_teleop", "test_again")}
+    )
+    result, report = profile(project, "test", options=("-o", "out/profile.pstats"))
+    stats: Any = pstats.Stats(str(project.path / "out/profile.pstats"))
+    calls = {name: counts[1] for (file, _, name), counts in stats.stats.items() if file.endswith("robot.py")}
+    count = by_name(report)["MyRobot.teleopPeriodic"]["count"]
+    assert calls == {"teleopPeriodic": count, "helper": count}
+    assert count > 10  # both tests'
+    assert "cProfile" in result.stdout
+
+
+def test_the_flame_view_shows_the_robots_functions(make_project: MakeProject) -> None:
+    pytest.importorskip("pyinstrument")
+    project = make_project({"robot.py": SLOW_ROBOT.replace("PLANTED", "0.03"), "tests/test_a.py": TELEOP})
+    profile(project, "test", options=("--html", "pages/profile.html"))
+    page = (project.path / "pages/profile.html").read_text("utf-8")
+    assert "MyRobot.teleopPeriodic" in page
+    assert "MyRobot.work" in page
+    assert "timed_method" not in page
+
+
+def test_without_pyinstrument_it_says_what_to_install(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": SMALL_ROBOT,
+            "tests/test_a.py": TELEOP,
+            "hidden/sitecustomize.py": """
+        import sys
+
+        sys.modules["pyinstrument"] = None
+    """,
+        }
+    )
+    environment = {"PYTHONPATH": str(project.path / "hidden")}
+    result = project.run("profile", "--html", "profile.html", "test", env=environment)
+    assert result.code == 2, result.output
+    assert "pip install pyfrc[profile]" in result.stderr
+    assert "passed" not in result.stdout
+
+
+def test_the_older_name_wraps_a_replay(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": SMALL_ROBOT, "tests/test_a.py": TELEOP})
+    assert project.run("test", "--record", "scripts").code == 0
+    (script,) = (project.path / "scripts").glob("*teleop.jsonl")
+    result = project.run("profiler", "--top", "1", "replay", str(script))
+    assert result.code == 0, result.output
+    assert "The trace equals the recorded one." in result.stdout
+    assert re.search(r"^  the whole loop +\d+ ", result.stdout, re.MULTILINE)
+    assert "and 1 more function (--top 2)" in result.stdout
+    assert re.search(r"^What measuring has cost: .* µs a call.*samples?; \d+% of the ", result.stdout, re.MULTILINE)
+
+
+def test_a_failing_command_is_reported_with_its_exit_code(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": SMALL_ROBOT.replace("range(1000)", "None"), "tests/test_a.py": TELEOP})
+    result = project.run("profile", "test")
+    assert result.code == 1
+    line = project.place("robot.py", "sum(None)")
+    assert f"{line}: TypeError" in result.stdout
+    assert "MyRobot.teleopPeriodic" in result.stdout.partition("How long each call took")[2]
+
+
+def test_profiling_does_not_change_what_the_robot_does(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": COMMAND_ROBOT, "tests/test_a.py": TELEOP})
+
+    def hashes(directory: str) -> list[str]:
+        return [file.read_text().splitlines()[-1] for file in sorted((project.path / directory).iterdir())]
+
+    assert project.run("test", "--trace", "plain").code == 0
+    profile(project, "test", "--trace", "profiled")
+    assert hashes("plain") == hashes("profiled") != []
+
+
+def test_a_simulation_is_profiled(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": SMALL_ROBOT})
+    _, report = profile(project, "sim", "--ui", "none", "--mode", "teleop", "--seconds", "2", "--nt-port", "0")
+    assert by_name(report)["MyRobot.teleopPeriodic"]["count"] > 90

@@ -1,0 +1,102 @@
+"""The figures of a profile: percentiles are times that were measured, and processes' figures add up."""
+
+from __future__ import annotations
+
+from array import array
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pyfrc_core.measure.figures import Figures, Line, Measurand, Overrun, added_up, distribution
+from pyfrc_core.measure.profile_report import as_json, as_text
+from pyfrc_core.measure.stopwatch_cost import Cost
+
+TELEOP = Measurand("robot", "MyRobot.teleopPeriodic", "robot.py:3")
+LOOP = Measurand("loop", "the whole loop", "")
+COST = Cost(call_ns=300, timing_ns=3e6, sampling_ns=2e6, calls_ns=0, robot_ns=105e6)
+
+times = st.lists(st.integers(0, 10**12), min_size=1, max_size=300)
+
+
+@given(times)
+def test_at_least_so_many_calls_took_no_longer_than_a_percentile(nanoseconds: list[int]) -> None:
+    spread = distribution(array("q", nanoseconds))
+    for percent, percentile in ((50, spread.p50), (95, spread.p95), (99, spread.p99)):
+        no_longer = sum(each / 1e6 <= percentile for each in nanoseconds)
+        shorter = sum(each / 1e6 < percentile for each in nanoseconds)
+        assert percentile in {each / 1e6 for each in nanoseconds}
+        assert 100 * no_longer >= percent * len(nanoseconds) > 100 * shorter
+    assert spread.longest == max(nanoseconds) / 1e6
+    assert spread.count == len(nanoseconds)
+
+
+@given(st.lists(st.tuples(times, st.integers(0, 10**9), st.integers(0, 10**9)), min_size=1, max_size=5))
+def test_what_processes_kept_adds_up(tmp_path_factory: pytest.TempPathFactory, processes: list[tuple]) -> None:
+    directory = tmp_path_factory.mktemp("figures")
+    files: list[Path] = []
+    for number, (nanoseconds, computing, waiting) in enumerate(processes):
+        figures = Figures(samples=2, sampling_ns=5)
+        figures.times_of(TELEOP).extend(nanoseconds)
+        figures.on_line(Line("robot.py:4", "MyRobot.teleopPeriodic"), computing, waiting)
+        figures.stacks[(("MyRobot.teleopPeriodic", "robot.py", 4),)] = computing
+        files.append(directory / f"{number}.figures")
+        figures.keep(files[-1])
+    total = added_up(files)
+    assert list(total.times[TELEOP]) == [each for nanoseconds, _, _ in processes for each in nanoseconds]
+    computing, waiting = (sum(process[at] for process in processes) for at in (1, 2))
+    assert list(total.lines.values()) == [[computing, waiting]]
+    assert list(total.stacks.values()) == [computing]
+    assert (total.samples, total.sampling_ns) == (2 * len(processes), 5 * len(processes))
+
+
+def overrun(seconds: float, mode: str, took: float, held_up: float = 0.0) -> Overrun:
+    """One of 20 ms, its times in milliseconds."""
+    return Overrun(seconds, mode, TELEOP, round(took * 1e6), round(took * 1e6), round(held_up * 1e6), 20_000_000, "")
+
+
+def test_the_report_groups_overruns_and_says_when_they_were() -> None:
+    figures = Figures(samples=1)
+    figures.times_of(LOOP).extend([31_000_000] * 7)
+    figures.times_of(TELEOP).extend([30_000_000] * 6 + [1_000_000])
+    figures.overruns += [overrun(second, "teleop", 30 + second) for second in range(6)]
+    figures.overruns.append(overrun(9.5, "test", 40, held_up=39))
+    text = as_text(figures, COST, top=1)
+    lines = [" ".join(line.split()) for line in text.splitlines()]
+    assert "the whole loop 7 31.000 31.000 31.000 31.000 217.0" in lines
+    assert "and 1 more function (--top 2)" in lines
+    assert "7 turns of a loop took longer than its period:" in lines
+    teleop = "MyRobot.teleopPeriodic robot.py:3 teleop 6 35.0 ms 0.0 ms 20 ms 0.00, 1.00, 2.00, 3.00, ... 5.00 s"
+    assert teleop in lines
+    assert "MyRobot.teleopPeriodic robot.py:3 test 1 40.0 ms 39.0 ms 20 ms 9.50 s" in lines
+    assert lines.index(teleop) + 2 == next(at for at, line in enumerate(lines) if line.startswith("Held up:"))
+    assert lines[-1] == (
+        "What measuring has cost: 3.0 ms for timing (0.30 µs a call), 2.0 ms for 1 sample; "
+        "5% of the 100.0 ms that the robot took by itself."
+    )
+
+
+def test_all_of_it_is_in_the_json() -> None:
+    figures = Figures()
+    figures.times_of(TELEOP).append(30_000_000)
+    figures.overruns.append(overrun(1.02, "teleop", 30))
+    report = as_json(figures, COST, "pyfrc test")
+    assert report["command"] == "pyfrc test"
+    assert report["functions"][0]["p99_ms"] == 30
+    assert report["overruns"][0] == {
+        "robot_time_s": 1.02,
+        "mode": "teleop",
+        "function": "MyRobot.teleopPeriodic",
+        "place": "robot.py:3",
+        "loop_ms": 30,
+        "function_ms": 30,
+        "held_up_ms": 0,
+        "period_ms": 20,
+        "test": "",
+    }
+    assert report["cost"]["share"] == pytest.approx(0.05)
+
+
+def test_nothing_measured_is_said() -> None:
+    assert "no function of the robot was called" in as_text(Figures(), COST, top=5)
