@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from .errors import PyfrcError, RobotCodeError
+from .physics.construct import construct
 from .project import Project
 from .runtime.clock import to_us
 from .runtime.failures import as_robot_code_error
@@ -98,15 +99,6 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     whole = until_us is None or until_us >= script.end_us
     equal = script.trace == recorder.digest() if script.trace and whole else None
     return Replayed(seconds, failure, recorder.digest(), equal, difference)
-
-
-def construct(project: Project, run: RobotRun, robot_class: type[Any]) -> None:
-    """Make the robot, with the project's physics, in a run that is open."""
-    if project.physics_file.is_file():
-        from .physics.engine import load_physics
-
-        load_physics(project).attach(run)
-    run.construct(robot_class)
 
 
 def _how_its_process_ends(project: Project, script: InputScript) -> str | None:

@@ -9,8 +9,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..physics.construct import construct
 from ..project import Project
-from ..replay import construct
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.endings import TestEnded, TestRanTooLong
 from ..runtime.redirect import redirection
