@@ -144,7 +144,7 @@ def test_a_deploy_tells_a_line_a_phase_and_the_program_runs(robot: Roborio, make
     assert result.code == 0, result.output
     lines = [line.split()[0] for line in result.stdout.splitlines() if line.endswith(" s")]
     assert lines == ["files", "find", "connect", "look", "upload", "start"]
-    assert "StartupDLLs was switched off" in result.stdout
+    assert "StartupDLLs was switched off" in result.stdout.partition("\nstart ")[2], "the start waits for it not"
     robot.said("we are number 1")
     record = json.loads((robot.home / "py/deploy.json").read_text())
     assert record["code-path"] == str(project.path)
@@ -260,6 +260,17 @@ def test_at_a_terminal_the_way_back_is_offered(robot: Roborio, make_project) -> 
 
 def test_a_first_program_that_dies_has_nothing_to_go_back_to(robot: Roborio, make_project) -> None:
     project = make_project(program(1, DIES))
+    result = deploy(project, robot, "--auto-rollback")
+    assert result.code == 3
+    assert "There is no program before to go back to" in result.stderr
+
+
+def test_a_release_that_had_to_make_room_is_not_gone_back_to(robot: Roborio, make_project) -> None:
+    project = make_project(program(1))
+    assert deploy(project, robot).code == 0
+    project.write(program(2, DIES))
+    assert deploy(project, robot).code == 3
+    robot.run("rm", "-r", "/home/lvuser/.pyfrc/releases/1", "/home/lvuser/.pyfrc/releases/1.json")
     result = deploy(project, robot, "--auto-rollback")
     assert result.code == 3
     assert "There is no program before to go back to" in result.stderr

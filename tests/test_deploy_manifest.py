@@ -131,6 +131,21 @@ def test_what_is_no_file_is_refused_by_name(tmp_path: Path) -> None:
         survey(tmp_path)
 
 
+def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a patch: whoever runs these tests may be allowed to read everything."""
+    make(tmp_path, "robot.py", "secret.txt")
+    read_bytes = Path.read_bytes
+
+    def guarded(path: Path) -> bytes:
+        if path.name == "secret.txt":
+            raise PermissionError(13, "Permission denied", str(path))
+        return read_bytes(path)
+
+    monkeypatch.setattr(Path, "read_bytes", guarded)
+    with pytest.raises(RefusedError, match=r"secret.txt: this cannot be read: Permission denied\n.*exclude"):
+        survey(tmp_path)
+
+
 def test_large_files_are_uploaded_only_when_they_are_meant(tmp_path: Path) -> None:
     make(tmp_path, "just.bin", content=bytes(LARGE))
     assert paths(tmp_path) == ["just.bin"]

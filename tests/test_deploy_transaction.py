@@ -317,6 +317,20 @@ def test_in_place(robot: LocalRobot, project: Project, agents: Agents) -> None:
     session.close()
 
 
+@pytest.mark.parametrize(("there", "new", "kind"), [("arm/x.py", "arm", "directory"), ("arm", "arm/x.py", "file")])
+def test_in_place_refuses_what_needs_something_deleted(
+    robot: LocalRobot, tmp_path: Path, agents: Agents, there: str, new: str, kind: str
+) -> None:
+    robot.deploy(agents, project_of(tmp_path / "old", {"robot.py": ROBOT_PY, there: "1"}))
+    before = robot.startable()
+    project = project_of(tmp_path / "new", {"robot.py": "# 2\n", new: "2"})
+    with pytest.raises(RefusedError, match=f"'arm' is a {kind} on the robot"):
+        robot.deploy(agents, project, in_place=True)
+    assert robot.startable() == before
+    robot.deploy(agents, project)
+    assert robot.startable() == {"robot.py": b"# 2\n", new: b"2"}
+
+
 def test_in_place_into_another_tools_directory(robot: LocalRobot, project: Project, agents: Agents) -> None:
     other_tools_program(robot)
     deployed = robot.deploy(agents, project.manifest, in_place=True)
@@ -382,6 +396,43 @@ def test_two_at_once(robot: LocalRobot, project: Project, agents: Agents) -> Non
     second.deploy(project.manifest, DeployRequest("robot.py", {"who": "second"}))
     second.close()
     assert json.loads((robot.home / "py/deploy.json").read_text()) == {"who": "second"}
+
+
+def test_a_module_with_a_name_too_long_for_its_compiled_form(
+    robot: LocalRobot, project: Project, agents: Agents
+) -> None:
+    project.write("a" * 250 + ".py", "X = 1\n")
+    for number in range(2):
+        robot.deploy(agents, project.write("robot.py", f"# {number}\n").manifest)
+    assert robot.startable() is not None
+    assert any((robot.home / "py/__pycache__").glob("robot.*.pyc"))
+
+
+def test_another_tools_program_that_was_started_for_debugging_is_so_again(
+    robot: LocalRobot, project: Project, agents: Agents
+) -> None:
+    project_of(robot.home / "py", {"robot.py": "# other\n"})
+    (robot.home / "robotDebugCommand").write_text(OTHER_COMMAND)
+    (robot.root / "tmp/frcdebug").touch()
+    before = robot.startable()
+    assert before == {"robot.py": b"# other\n"}
+    robot.deploy(agents, project.manifest)
+    assert robot.startable() != before
+    session = robot.start(agents)
+    assert session.rollback().release.taken
+    session.close()
+    assert robot.startable() == before
+
+
+def test_a_start_command_that_is_no_utf8_comes_back(robot: LocalRobot, project: Project, agents: Agents) -> None:
+    odd = b"python3 /home/lvuser/py/robot.py --name \xff\n"
+    project_of(robot.home / "py", {"robot.py": "# other\n"})
+    (robot.home / "robotCommand").write_bytes(odd)
+    robot.deploy(agents, project.manifest)
+    session = robot.start(agents)
+    assert session.rollback().release.taken
+    session.close()
+    assert (robot.home / "robotCommand").read_bytes() == odd
 
 
 def test_a_file_that_changes_while_it_is_sent(

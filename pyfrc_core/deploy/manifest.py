@@ -59,12 +59,20 @@ def survey(root: Path, exclude: Sequence[str] = (), large: bool = False) -> Mani
     :param large: whether files over 250,000 bytes are meant to be uploaded
     :raises RefusedError: naming the files that cannot be uploaded
     """
-    found = sorted(_Walk(root, exclude).files())
-    refuse_unless_utf8([path for path, _ in found])
-    sizes = {path: file.stat().st_size for path, file in found}
-    if not large:
-        _refuse_large({path: size for path, size in sizes.items() if size > LARGE})
-    return Manifest(tuple(_entry(path, file) for path, file in found))
+    try:
+        found = sorted(_Walk(root, exclude).files())
+        refuse_unless_utf8([path for path, _ in found])
+        sizes = {path: file.stat().st_size for path, file in found}
+        if not large:
+            _refuse_large({path: size for path, size in sizes.items() if size > LARGE})
+        return Manifest(tuple(_entry(path, file) for path, file in found))
+    except OSError as error:
+        raise RefusedError(
+            f"this cannot be read: {error.strerror or error}",
+            where=ascii_path(str(error.filename or root)),
+            remedy="Look at its owner and mode, or leave it out with exclude = [...] under [tool.pyfrc.deploy] "
+            "in pyproject.toml.",
+        ) from error
 
 
 def is_excluded(path: str, patterns: Sequence[str]) -> bool:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -83,7 +86,12 @@ class Progress:
         self._print(f"{phase.name:<{_NAME_WIDTH}} {phase.detail:<{_DETAIL_WIDTH}} {seconds:6.2f} s")
 
     def _print(self, text: str) -> None:
-        print(text, file=self._stream, flush=True)
+        try:
+            print(text, file=self._stream, flush=True)
+        except BrokenPipeError:
+            # Nobody listens any more, as after `| head`: what is done to the robot is brought to its end all the same.
+            with Path(os.devnull).open("wb") as nowhere:
+                os.dup2(nowhere.fileno(), self._stream.fileno())
 
 
 class TerminalProgress(Progress):
@@ -164,7 +172,9 @@ class Conversation:
 
 
 def progress_for(as_json: bool) -> Progress:
-    """What suits where the output goes."""
+    """What suits where the output goes, which may not have all the letters of the robot's."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
     if as_json:
         return JsonProgress()
     return TerminalProgress() if sys.stdout.isatty() else Progress()

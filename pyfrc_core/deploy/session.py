@@ -73,9 +73,11 @@ def deploy(project: Project, options: DeployOptions, talk: Conversation) -> str:
             return connection.host
         memory = MemorySaver(robot.facts, connection.address, HostKeys(project.pyproject.parent))
         deployed = _upload(robot, project, manifest, options, talk)
-        memory.tell(progress)
-        if not options.in_place:
-            start(robot, talk, _before(robot, deployed), options.auto_rollback)
+        try:
+            if not options.in_place:
+                start(robot, talk, _before(robot, deployed), options.auto_rollback)
+        finally:
+            memory.tell(progress)  # not before: an administrator who cannot log in may take half a minute
         _tell_deployed(deployed, connection, options, talk)
     return connection.host
 

@@ -172,7 +172,8 @@ class Releases:
             about = json.loads(deployed or "{}")
         except ValueError:
             about = {}
-        self.write_record(number, {"taken": True, "commands": commands, "deploy": about})
+        debug = self.places.debug_flag.exists()
+        self.write_record(number, {"taken": True, "debug": debug, "commands": commands, "deploy": about})
 
     def recover(self) -> None:
         """Clear up after a deploy that was cut, and finish one that was cut past its decisive moment."""

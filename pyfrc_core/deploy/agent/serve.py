@@ -68,6 +68,8 @@ class Agent:
         """Answer until the laptop hangs up."""
         self._answer(self.facts, {})
         while True:
+            # Between two requests no lock is held, and the laptop may have to ask its user something.
+            self._wire.impatient = False
             try:
                 request = self._wire.hear()
             except EndedError:
@@ -76,7 +78,6 @@ class Agent:
 
     def _answer(self, do: Callable[[Said], Said], request: Said) -> None:
         try:
-            self._wire.impatient = False
             self._wire.say(done=do(request))
         except WireError:
             raise  # the laptop is gone, or does not speak as we do: there is nobody to tell

@@ -1,0 +1,78 @@
+"""The lock on the robot: an undeploy removes its file, and nobody is let in by that."""
+
+from __future__ import annotations
+
+import fcntl
+import io
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from roborio.local import LocalRobot, directory_in_memory
+
+from pyfrc_core.deploy.agent import places, serve, wire
+from pyfrc_core.deploy.agent.places import Lock, Places, Refusal
+
+
+@pytest.fixture
+def robot() -> Generator[LocalRobot]:
+    with directory_in_memory() as directory:
+        yield LocalRobot.new(directory / "robot")
+
+
+def is_held(lock: Path) -> bool:
+    with lock.open() as stream:
+        try:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return True
+    return False
+
+
+def test_a_lock_that_is_removed_while_it_is_waited_for(robot: LocalRobot, monkeypatch: pytest.MonkeyPatch) -> None:
+    there = Places(str(robot.root))
+    flock, calls = fcntl.flock, []
+
+    def late_flock(stream: Any, how: int) -> None:
+        if not calls:
+            there.lock.unlink()
+        calls.append(how)
+        flock(stream, how)
+
+    monkeypatch.setattr(fcntl, "flock", late_flock)
+    monkeypatch.setattr(places, "_GRACE", 0.0)
+    with Lock(there, "first"):
+        with pytest.raises(Refusal, match="first is deploying to this robot right now"), Lock(there, "second"):
+            pass
+        assert is_held(there.lock)
+
+
+class NeverWaitedFor(io.BytesIO):
+    """A laptop whose next word is not waited for with a limit."""
+
+    def fileno(self) -> int:
+        raise AssertionError("the agent would give the laptop up after 20 seconds")
+
+
+def test_an_undeploy_holds_the_lock_until_all_is_removed_and_the_agent_is_patient_then(
+    robot: LocalRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there = Places(str(robot.root))
+    (there.releases / "1").mkdir(parents=True)
+    there.code.symlink_to(".pyfrc/releases/1")
+    held, remove = {}, serve.remove
+
+    def watched_remove(path: Path) -> None:
+        held[path] = is_held(there.lock)
+        remove(path)
+
+    monkeypatch.setattr(serve, "remove", watched_remove)
+    answers = io.BytesIO()
+    serve.Agent(wire.Wire(NeverWaitedFor(wire.said_frame({"op": "undeploy"})), answers), there, "somebody").serve()
+    answers.seek(0)
+    wire.read_frame(answers.read)  # the facts
+    assert wire.said_in(*wire.read_frame(answers.read)) == {"done": {"removed": True}}
+    assert {there.code, there.releases, there.lock} <= held.keys()
+    assert all(held.values())
+    assert not there.own.exists()

@@ -1,0 +1,81 @@
+"""Files of the robot's other users among the program's: what they hinder is told, and they hinder no later deploy."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from pathlib import Path
+
+import pytest
+from roborio import Roborio, require_roborio
+from roborio.local import project_of
+from roborio.ssh import SshConnection
+
+from pyfrc_core.deploy.errors import RefusedError
+from pyfrc_core.deploy.robot import Deployed, DeployRequest, Robot
+
+ADMIN = 0
+ROBOT = "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    NUMBER = {number}\n"
+
+
+@pytest.fixture
+def roborio() -> Generator[Roborio]:
+    require_roborio()
+    with Roborio() as roborio:
+        yield roborio
+
+
+def deploy(roborio: Roborio, directory: Path, number: int, *, start: bool = False) -> Deployed:
+    project = project_of(directory, {"robot.py": ROBOT.format(number=number)})
+    with SshConnection(roborio.host, roborio.port, "lvuser") as connection:
+        robot = Robot.start(connection)
+        try:
+            deployed = robot.deploy(project, DeployRequest("robot.py", {}))
+            if start:
+                robot.restart()
+                assert robot.watch(20).started
+        finally:
+            robot.close()
+    return deployed
+
+
+def test_a_directory_that_cannot_be_moved_is_refused_before_anything_is_changed(
+    roborio: Roborio, tmp_path: Path
+) -> None:
+    roborio.put("home/lvuser/py/robot.py", "# by hand\n", owner=ADMIN)
+    roborio.put("home/lvuser/robotCommand", "python3 /home/lvuser/py/robot.py\n")
+    roborio.run("chown", "-R", "admin", "/home/lvuser/py")
+    for _ in range(2):
+        with pytest.raises(RefusedError, match="belongs to another user of the robot") as caught:
+            deploy(roborio, tmp_path, 1)
+        assert (roborio.home / "robotCommand").read_text() == "python3 /home/lvuser/py/robot.py\n"
+        assert (roborio.home / "py/robot.py").read_text() == "# by hand\n"
+    assert caught.value.remedy is not None
+    command = caught.value.remedy.partition(": ")[2].split()
+    assert roborio.run(*command).returncode == 0
+    assert deploy(roborio, tmp_path, 1).taken == 1
+
+
+def test_files_that_may_not_be_read_or_removed_hinder_no_deploy(roborio: Roborio, tmp_path: Path) -> None:
+    deploy(roborio, tmp_path, 1)
+    roborio.run("mkdir", "/home/lvuser/py/photos")
+    roborio.put("home/lvuser/py/photos/robot.jpg", "a picture", owner=ADMIN)
+    roborio.put("home/lvuser/py/secret.txt", "a word", owner=ADMIN, mode=0o600)
+    for number in range(2, 7):
+        assert deploy(roborio, tmp_path, number).release == number
+    assert "NUMBER = 6" in (roborio.home / "py/robot.py").read_text()
+    assert len(list((roborio.home / ".pyfrc/releases").glob("*.json"))) == 3
+
+
+def test_a_flag_for_debugging_that_another_user_has_set(roborio: Roborio, tmp_path: Path) -> None:
+    roborio.run("touch", "/tmp/frcdebug")
+    deploy(roborio, tmp_path, 1, start=True)
+    roborio.said("Robot program startup complete")
+
+
+def test_somebody_who_looks_at_a_file_is_no_robot_program(roborio: Roborio, tmp_path: Path) -> None:
+    deploy(roborio, tmp_path, 1, start=True)
+    with SshConnection(roborio.host, roborio.port, "lvuser") as connection:
+        looking = connection.open("exec tail -n +1 -f /home/lvuser/py/robot.py")
+        assert looking.recv(6) == b"import"
+        deploy(roborio, tmp_path, 2, start=True)
+        looking.close()
