@@ -63,13 +63,17 @@ def conversation(as_json: bool = False) -> Conversation:
 @contextmanager
 def told_as_json(as_json: bool) -> Iterator[None]:
     """Tells errors as JSON, too, where that is wanted."""
-    from pyfrc_core.errors import PyfrcError
+    from pyfrc_core.errors import PyfrcError, UsageError
 
     try:
         yield
-    except (PyfrcError, OSError) as error:
+    except (PyfrcError, OSError, KeyboardInterrupt) as error:
         if as_json:
             from pyfrc_core.deploy.progress import JsonProgress
 
-            JsonProgress().failure(error if isinstance(error, PyfrcError) else PyfrcError(str(error)))
+            if isinstance(error, KeyboardInterrupt):
+                told: PyfrcError = UsageError("interrupted")
+            else:
+                told = error if isinstance(error, PyfrcError) else PyfrcError(str(error))
+            JsonProgress().failure(told)
         raise

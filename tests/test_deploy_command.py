@@ -467,21 +467,33 @@ def test_a_lost_link_is_told_and_the_next_deploy_needs_no_help(robot: Roborio, m
     assert result.code == 0, result.output
 
 
-def test_ctrl_c_leaves_all_whole(robot: Roborio, make_project) -> None:
+def test_a_program_may_print_what_this_terminal_cannot_show(robot: Roborio, make_project) -> None:
+    project = make_project(program(more='\nprint("\\u2192")\n'))
+    result = project.run("deploy", "--skip-tests", "--robot", robot.where, env={"PYTHONIOENCODING": "ascii"})
+    assert result.code == 0, result.output
+
+
+@pytest.mark.parametrize("as_json", [False, True])
+def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) -> None:
     project = make_project(program(1))
     assert deploy(project, robot).code == 0
     project.write({**program(2), "noise.txt": os.urandom(400_000).hex()})
     with Proxy((robot.host, robot.port), rate=25_000) as proxy:
         where = f"{proxy.host}:{proxy.port}"
         command = [sys.executable, "-m", "pyfrc", "deploy", "--skip-tests", "--large", "--robot", where]
-        with subprocess.Popen(command, cwd=project.path, stderr=subprocess.PIPE, text=True) as process:
+        command += ["--json"] * as_json
+        pipe = subprocess.PIPE
+        with subprocess.Popen(command, cwd=project.path, stdout=pipe, stderr=pipe, text=True) as process:
             while proxy.bytes_to_robot < 40_000:  # until it is in the middle of it
                 assert process.poll() is None
                 threading.Event().wait(0.01)
             process.send_signal(signal.SIGINT)
-            _, said = process.communicate()
+            told, said = process.communicate()
     assert process.returncode == 2
     assert said.strip() == "interrupted"
+    if as_json:
+        last = json.loads(told.splitlines()[-1])
+        assert (last["event"], last["message"], last["exit_code"]) == ("error", "interrupted", 2)
     assert "number 1" in code_on(robot)
     assert not (robot.home / "py/noise.txt").exists()
     assert deploy(project, robot, "--large").code == 0

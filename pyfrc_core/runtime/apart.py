@@ -62,6 +62,7 @@ def run_apart(work: Callable[[Project, LastWords], Answer], project: Project, me
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             cwd=_BESIDE_OUR_PACKAGE,  # where no module of the user's is in Python's way
+            env={**os.environ, "PYTHONIOENCODING": "utf-8:backslashreplace"},  # nobody reads it
             check=False,
         )
         if not answer.is_file():
