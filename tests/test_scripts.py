@@ -134,6 +134,15 @@ def test_whatever_a_test_does_is_recorded(make_project) -> None:
     )
 
 
+@pytest.mark.parametrize("option", ["--record", "--trace"])
+def test_where_nothing_can_be_written_is_told_once(option: str, make_project) -> None:
+    project = make_project({"robot.py": "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n", "file": ""})
+    result = project.run("test", "--builtin", option, "file/within")
+    assert result.code == 1
+    assert "file/within" in result.first_error
+    assert "test_practice" not in result.output
+
+
 def test_an_encoder_that_stands_still_is_recorded(make_project) -> None:
     robot = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    def robotInit(self):\n"
     robot += "        self.encoder = wpilib.Encoder(0, 1)\n"

@@ -49,8 +49,9 @@ def run_tests(
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     args = _arguments(project, builtin, pytest_args)
-    if options.trace_directory is not None:
-        options.trace_directory.mkdir(parents=True, exist_ok=True)
+    for directory in (options.trace_directory, options.record_directory):
+        if directory is not None:  # told once what is wrong with it, not by every test
+            directory.mkdir(parents=True, exist_ok=True)
 
     def session(imports_late: bool = False) -> int:
         plugin = PyFrcPlugin(
@@ -88,7 +89,7 @@ def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> l
     looked = " and ".join(str(path) for path in project.test_directories)
     raise NoTestsError(
         f"this project has no tests: looked for files named test_*.py or *_test.py in {looked}",
-        remedy="Run the ready-made tests with: pyfrc test --builtin",
+        remedy="Run the ready-made tests with: pyfrc test --builtin. Have them in the project with: pyfrc add-tests",
     )
 
 
