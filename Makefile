@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 RUN := $(VENV)/bin/python -m
 
-.PHONY: demo test check clean
+.PHONY: demo test check docs clean
 
 demo: $(VENV)/installed  ## make a robot project in demo/, run its tests, deploy it to a look-alike of a roboRIO
 	test -d demo || $(RUN) pyfrc init demo
@@ -18,6 +18,9 @@ check: $(VENV)/installed-dev  ## the style and the types
 	$(RUN) ruff format --check .
 	$(RUN) mypy
 
+docs: $(VENV)/installed-dev  ## these pages, and the API reference from the docstrings, in build/docs
+	$(RUN) sphinx -q -E -W --keep-going docs build/docs
+
 $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
 
@@ -30,4 +33,4 @@ $(VENV)/installed-dev: pyproject.toml | $(VENV)/bin/python
 	touch $@ $(VENV)/installed
 
 clean:
-	rm -rf $(VENV) demo
+	rm -rf $(VENV) demo build/docs

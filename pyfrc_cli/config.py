@@ -49,7 +49,11 @@ def check(directory: Path | None, main: Path | None, robot_class: str | None, st
 @project_options
 @click.option("--json", "as_json", is_flag=True, help="As JSON, which sim/config.json itself may hold.")
 def show(directory: Path | None, main: Path | None, robot_class: str | None, as_json: bool) -> None:
-    """Show the values in effect, and where each comes from."""
+    """Show the values in effect, and where each comes from.
+
+    \b
+    Exit codes: 0 shown, 2 something is wrong in the file, or there is no project.
+    """
     loaded = _loaded(directory, main, robot_class)
     if as_json:
         click.echo(json.dumps(loaded.as_json(), indent=2))
@@ -65,6 +69,9 @@ def schema() -> None:
     """Print the JSON Schema of sim/config.json, for editors to complete from.
 
     Write it to sim/config.schema.json, and put "$schema": "config.schema.json" at the top of sim/config.json.
+
+    \b
+    Exit codes: 0 printed, 2 wrong usage.
     """
     from pyfrc_core.config.sim_schema import sim_config_schema
 

@@ -24,6 +24,9 @@ def command(
     """Show what the robot program prints, until Ctrl-C; connects again whenever the robot goes away.
 
     Robots send it while a Driver Station is connected to them; --nc-ds makes the robot believe that one is.
+
+    \b
+    Exit codes: 0 ended by Ctrl-C, 1 no robot was found, 2 wrong usage or no project.
     """
     from pyfrc_core.deploy.session import show_console
 

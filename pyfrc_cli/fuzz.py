@@ -60,7 +60,8 @@ def command(
     is repaired.
 
     \b
-    Exit codes: 0 nothing was found; 1 something was found, or failed as it did before; 2 wrong usage, no such project.
+    Exit codes: 0 nothing was found; 1 something was found, or failed as it did before; 2 wrong usage, no such project,
+    or interrupted before anything was found.
     """
     if seconds is not None and runs is not None:
         raise click.UsageError("--time and --runs exclude each other.")
@@ -77,7 +78,7 @@ def command(
         click.echo("interrupted")
     if not campaign.found:
         click.echo("Nothing was found.")
-    sys.exit(1 if campaign.found else 0)
+    sys.exit(1 if campaign.found else 2 if campaign.interrupted else 0)
 
 
 class _Teller:
@@ -124,7 +125,7 @@ def _line(progress: Progress) -> str:
     parts = [
         _count(progress.matches, "match", "matches"),
         f"{progress.simulated / 3600:.2f} h of robot time",
-        f"{progress.covered:.0%} of the robot's lines",
+        *([] if progress.covered is None else [f"{progress.covered:.0%} of the robot's lines"]),
         _count(progress.crashes, "failure"),
     ]
     return ", ".join([*parts, *([progress.doing] if progress.doing else [])])

@@ -46,6 +46,9 @@ def command(directory: Path, template: str, team: int | None) -> None:
     """Make a new robot project in DIRECTORY (default: here), with tests and a simulation.
 
     Nothing that is there is overwritten.
+
+    \b
+    Exit codes: 0 the project is there, 1 it cannot be written, 2 wrong usage.
     """
     for file in create_project(directory, Path(__file__).parent, template, team):
         click.echo(f"wrote {directory / file}")

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import os
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from pyfrc_core._version import __version__
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 #: Each command, its module, and its line in the help: known here so that the help needs to import none of them.
 COMMANDS = {
@@ -29,7 +33,12 @@ COMMANDS = {
     "undeploy": ("pyfrc_cli.undeploy", "Stop the robot program and remove it from the robot."),
     "console": ("pyfrc_cli.console", "Show what the robot program prints."),
     "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
+    "doctor": ("pyfrc_cli.doctor", "Find out what is missing here, or does not fit together."),
+    "completion": ("pyfrc_cli.completion", "Print the script for completion in your shell."),
 }
+
+#: The environment variable by which a shell asks how a command line can go on; click's name for it.
+COMPLETE_VARIABLE = "_PYFRC_COMPLETE"
 
 
 class Commands(click.Group):
@@ -51,6 +60,12 @@ class Commands(click.Group):
             raise click.UsageError(f"There is no command {args[0]!r}.{hint}", ctx)
         return super().resolve_command(ctx, args)
 
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        from click.shell_completion import CompletionItem
+
+        names = [CompletionItem(name, help=text) for name, (_, text) in COMMANDS.items() if name.startswith(incomplete)]
+        return [*names, *click.Command.shell_complete(self, ctx, incomplete)]
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
             formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
@@ -68,10 +83,14 @@ def cli(ctx: click.Context, verbose: bool) -> None:
 def run() -> None:
     """Run the command line; errors that pyfrc knows are told in a sentence, with exit code 1 or 2."""
     verbose = "-v" in sys.argv[1:2] or "--verbose" in sys.argv[1:2]
+    # None: by whether it goes to a terminal.
+    color = False if os.environ.get("NO_COLOR") else None
+    if COMPLETE_VARIABLE in os.environ:
+        from . import completion  # noqa: F401 - it knows a shell more than click does
     from pyfrc_core.errors import PyfrcError
 
     try:
-        sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False))
+        sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color))
     except click.exceptions.Abort:
         click.secho("interrupted", err=True)
         sys.exit(2)
@@ -83,5 +102,12 @@ def run() -> None:
     except (PyfrcError, OSError) as error:
         if verbose:
             raise
-        click.secho(f"error: {error}", fg="red", err=True)
+        click.secho(f"error: {_told(error)}", fg="red", err=True, color=color)
         sys.exit(getattr(error, "exit_code", 1))
+
+
+def _told(error: Exception) -> str:
+    """The system's errors without their number: the file, and what is wrong with it."""
+    if isinstance(error, OSError) and error.filename is not None and error.strerror:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)

@@ -22,7 +22,7 @@ from .wrapping import WRAPPING, wrapped_command
     "--html",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Draw where the time went as a web page, with: pip install pyfrc[profile]",
+    help='Draw where the time went as a web page, with: pip install "pyfrc[profile]"',
 )
 @click.option(
     "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Write all that was measured as JSON."

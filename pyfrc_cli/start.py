@@ -24,10 +24,14 @@ def main() -> None:
 
 def _start_again() -> None:
     os.environ["PYTHONHASHSEED"] = "0"
-    command = [sys.executable, *sys.orig_argv[1:]]
-    if sys.platform == "win32":
-        # Windows' exec would give the terminal back to the shell while the tests run.
-        import subprocess
+    sys.exit(become([sys.executable, *sys.orig_argv[1:]]))
 
-        sys.exit(subprocess.call(command))
-    os.execv(sys.executable, command)
+
+def become(command: list[str]) -> int:
+    """Run `command` in this process's place; where it cannot be, wait for it, and answer its exit code."""
+    if sys.platform != "win32":
+        os.execv(command[0], command)
+    # Windows' exec would give the terminal back to the shell while the tests run.
+    import subprocess
+
+    return subprocess.call(command)

@@ -50,6 +50,8 @@ class RobotCodeError(PyfrcError):
 def text_of(error: BaseException) -> str:
     """``ZeroDivisionError: division by zero``; also for an error whose text cannot be had."""
     try:
+        if isinstance(error, SystemExit) and not isinstance(error.code, str):
+            return f"exit({'' if error.code is None else repr(error.code)}) was called"
         return f"{type(error).__name__}: {error}".rstrip(": ")
     except Exception as another:
         return f"{type(error).__name__} (whose text raises {type(another).__name__})"

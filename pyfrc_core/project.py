@@ -128,8 +128,12 @@ class Project:
             raise ProjectError("this is not a Python file", where=where)
         module = importlib.util.module_from_spec(specification)
         sys.modules[name] = module
+        from .runtime.endings import TestFroze
+        from .runtime.watchdog import importing
+
         try:
-            specification.loader.exec_module(module)
+            with importing(self.files, self.settings.test.hang_seconds):
+                specification.loader.exec_module(module)
         except SyntaxError as error:
             del sys.modules[name]
             place = f"{self.files.relative(error.filename or where)}:{error.lineno}"
@@ -139,8 +143,15 @@ class Project:
             del sys.modules[name]
             place = self.files.innermost_line(error.__traceback__) or where
             remedy = "This happens while the file is imported."
+            if isinstance(error, TestFroze):
+                remedy += " Is it an endless loop? If it only takes long: hang_seconds under [tool.pyfrc.test]."
+                raise RobotCodeError(str(error), where=place, remedy=remedy) from error
             if isinstance(error, SystemExit):
                 remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
+            elif isinstance(error, ModuleNotFoundError):
+                remedy += " Is the name right, and its package installed?"
+                if (self.root / "requirements.txt").is_file():
+                    remedy += " Your project's packages: python -m pip install -r requirements.txt"
             raise RobotCodeError(text_of(error), where=place, remedy=remedy) from error
         return module
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import FrameType
 from typing import Any
 
 from .errors import PyfrcError, RobotCodeError
@@ -76,7 +79,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     with TemporaryDirectory() as temporary:
         written = trace or Path(temporary, "trace.jsonl")
         run = RobotRun()
-        failure = None
+        failures: list[PyfrcError] = []
         settings = project.settings
         hang_seconds = settings.fuzz.hang_seconds if script.story else settings.test.hang_seconds
         with Watchdog(run, project.files, hang_seconds).watching():
@@ -84,21 +87,45 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
             try:
                 seed_generators(script.seed)
                 with judged_if_kept(run, project, script), traced(run, written) as recorder:
-                    try:
+                    with _taken_down(failures, project):
                         construct(project, run, robot_class)
                         Player(script, run).play(until_us)
-                    except PyfrcError:
-                        raise
-                    except Exception as error:
-                        failure = as_robot_code_error(error, project.files)
                     seconds = run.clock.now
             finally:
-                run.close()
+                with _taken_down(failures, project):
+                    run.close()
         beside = trace_beside(file)
         difference = _first_difference(beside, written, run_us=until_us) if beside.is_file() else None
     whole = until_us is None or until_us >= script.end_us
     equal = script.trace == recorder.digest() if script.trace and whole else None
-    return Replayed(seconds, failure, recorder.digest(), equal, difference)
+    return Replayed(seconds, failures[0] if failures else None, recorder.digest(), equal, difference)
+
+
+@contextmanager
+def _taken_down(failures: list[PyfrcError], project: Project) -> Iterator[None]:
+    """Take down what robot code raises, `exit()` and a `KeyboardInterrupt` of its own among it; not Ctrl-C."""
+    by_user = False
+
+    def interrupt(signum: int, frame: FrameType | None) -> None:
+        nonlocal by_user
+        by_user = True
+        signal.default_int_handler(signum, frame)
+
+    before = signal.getsignal(signal.SIGINT)
+    listens = before is signal.default_int_handler and threading.current_thread() is threading.main_thread()
+    if listens:
+        signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    except PyfrcError:
+        raise
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt) and by_user:
+            raise
+        failures.append(as_robot_code_error(error, project.files))
+    finally:
+        if listens:
+            signal.signal(signal.SIGINT, before)
 
 
 def _how_its_process_ends(project: Project, script: InputScript) -> str | None:

@@ -150,7 +150,7 @@ def _values(template: Template, team: int | None) -> Mapping[str, str]:
         number = f"team_number = {team}"
     by_extras = template.packages if template.extras else ()
     return {
-        "robotpy_extras": _toml_array(template.extras),
+        "components": _toml_array(template.extras),
         "requires": _toml_array([package for package in template.packages if package not in by_extras]),
         "packages": "\n".join(("pyfrc", *template.packages)),
         "team_number": number,

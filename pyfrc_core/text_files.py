@@ -11,6 +11,14 @@ from tempfile import NamedTemporaryFile
 def write_whole(file: Path, text: Iterable[str]) -> None:
     """Write `text` to `file`, whose directory is made if need be: beside it first, then in its place."""
     file.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        _write_beside(file, text)
+    except OSError as error:
+        error.filename = str(file)  # the one that was asked for, not the temporary one
+        raise
+
+
+def _write_beside(file: Path, text: Iterable[str]) -> None:
     with NamedTemporaryFile("w", encoding="utf-8", dir=file.parent, prefix=f".{file.name}-", delete=False) as beside:
         try:
             beside.writelines(text)

@@ -8,11 +8,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
 
+from pyfrc_cli.main import cli
 from pyfrc_core.scaffold import TEMPLATES
 
 ROOT = Path(__file__).parents[1]
+CONTEXT = click.Context(cli)
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -113,7 +116,7 @@ def test_the_examples_in_the_simulation_guide_work(new_project) -> None:
     for command in commands(document):
         result = new_project.run(*shlex.split(command)[1:])
         assert result.code == 0, result.output
-    assert (new_project.path / "runs/path.png").is_file()
+    assert (new_project.path / ".runs/path.png").is_file()
     new_project.write(files(document))
     result = new_project.run("sim", "--ui", "none", "--mode", "auto", "--seconds", "1", "--project", "drawing")
     assert result.code == 0, result.output
@@ -122,6 +125,32 @@ def test_the_examples_in_the_simulation_guide_work(new_project) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert "failure: None\nmode: autonomous\nleft motor: 0.49" in done.stdout, done.stdout
+
+
+COMING_FROM = ("docs/from_pyfrc_2019.md", "docs/from_todays_pyfrc.md")
+
+
+@pytest.mark.parametrize("document", COMING_FROM)
+def test_the_project_of_those_who_come_from_elsewhere_works_as_it_is(document: str, make_project) -> None:
+    project = make_project(files(document) | json_files(document))
+    for command in commands(document):
+        result = project.run(*shlex.split(command)[1:])
+        assert result.code == 0, result.output
+        if " sim " in command:
+            assert re.search(r"distance driven: .*\([1-9][0-9.]* m\)", result.stdout)
+    outcomes = project.run("test", "--", "-v").outcomes()
+    for file in files(document):
+        if file.startswith("tests/test_"):
+            assert any(test.startswith(f"{file}::") for test in outcomes), file
+
+
+@pytest.mark.parametrize("document", COMING_FROM)
+def test_the_commands_that_take_the_place_of_others_exist(document: str) -> None:
+    named = re.findall(r"`pyfrc ([^`]+)`", (ROOT / document).read_text("utf-8"))
+    assert len(named) >= 10
+    for words in map(str.split, named):
+        options = {option for parameter in cli.get_command(CONTEXT, words[0]).params for option in parameter.opts}
+        assert {word for word in words[1:] if word.startswith("-")} <= options, words
 
 
 def test_the_commands_in_the_measuring_guide_work(new_project) -> None:

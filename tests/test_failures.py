@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from textwrap import dedent
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
@@ -420,6 +421,63 @@ def test_a_robot_that_cannot_be_imported_is_told_once_with_its_line(
     assert text in result.first_error
     assert result.output.count(text) == 1
     assert "Traceback" not in result.output
+
+
+@pytest.mark.parametrize("has_requirements", [True, False])
+def test_a_missing_module_is_told_with_how_the_projects_packages_are_installed(
+    make_project: MakeProject, has_requirements: bool
+) -> None:
+    requirements = {"requirements.txt": "amr\n"} if has_requirements else {}
+    project = make_project({"robot.py": "import amr\n", "tests/test_a.py": ANY_TEST, **requirements})
+    result = project.run("test")
+    assert "Is the name right, and its package installed?" in result.stderr
+    assert ("pip install -r requirements.txt" in result.stderr) == has_requirements
+
+
+LOOPS_WHILE_IMPORTED = """
+    import wpilib
+
+    count = 0
+    while True:
+        count += 1  # for ever
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""
+
+
+@pytest.mark.parametrize("command", ["test", "fuzz --runs 1", "sim --ui none", "create-physics", "replay script.jsonl"])
+def test_an_endless_loop_in_a_file_that_is_imported_is_told_with_its_line(
+    make_project: MakeProject, command: str
+) -> None:
+    project = make_project(
+        {
+            "robot.py": "import arm\n",
+            "arm.py": LOOPS_WHILE_IMPORTED,
+            "tests/test_a.py": ANY_TEST,
+            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.4\n",
+            "script.jsonl": '{"format": "pyfrc-input 1", "end": 1.0}\n',
+        }
+    )
+    result = project.run(*command.split())
+    assert result.code == 1, result.output
+    assert re.search(r"\barm\.py:[45]: the robot code hangs here, through 0\.4 s of computing\n", result.output)
+    assert "Is it an endless loop?" in result.output
+    assert "Traceback" not in result.output
+
+
+def test_what_takes_long_in_a_library_while_it_is_imported_is_no_endless_loop(make_project: MakeProject) -> None:
+    busy = "import time\nbegun = time.thread_time()\nwhile time.thread_time() - begun < 1.0: pass\n"
+    project = make_project(
+        {
+            "robot.py": f"import slow\n{dedent(ROBOT)}",
+            "site-packages/slow.py": busy,
+            "tests/test_a.py": ANY_TEST,
+            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.4\n",
+        }
+    )
+    result = project.run("test", env={"PYTHONPATH": str(project.path / "site-packages")})
+    assert result.code == 0, result.output
 
 
 def test_verbose_shows_the_traceback_of_a_robot_that_cannot_be_imported(make_project: MakeProject) -> None:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, get_args
 
 import pytest
@@ -25,6 +26,7 @@ from pyfrc_core.fuzz.robots import Robots
 from pyfrc_core.fuzz.shrink import Shrinker
 from pyfrc_core.fuzz.values import SPANS, Kind, can_be, nearest, simpler
 from pyfrc_core.project import Project
+from pyfrc_core.runtime.forks import FORK_IS_SAFE, Fork, wait_for_any
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
 ROBOTS = Path(__file__).parent / "robots"
@@ -280,6 +282,91 @@ def test_ctrl_c_keeps_what_was_found(make_project) -> None:
     assert campaign.returncode == 1
     assert lines[-1] == "interrupted\n"
     assert "fuzz/zerodivisionerror-robot-autonomousperiodic.jsonl" in kept(project)
+
+
+@pytest.mark.skipif(not FORK_IS_SAFE, reason="a match's parent is the campaign only where it is forked")
+def test_ctrl_c_before_anything_is_found_is_no_success(make_project) -> None:
+    project = make_project({"robot.py": FAULTY.format("os.kill(os.getppid(), 2)")})
+    result = project.run("fuzz", "--time", "1000", "-j", "1")
+    assert result.code == 2, result.output
+    assert result.stdout.endswith("interrupted\nNothing was found.\n")
+
+
+# -- robots that end their process --------------------------------------------------------------------------------
+
+EXITING = """
+    import sys
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def __init__(self):
+            super().__init__()
+            {}
+
+        def robotInit(self):
+            {}
+
+        def autonomousInit(self):
+            {}
+    """
+
+
+@pytest.mark.parametrize(
+    ("isolation", "where", "code", "told", "name"),
+    [
+        ("auto", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
+        ("spawn", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
+        ("auto", 2, "raise KeyboardInterrupt", "KeyboardInterrupt", "keyboardinterrupt-robot-autonomousinit"),
+        ("auto", 1, "sys.exit(5)", "exit(5) was called", "systemexit-robot-robotinit"),
+        ("auto", 0, "exit(False)", "exit(False) was called", "systemexit-robot-__init__"),
+    ],
+)
+def test_a_robot_that_exits_has_failed(
+    isolation: str, where: int, code: str, told: str, name: str, make_project
+) -> None:
+    lines = ["pass", "pass", "pass"]
+    lines[where] = code
+    settings = SHORT_MATCHES.format(4, f'\n    [tool.pyfrc.test]\n    isolation = "{isolation}"')
+    project = make_project({"robot.py": EXITING.format(*lines), "pyproject.toml": settings})
+    place = project.place("robot.py", code)
+    result = project.run("fuzz", "--runs", "4", "--seed", "1")
+    assert result.code == 1, result.output
+    assert f"{place}: {told}\n" in result.stdout, result.output
+    assert f"pyfrc replay tests/fuzz/{name}.jsonl\n" in result.stdout, result.output
+    assert "4 matches, " in result.stdout
+    replayed = project.run("replay", f"tests/fuzz/{name}.jsonl")
+    assert (replayed.code, replayed.stdout.splitlines()[-1]) == (1, f"then {place}: {told}"), replayed.output
+
+
+@pytest.mark.skipif(not FORK_IS_SAFE, reason="this is about forks")
+def test_nothing_unwinds_out_of_a_forked_process(tmp_path: Path) -> None:
+    with TemporaryDirectory(dir=tmp_path) as directory:
+        fork = Fork(lambda send: sys.exit())
+        while not fork.finished:
+            wait_for_any([fork.fileno()])
+            fork.poll()
+        assert fork.status == 1
+        assert Path(directory).is_dir()
+
+
+# -- the share of the lines that was reached -----------------------------------------------------------------------
+
+
+def test_where_lines_cannot_be_watched_their_share_is_not_told(make_project) -> None:
+    project = make_project({"robot.py": FAULTY.format("pass"), "pyproject.toml": SHORT_MATCHES.format(3, "")})
+    result = project.run("coverage", "fuzz", "--runs", "2")
+    assert result.code == 0, result.output
+    assert re.search("^2 matches, ", result.stdout, re.MULTILINE)
+    # Before Python 3.12, one tool at a time can watch.
+    assert ("% of the robot's lines" in result.stdout) == (sys.version_info >= (3, 12)), result.output
+
+
+@pytest.mark.skipif(not FORK_IS_SAFE, reason="too slow where each match is a new interpreter")
+def test_where_every_process_dies_the_share_of_lines_is_not_told(make_project) -> None:
+    project = make_project({"robot.py": EXITING.format("os._exit(3)", "pass", "pass").replace("sys", "os")})
+    result = project.run("fuzz", "--runs", "2", "--seed", "1")
+    assert result.code == 1, result.output
+    assert re.search("^2 matches, .*robot time, 1 failure$", result.stdout, re.MULTILINE), result.output
 
 
 # -- recipes ---------------------------------------------------------------------------------------------------------

@@ -362,7 +362,7 @@ def test_without_pyinstrument_it_says_what_to_install(make_project: MakeProject)
     environment = {"PYTHONPATH": str(project.path / "hidden")}
     result = project.run("profile", "--html", "profile.html", "test", env=environment)
     assert result.code == 2, result.output
-    assert "pip install pyfrc[profile]" in result.stderr
+    assert 'pip install "pyfrc[profile]"' in result.stderr
     assert "passed" not in result.stdout
 
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import json
 import shutil
+import signal
+import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -326,6 +329,59 @@ def test_other_files_that_are_no_scripts(tmp_path: Path) -> None:
 def test_whatever_it_is_it_is_a_script_or_says_what_is_wrong(lines: list[str]) -> None:
     with suppress(ScriptError):
         parse_script(f"{line}\n" for line in lines)
+
+
+# -- robots that end their process ----------------------------------------------------------------------------------
+
+EXITING = """
+    import sys
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def autonomousInit(self):
+            {}
+    """
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("exit()", "exit() was called"),
+        ("sys.exit(5)", "exit(5) was called"),
+        ("sys.exit('enough')", "SystemExit: enough"),
+        ("raise KeyboardInterrupt", "KeyboardInterrupt"),
+    ],
+)
+def test_a_robot_that_exits_has_failed(code: str, told: str, make_project) -> None:
+    script = text({"t": 0, "set": {"mode": "autonomous"}})
+    project = make_project({"robot.py": EXITING.format(code), "script.jsonl": script})
+    result = project.run("replay", "script.jsonl")
+    assert result.code == 1, result.output
+    assert result.stdout.splitlines()[-1] == f"then {project.place('robot.py', code)}: {told}"
+
+
+def test_a_robot_that_exits_at_its_end_has_failed(make_project) -> None:
+    robot = EXITING.format("pass").replace("autonomousInit", "endCompetition").replace("pass", "exit()")
+    project = make_project({"robot.py": robot, "script.jsonl": text()})
+    result = project.run("replay", "script.jsonl")
+    assert (result.code, "exit() was called" in result.stdout) == (1, True), result.output
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
+def test_ctrl_c_ends_a_replay(make_project) -> None:
+    robot = EXITING.format("print('here', flush=True)\n            while True: pass")
+    project = make_project({"robot.py": robot, "script.jsonl": text({"t": 0, "set": {"mode": "autonomous"}})})
+    command = [sys.executable, "-m", "pyfrc", "replay", "script.jsonl"]
+    with subprocess.Popen(
+        command, cwd=project.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        while process.stdout.readline() != "here\n":
+            assert process.poll() is None
+        process.send_signal(signal.SIGINT)
+        said = process.stderr.read()
+    assert (process.returncode, said.splitlines()[-1:]) == (2, ["interrupted"]), said
 
 
 values = st.booleans() | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=9) | st.integers(-9, 9)

@@ -258,10 +258,10 @@ def test_a_picture_shows_what_is_on_the_field(tmp_path: Path) -> None:
     draw_picture(SCENE, file, former_trail=[(2, 9), (8, 9)])
     with pillow.open(file) as picture:
         width, height = picture.size
-        assert (width, height) == (1200, 610)
+        assert (width, height) == (1200, 628)
 
         def at(x: float, y: float) -> tuple[int, int, int]:
-            return picture.getpixel((round(10 + x * 59), round(10 + y * 59)))
+            return picture.getpixel((round(28 + x * 57.2), round(28 + y * 57.2)))
 
         assert at(17, 3) == (0, 255, 0)
         assert at(1, 5) == (255, 0, 255)
@@ -270,6 +270,15 @@ def test_a_picture_shows_what_is_on_the_field(tmp_path: Path) -> None:
         assert at(13.5, 5.5) == (0xD0, 0, 0)
         assert at(5, 1) == (0, 0xA0, 0x40)
         assert at(6, 1) == at(18, 8) == (0xE8, 0xE8, 0xE8)
+        # The start is marked, every five feet have a line, and every ten feet their number under the field.
+        assert at(2, 5.07) == (0x00, 0x57, 0xB8) != at(4, 5.07)
+        assert at(5, 3) == at(15, 7) == at(14, 5) == (0xD0, 0xD0, 0xD0)
+
+        def is_written_at(x: float) -> bool:
+            left = round(28 + x * 57.2) - 20
+            return len(picture.crop((left, height - 24, left + 40, height - 4)).getcolors()) > 1
+
+        assert [is_written_at(x) for x in (0, 5, 10, 15, 19.5)] == [True, False, True, False, True]
 
 
 def test_a_picture_of_tags_and_on_an_image(tmp_path: Path) -> None:

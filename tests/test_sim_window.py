@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import math
 import os
+import select
 import shutil
 import subprocess
 import sys
@@ -24,6 +25,7 @@ if "PYFRC_NO_SKIPS" not in os.environ:
 
 from pyfrc_core.errors import SettingsError, UsageError
 from pyfrc_core.project import Project
+from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.scene import Tag, Target
@@ -497,6 +499,51 @@ def test_choices_before_a_match(user: User) -> None:
     user.until(lambda: user.snapshot.values["joysticks[1].axes"][1] == -1)
     user.keys("keyup", "Up")
     user.until(lambda: user.snapshot.values["joysticks[1].axes"][1] == 0)
+
+
+def test_there_is_room_for_every_word(make_project: MakeProject, sit: Sit) -> None:
+    """Also where a robot has no place, and the line under the field says so."""
+    user = sit(make_project({"robot.py": ROBOT["robot.py"]}).path)
+    user.until(lambda: "physics.py" in str(user.window.center._pose.cget("text")))
+    user.shown()
+    match = user.window.match
+    beside = match._grid.grid_slaves(match._message.grid_info()["row"], 0)
+    assert [label.cget("text") for label in beside] == ["Game data"]
+    hint, pose = user.window.center._how, user.window.center._pose
+    assert (hint.cget("text"), hint.winfo_width()) == ("Wheel: zoom, drag: move", hint.winfo_reqwidth())
+    assert pose.winfo_width() == pose.winfo_reqwidth()
+    assert pose.winfo_x() + pose.winfo_width() < hint.winfo_x()
+
+
+@pytest.mark.skipif(not FORK_IS_SAFE or not hasattr(os, "pidfd_open"), reason="only where others' ends are seen")
+def test_nothing_is_left_when_the_display_goes(make_project: MakeProject) -> None:
+    """What Xlib does then ends the program at once, without a word to Python."""
+    told = 'Path(__file__).with_name("host").symlink_to(str(os.getppid()))'
+    robot = ROBOT["robot.py"].replace("import threading", "import os\n        import threading", 1)
+    robot = robot.replace('print("the robot is there")', told)
+    project = make_project({**ROBOT, "robot.py": robot})
+    with virtual_display() as screen:
+        running = subprocess.Popen(
+            [sys.executable, "-m", "pyfrc", "sim", "--nt-port", "0"],
+            cwd=project.path, env=screen.environment | {"TMPDIR": str(project.temporary)},
+        )  # fmt: skip
+        try:
+            screen.do("search", "--sync", "--onlyvisible", "--name", f"{project.path.name} - pyfrc")
+            for _ in range(_LOOKS):
+                if (project.path / "host").is_symlink():
+                    break
+                with suppress(subprocess.TimeoutExpired):
+                    running.wait(_PAUSE)
+            host = os.pidfd_open(int(str((project.path / "host").readlink())))
+        except BaseException:
+            running.kill()
+            raise
+    running.wait(60)
+    try:
+        assert select.select([host], [], [], 60)[0], "the robot's processes go on"
+    finally:
+        os.close(host)
+    assert list(project.temporary.iterdir()) == []
 
 
 def test_saving_the_recording(user: User, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -142,8 +142,8 @@ def test_todays_tools_and_pip_read_what_it_needs(project: RobotProject, template
     settings = tomllib.loads((project.path / "pyproject.toml").read_text("utf-8"))["tool"]["robotpy"]
     assert re.fullmatch(r"2026\.\d+\.\d+", settings["robotpy_version"])
     needed = TEMPLATES[template].packages
-    if settings["robotpy_extras"]:
-        assert settings["robotpy_extras"] == ["commands2"]
+    if settings["components"]:
+        assert settings["components"] == ["commands2"]
         assert settings["requires"] == []
     else:
         assert settings["requires"] == list(needed)

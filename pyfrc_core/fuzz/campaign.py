@@ -45,14 +45,15 @@ class Progress:
     """How far a campaign has come.
 
     :param simulated: robot time, in seconds
-    :param covered: how much of the robot's lines was reached, from 0 to 1
+    :param covered: how much of the robot's lines was reached, from 0 to 1; None while none was seen to be, as where
+        lines cannot be watched
     :param crashes: how many different failures there are
     :param doing: what it does now
     """
 
     matches: int = 0
     simulated: float = 0.0
-    covered: float = 0.0
+    covered: float | None = None
     crashes: int = 0
     doing: str = ""
 
@@ -167,7 +168,7 @@ class _Runner:
                 self._reached |= new.keys()
                 progress.matches += 1
                 progress.simulated += played.script.end_us / 1e6
-                progress.covered = share(self._reached, self._all_lines)
+                progress.covered = share(self._reached, self._all_lines) if self._reached else None
                 if played.failure is not None and self._is_new(played.failure):
                     self._waiting.append(played)
                     progress.crashes = len(self._failures)

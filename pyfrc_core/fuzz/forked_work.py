@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Callable
 from typing import IO, Generic, TypeVar
 
-from ..errors import RobotCodeError
+from ..errors import RobotCodeError, text_of
 from ..project import Project
 from ..runtime.forks import Fork
 from ..runtime.own_process import LastWords, end_processes_of_the_robot, exit_now, explain_end
@@ -66,11 +66,14 @@ def _in_the_fork(do: Callable[[LastWords], object], send: Callable[[bytes], None
         os.dup2(nowhere, descriptor)
     words = LastWords(words_file)
     words.leave_on_crash()
-    answer, error = None, None
+    answer: object = None
+    error: Exception | None = None
     try:
         answer = do(words)
     except Exception as raised:
         error = raised
+    except BaseException as raised:  # not for the process that asks to be ended by
+        error = RobotCodeError(text_of(raised))
     send(_pickled(answer, error))
     end_processes_of_the_robot()
     exit_now(0)  # without waiting for what the robot left running

@@ -142,7 +142,7 @@ def _mash(project: Project, task: Mash, words: LastWords) -> Played:
                 run.run_until(run.clock.limit_us + 1)
             except (TestEnded, TestRanTooLong):
                 pass
-            except Exception as error:
+            except BaseException as error:  # robot code may call exit(), too
                 failure = failure_of(error, project.files)
         return Played(failure, mashing.script(project.main_file.name, ROBOT_SEED), dict(reached), masher.inputs)
 
@@ -158,7 +158,7 @@ def _follow(project: Project, task: Follow, words: LastWords) -> Played:
             pass
         except (TestEnded, TestRanTooLong):
             pass
-        except Exception as error:
+        except BaseException as error:  # robot code may call exit(), too
             failure = failure_of(error, project.files)
         end_us = run.clock.now_us + PACKET_US
         steps = tuple(step for step in script.steps if step.at_us < end_us)

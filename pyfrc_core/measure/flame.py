@@ -26,7 +26,7 @@ def flame_is_to_be_had() -> None:
     if importlib.util.find_spec("pyinstrument") is None:
         raise UsageError(
             "the flame view is drawn by pyinstrument, which is not installed",
-            remedy="Install it with: pip install pyfrc[profile]",
+            remedy='Install it with: pip install "pyfrc[profile]"',
         )
 
 

@@ -209,7 +209,7 @@ class PhysicsInterface:
         if not isinstance(transform, Transform2d):
             raise TypeError(f"move_robot(transform) takes a Transform2d, not a {type(transform).__name__}")
         turn = transform.rotation().radians()
-        return self._move(transform.X() / METRES_PER_FOOT, -transform.Y() / METRES_PER_FOOT, -turn)
+        return self._move(transform.x / METRES_PER_FOOT, -transform.y / METRES_PER_FOOT, -turn)
 
     def get_pose(self) -> Pose2d:
         """Where the robot is, in metres."""
@@ -244,7 +244,10 @@ class PhysicsInterface:
             angles = self._hal_data["robot"]
             for key in self._device_gyros:
                 angles[key] = angles.get(key, 0.0) + math.degrees(turn)
-        return self._place(self._current().moved(forward, right, turn))
+        pose = self._current()
+        if not (forward or right or turn):  # at rest, dashboards need not be told
+            return self._shown
+        return self._place(pose.moved(forward, right, turn))
 
     def _turn_analog_gyros(self, turn: float) -> None:
         if turn and self._hal_data is not None:
@@ -263,17 +266,19 @@ class PhysicsInterface:
     def _current(self) -> Pose:
         """The pose, unless somebody has put the robot elsewhere on the `field`."""
         shown = self.field.getRobotPose()
-        if shown != self._shown:
-            self._pose = Pose(
-                shown.X() / METRES_PER_FOOT, self._height - shown.Y() / METRES_PER_FOOT, -shown.rotation().radians()
-            )
+        if shown == self._shown:
+            return self._pose
+        self._shown = shown
+        self._pose = Pose(
+            shown.X() / METRES_PER_FOOT, self._height - shown.Y() / METRES_PER_FOOT, -shown.rotation().radians()
+        )
         return self._pose
 
     def _place(self, pose: Pose) -> Pose2d:
-        self._pose = pose
-        self._shown = self._seen_in_metres(pose)
-        self.field.setRobotPose(self._shown)
-        return self._shown
+        shown = self._seen_in_metres(pose)
+        self._pose, self._shown = pose, shown
+        self.field.setRobotPose(shown)
+        return shown
 
     def _seen_in_metres(self, pose: Pose) -> Pose2d:
         return Pose2d(pose.x * METRES_PER_FOOT, (self._height - pose.y) * METRES_PER_FOOT, Rotation2d(-pose.angle))

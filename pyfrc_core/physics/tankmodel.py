@@ -112,13 +112,13 @@ class TankModel:
         vintercept: Quantity = 1.3 * units.volt,
         timestep: Quantity = 5 * units.millisecond,
     ) -> TankModel:
-        r"""The model of a robot whose kv and ka have not been measured, from the motors' data sheet.
+        """The model of a robot whose kv and ka have not been measured, from the motors' data sheet::
 
-        .. math::
-            velocity_{max} = \frac{\omega_{free} \cdot \pi \cdot d_{wheels}}{r_{gearing}} \qquad
-            acceleration_{max} = \frac{2 \cdot n \cdot \tau_{stall} \cdot r_{gearing}}{d_{wheels} \cdot m_{robot}}
+            velocity_max = freeSpeed * pi * wheel_diameter / gearing
+            acceleration_max = 2 * nmotors * stallTorque * gearing / (wheel_diameter * robot_mass)
 
-            k_v = V_{max} / velocity_{max} \qquad k_a = V_{max} / acceleration_{max}
+            kv = nominalVoltage / velocity_max
+            ka = nominalVoltage / acceleration_max
 
         :param motor_config: specification of the motors
         :param robot_mass: mass of the robot

@@ -131,8 +131,9 @@ class Clock:
 
     def _run_next(self) -> None:
         __tracebackhide__ = True
-        due, _, _, action = heappop(self._queue)
-        self._move_to(due)
+        due_us, _, _, action = heappop(self._queue)
+        if due_us > self.now_us:  # most of what is due falls together with a packet
+            self._move_to(due_us)
         action()
 
     def _move_to(self, time_us: int) -> None:
@@ -149,5 +150,5 @@ class Clock:
         self._next_packet += PACKET_US
         self.at(self._next_packet, PACKET, self._packet)
         for listener in self.before_packet:
-            listener(self.now)
+            listener(self.now_us / 1_000_000)
         deliver_packet()

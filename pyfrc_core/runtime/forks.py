@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from ..hal import devices_exist
 from .cooperative import scope
-from .own_process import write_all
+from .own_process import exit_now, write_all
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
 FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
@@ -56,8 +56,10 @@ class Fork:
         with forking_quietly():
             self._pid = os.fork()
         if self._pid == 0:
-            work(lambda data: write_all(writing_end, data))
-            os._exit(1)
+            try:
+                work(lambda data: write_all(writing_end, data))
+            finally:  # what is further out on the stack is for the process that was forked to unwind
+                exit_now(1)
         os.close(writing_end)
 
     def fileno(self) -> int:

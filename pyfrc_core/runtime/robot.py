@@ -72,8 +72,7 @@ class RobotRun:
         modes.reset_driver_station()
         timing.deliver_packet()
         wpilib.DriverStation.refreshData()
-        motor_safety = MotorSafetyCheck()
-        self.clock.before_packet.append(lambda now: motor_safety.on_packet())
+        self.clock.before_packet.append(MotorSafetyCheck().on_packet)
         cooperative.begin_waiting_threads()
 
     def construct(self, robot_class: type[Any]) -> Any:
@@ -145,6 +144,8 @@ class RobotRun:
                 thread = threading.Thread(target=self._compete, name="robot", daemon=True)
                 cooperative.start_in_robot_time(thread)
                 self.own_loop = cooperative.record_of(thread)
+                if self.own_loop is not None:
+                    self.own_loop.is_the_robot = True
                 self.clock.run_until(self.clock.now_us)
             else:
                 self.timed_loop.begin(self.robot)

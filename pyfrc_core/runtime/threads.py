@@ -47,6 +47,7 @@ class RobotThread:
         self.ident: int | None = None
         self.finished = False
         self.detached = False  # it waits in the outside world; the clock goes on without it
+        self.is_the_robot = False  # its end is the robot program's
         self.error: BaseException | None = None
         self.joiners: list[RobotThread] = []
         self.waits = 0  # counts its waits, so that a wake-up that comes too late finds nobody
@@ -123,9 +124,11 @@ class RobotThreads:
         try:
             if not self.ending:
                 body()
-        except (TestEnded, SystemExit):
+        except TestEnded:
             pass
         except BaseException as error:
+            if isinstance(error, SystemExit) and not record.is_the_robot:
+                return  # as in any thread
             record.error = error.with_traceback(_below_threading(error.__traceback__))
         finally:
             self._threads.pop(record.ident, None)

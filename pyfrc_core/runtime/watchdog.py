@@ -12,10 +12,12 @@ import ctypes
 import faulthandler
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING
 
@@ -37,8 +39,91 @@ EXIT_HANGS = 86
 
 _SIGNAL = getattr(signal, "SIGVTALRM", None)  # not on Windows
 _wait, _wall, _cpu = time.sleep, time.monotonic, time.process_time
-_start_thread = threading.Thread.start
+_allocate_lock = _thread.allocate_lock
+_start_thread, _join_thread = threading.Thread.start, threading.Thread.join
 _exit = os._exit
+
+
+class _Interruption:
+    """Raises `TestFroze` in code that hangs."""
+
+    def __init__(self) -> None:
+        self._message = ""
+        #: Whether it comes too late.
+        self.over = False
+
+    @contextmanager
+    def possible(self) -> Iterator[None]:
+        """While this lasts, the calling thread can be interrupted."""
+        if _SIGNAL is None or _thread.get_ident() != threading.main_thread().ident:
+            yield
+            return
+
+        def interrupted(signum: int, frame: FrameType | None) -> None:
+            __tracebackhide__ = True
+            if self._message and not self.over:
+                raise TestFroze(self._message)
+            if callable(before):
+                before(signum, frame)
+
+        before = signal.signal(_SIGNAL, interrupted)
+        try:
+            yield
+        finally:
+            signal.signal(_SIGNAL, before)
+
+    def interrupt(self, ident: int, message: str) -> None:
+        """Interrupt a thread."""
+        self._message = message
+        if ident == threading.main_thread().ident and _SIGNAL is not None:
+            signal.pthread_kill(ident, _SIGNAL)  # interrupts a blocking call, too
+            return
+        # Only a class can be raised in another thread, so the message travels in one.
+        froze = type("TestFroze", (TestFroze,), {"__str__": lambda self: message, "__module__": TestFroze.__module__})
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(froze))
+
+
+@contextmanager
+def importing(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
+    """While this lasts, the calling thread imports robot code, which is interrupted with `TestFroze` when it hangs.
+
+    :param hang_seconds: processor seconds in the project's own files, after which it does; what libraries take while
+        they are imported does not count
+    """
+    ident, cpu = _thread.get_ident(), _cpu_of_this_thread()
+    interruption, returned = _Interruption(), _allocate_lock()
+    returned.acquire()
+
+    def watch() -> None:
+        seen, busy = cpu(), 0.0
+        while not returned.acquire(timeout=min(0.25, hang_seconds / 4)):
+            frame = sys._current_frames().get(ident)
+            now = cpu()
+            if frame is not None and files.is_project_file(frame.f_code.co_filename):
+                busy += now - seen
+            seen = now
+            del frame  # or what it holds would live on
+            if busy >= hang_seconds:
+                busy = 0.0
+                interruption.interrupt(ident, f"the robot code hangs here, through {hang_seconds:g} s of computing")
+
+    thread = threading.Thread(target=watch, name="pyfrc import watchdog", daemon=True)
+    with interruption.possible():
+        _start_thread(thread)
+        try:
+            yield
+        finally:
+            interruption.over = True
+            returned.release()
+            _join_thread(thread)  # what forks this process next counts its threads
+
+
+def _cpu_of_this_thread() -> Callable[[], float]:
+    """What tells any thread how much processor time the calling one has had; of the whole process, where that is not
+    told apart."""
+    if not hasattr(time, "pthread_getcpuclockid"):
+        return _cpu
+    return partial(time.clock_gettime, time.pthread_getcpuclockid(_thread.get_ident()))
 
 
 class Watchdog:
@@ -64,32 +149,31 @@ class Watchdog:
         self._hang_seconds = hang_seconds
         self._last_words = last_words
         self._stuck_file = stuck_file
-        self._over = False
-        self._message = ""
+        self._interruption = _Interruption()
 
     @contextmanager
     def watching(self) -> Iterator[None]:
         """Watch while this lasts; code that hangs is interrupted with `TestFroze`."""
         thread = threading.Thread(target=self._watch, name="pyfrc watchdog", daemon=True)
-        with self._interruptible():
+        with self._interruption.possible():
             _start_thread(thread)
             try:
                 yield
             finally:
-                self._over = True
+                self._interruption.over = True
                 if self._stuck_file is not None:
                     faulthandler.cancel_dump_traceback_later()
 
     def _watch(self) -> None:
-        clock = self._run.clock
+        clock, interruption = self._run.clock, self._interruption
         seen, cpu, wall = clock.now_us, _cpu(), _wall()
         warned = False
-        while not self._over:
+        while not interruption.over:
             if self._stuck_file is not None:
                 # From C, and so without Python's lock; put off again each time this thread does get to run.
                 faulthandler.dump_traceback_later(STUCK_FACTOR * self._hang_seconds, exit=True, file=self._stuck_file)
             _wait(min(0.25, self._hang_seconds / 4))
-            if clock.now_us != seen or not self._run.in_motion or self._over:
+            if clock.now_us != seen or not self._run.in_motion or interruption.over:
                 seen, cpu, wall, warned = clock.now_us, _cpu(), _wall(), False
                 continue
             busy = _cpu() - cpu >= self._hang_seconds
@@ -99,8 +183,7 @@ class Watchdog:
             culprit = self._culprit()
             if warned:
                 self._give_up(culprit)
-            self._message = self._explain(culprit, busy)
-            self._interrupt(culprit)
+            interruption.interrupt(culprit, self._explain(culprit, busy))
             cpu, wall, warned = _cpu(), _wall(), True
 
     def _culprit(self) -> int:
@@ -122,36 +205,6 @@ class Watchdog:
             what = f"{where} is blocked here: {stands} for {BLOCKED_SECONDS:g} s, waiting for the world outside"
             advice = "Read from sockets, files and the keyboard in a thread of their own, or with a time-out."
         return f"{place}{what}.\n{advice}"
-
-    def _interrupt(self, ident: int) -> None:
-        if ident == threading.main_thread().ident and _SIGNAL is not None:
-            signal.pthread_kill(ident, _SIGNAL)  # interrupts a blocking call, too
-        else:
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(self._froze()))
-
-    def _froze(self) -> type[TestFroze]:
-        # Only a class can be raised in another thread, so the message travels in one.
-        message = self._message
-        return type("TestFroze", (TestFroze,), {"__str__": lambda self: message, "__module__": TestFroze.__module__})
-
-    @contextmanager
-    def _interruptible(self) -> Iterator[None]:
-        if _SIGNAL is None or _thread.get_ident() != threading.main_thread().ident:
-            yield
-            return
-
-        def interrupted(signum: int, frame: FrameType | None) -> None:
-            __tracebackhide__ = True
-            if self._message and not self._over:
-                raise TestFroze(self._message)
-            if callable(before):
-                before(signum, frame)
-
-        before = signal.signal(_SIGNAL, interrupted)
-        try:
-            yield
-        finally:
-            signal.signal(_SIGNAL, before)
 
     def _give_up(self, ident: int) -> None:
         """The code swallowed the interruption, or never came to see it."""

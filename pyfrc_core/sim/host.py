@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import os
 import pickle
+import shutil
 import signal
 import sys
 from collections.abc import Sequence
@@ -38,6 +39,7 @@ class Hosting:
     :param path: `sys.path`
     :param directory: the current one
     :param fork: whether to fork robots' processes
+    :param temporary: the simulation's directory, to tidy away when it has been killed itself
     """
 
     address: Any
@@ -45,6 +47,7 @@ class Hosting:
     path: list[str]
     directory: str
     fork: bool
+    temporary: str
 
 
 @dataclass(frozen=True)
@@ -129,7 +132,9 @@ class _Forks:
             try:
                 command = self._connection.recv()
             except (EOFError, ConnectionError):
-                command = Quit()
+                self._kill()
+                shutil.rmtree(self._hosting.temporary, ignore_errors=True)
+                return
             if isinstance(command, Quit):
                 self._kill()
                 return

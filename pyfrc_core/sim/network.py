@@ -7,6 +7,7 @@ a moment that can be recorded, and comes at the same moment in a replay.
 
 from __future__ import annotations
 
+import errno
 import socket
 from collections.abc import Callable
 from typing import Any
@@ -120,8 +121,7 @@ def _problem_with(port: int) -> str | None:
         try:
             probe.bind(("", port))
         except OSError as error:
-            return (
-                f"NetworkTables are not served to dashboards: port {port} is taken ({error.strerror}). "
-                "Is another simulation running?"
-            )
+            taken = error.errno == errno.EADDRINUSE
+            why = "is taken: is another simulation running?" if taken else f"cannot be had: {error.strerror}"
+            return f"No NetworkTables: port {port} {why}"
     return None

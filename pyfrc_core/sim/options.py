@@ -46,6 +46,11 @@ class SimOptions:
         """
         check_speed(self.speed)
         see_that_there_are(self.extensions)
+        if self.run_until is not None and self.run_until < self.start_at:
+            raise UsageError(
+                f"--seconds {self.run_until:g} is before --from {self.start_at:g}",
+                remedy="--seconds is the robot time to end at, not for how long.",
+            )
         if self.script is None:
             return
         end = self.script.end_us / 1_000_000

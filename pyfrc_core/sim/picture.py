@@ -17,10 +17,12 @@ from .scene import Field, Line, Point, Pose, Scene
 if TYPE_CHECKING:
     from PIL.ImageDraw import ImageDraw
 
-#: The longer side, in pixels.
+#: The longer side, in pixels; and the room around the field, for the scale.
 _LONGER_SIDE = 1200
-_MARGIN = 10
-_BACKGROUND, _FLOOR, _EDGE = "#ffffff", "#e8e8e8", "#404040"
+_MARGIN = 28
+#: The grid's lines are so far apart, and every second one has its number, in feet.
+_GRID = 5
+_BACKGROUND, _FLOOR, _EDGE, _LINE = "#ffffff", "#e8e8e8", "#404040", "#d0d0d0"
 _TRAIL, _FORMER, _ROBOT, _TAG, _TARGET = "#0057b8", "#f0a030", "#d00000", "#303030", "#00a040"
 
 
@@ -55,6 +57,7 @@ def draw_picture(scene: Scene, file: Path, former_trail: Iterable[Point] = ()) -
     drawing.polygon([(0, 0), (field.width, 0), (field.width, field.height), (0, field.height)], _FLOOR)
     if field.image is not None:
         _paste(field.image, image)
+    drawing.grid(field)
     for shape in field.objects:
         drawing.polygon(shape.points, _color(shape.color))
     for tag in field.tags:
@@ -63,6 +66,8 @@ def draw_picture(scene: Scene, file: Path, former_trail: Iterable[Point] = ()) -
         drawing.spot((target.x, target.y), _TARGET, filled=target.in_view)
     drawing.line(list(former_trail), _FORMER, 2)
     drawing.line(scene.trail, _TRAIL, 3)
+    if scene.trail:
+        drawing.start(scene.trail[0])
     for each in scene.drawings:
         if isinstance(each, Line):
             drawing.line(each.points, _color(each.color), 2)
@@ -125,11 +130,30 @@ class _Drawing:
         ((x, y),) = self._pixels([point])
         self._draw.ellipse((x - 5, y - 5, x + 5, y + 5), outline=color, fill=color if filled else None, width=2)
 
-    def text(self, point: Point, text: str, color: str, size: int) -> None:
-        """A text with its middle at a point."""
+    def text(self, point: Point, text: str, color: str, size: int, beside: tuple[int, int] = (0, 0)) -> None:
+        """A text with its middle so many pixels beside a point."""
         from PIL import ImageFont
 
-        self._draw.text(self._pixels([point])[0], text, fill=color, font=ImageFont.load_default(size), anchor="mm")
+        ((x, y),) = self._pixels([point])
+        at = x + beside[0], y + beside[1]
+        self._draw.text(at, text, fill=color, font=ImageFont.load_default(size), anchor="mm")
+
+    def grid(self, field: Field) -> None:
+        """Lines, with numbers below the field and at its left."""
+        half = _MARGIN // 2
+        for x in range(0, math.floor(field.width) + 1, _GRID):
+            self.line([(x, 0), (x, field.height)], _LINE, 1)
+            if x % (2 * _GRID) == 0:
+                self.text((x, field.height), f"{x} ft", _EDGE, 12, (0, half))
+        for y in range(0, math.floor(field.height) + 1, _GRID):
+            self.line([(0, y), (field.width, y)], _LINE, 1)
+            if y % (2 * _GRID) == 0 and y:
+                self.text((0, y), f"{y} ft", _EDGE, 12, (-half, 0))
+
+    def start(self, point: Point) -> None:
+        """Where the robot has begun."""
+        self.spot(point, _TRAIL, filled=True)
+        self.text(point, "start", _TRAIL, 12, (0, 14))
 
     def tag(self, x: float, y: float, angle: float, number: str) -> None:
         """A tag, as a short wall seen from above, with its number behind it."""

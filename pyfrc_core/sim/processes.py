@@ -51,7 +51,12 @@ class RobotProcesses:
         self._closed = False
         self._temporary = TemporaryDirectory(prefix="pyfrc-sim-")
         self._key = os.urandom(32)
-        self._listener = Listener(authkey=self._key)
+        try:
+            # Not where multiprocessing would put it: in a directory of its own, which stays when this is killed.
+            beside = str(Path(self._temporary.name, "listener")) if os.name == "posix" else None
+            self._listener = Listener(beside, authkey=self._key)
+        except OSError:  # a socket's name may have only some hundred characters, and that of TMPDIR counts
+            self._listener = Listener(("127.0.0.1", 0), authkey=self._key)
         self._number = 0
         self._host: subprocess.Popen[bytes] | None = None
         self._host_connection: Connection | None = None
@@ -137,7 +142,9 @@ class RobotProcesses:
         )
         self._host = host
         assert host.stdin is not None
-        hosting = Hosting(self._listener.address, self._key, sys.path, str(Path.cwd()), self._forks)
+        hosting = Hosting(
+            self._listener.address, self._key, sys.path, str(Path.cwd()), self._forks, self._temporary.name
+        )
         with suppress(OSError), host.stdin as stdin:
             stdin.write(pickle.dumps(hosting))
         _thread(self._read_output, "pyfrc sim: output", host)

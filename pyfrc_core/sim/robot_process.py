@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 import threading
 import traceback
@@ -14,7 +15,7 @@ from typing import Any
 
 import hal
 
-from ..errors import PyfrcError, text_of
+from ..errors import PyfrcError
 from ..physics.engine import load_physics
 from ..project import Project
 from ..robot_files import is_pyfrc
@@ -54,10 +55,12 @@ def run_robot(job: Job, connection: Connection, words: LastWords) -> None:
 def _run(job: Job, connection: Connection, words: LastWords) -> None:
     project, files = job.project, job.project.files
     run = RobotRun()
+    loaded = False
     try:
         redirection.install(files)
         robot_class = project.load()
         physics = load_physics(project) if project.physics_file.is_file() else None
+        loaded = True
         watchdog = Watchdog(run, files, project.settings.test.hang_seconds, words.write, words.descriptor)
         with watchdog.watching(), ExitStack() as closing:
             run.open()
@@ -70,6 +73,7 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
                 if job.wpilog is not None:
                     closing.enter_context(_logged(run, job.wpilog))
                 run.construct(robot_class)
+                gc.freeze()  # what is there now stays: to look through it takes as long as hundreds of packets
 
             def ready() -> Ready:
                 tags = tags_of(project.sim_config) if job.tags is None else job.tags
@@ -83,23 +87,24 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
                 with suppress(Exception):  # what has happened matters more
                     session.tell()
                 raise
-    except Ended:
-        headline = f"{project.main_file.name}: the robot program ended by itself"
-        _tell(connection, run, headline, "startCompetition() returned.")
-    except PyfrcError as error:
-        _tell(connection, run, str(error), "")
     except BaseException as error:
-        leave_out_pyfrc(error, files)
-        failure = as_robot_code_error(error, files) if isinstance(error, Exception) else text_of(error)
-        entry = error.__traceback__
-        while entry is not None and entry.tb_next is not None and is_pyfrc(entry.tb_frame.f_code.co_filename):
-            entry = entry.tb_next  # this function's own
-        details = "".join(traceback.format_exception(type(error), error, entry))
-        _tell(connection, run, str(failure), details)
+        # A robot that is not there was to go on from that moment.
+        now = run.clock.now if loaded else job.forward_to_us / 1_000_000
+        connection.send(Failed(_failure(error, project, now)))
 
 
-def _tell(connection: Connection, run: RobotRun, headline: str, details: str) -> None:
-    connection.send(Failed(Failure(headline, details, run.clock.now)))
+def _failure(error: BaseException, project: Project, now: float) -> Failure:
+    if isinstance(error, Ended):
+        headline = f"{project.main_file.name}: the robot program ended by itself"
+        return Failure(headline, "startCompetition() returned.", now)
+    if isinstance(error, PyfrcError):
+        return Failure(str(error), "", now, error.exit_code)
+    leave_out_pyfrc(error, project.files)
+    failure = as_robot_code_error(error, project.files)
+    entry = error.__traceback__
+    while entry is not None and entry.tb_next is not None and is_pyfrc(entry.tb_frame.f_code.co_filename):
+        entry = entry.tb_next  # _run's own
+    return Failure(str(failure), "".join(traceback.format_exception(type(error), error, entry)), now)
 
 
 @contextmanager

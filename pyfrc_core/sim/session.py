@@ -25,8 +25,9 @@ from .scene import Point, Pose, Target
 from .station import Station
 from .user_renderer import UserRenderer
 
-#: Faster than real time, updates are told no oftener than this, in wall seconds; else one for each packet.
-_UPDATE_SECONDS = 0.02
+#: Faster than real time, updates are told no oftener than this, in wall seconds; else one for each packet. What is not
+#: recorded has nobody who watches, and each update takes as long as dozens of packets.
+_UPDATE_SECONDS, _UNRECORDED_UPDATE_SECONDS = 0.02, 0.1
 #: How long to wait for commands while time stands still, before looking what dashboards have written.
 _LOOK_SECONDS = 0.05
 #: Where the robot is, is asked every so many packets; the trail has a point for each time that it has moved on by as
@@ -80,6 +81,7 @@ class Session:
         self._packet_began = wall()
         self._steps_told = 0
         self._told_at = 0.0
+        self._update_seconds = _UPDATE_SECONDS if job.recording else _UNRECORDED_UPDATE_SECONDS
         self._packets_at_once = 1
         run.renderer = self._renderer
         run.clock.limit_us = 1 << 62
@@ -101,8 +103,8 @@ class Session:
         run.clock.every(_FOLLOW_PACKETS * PACKET_US, OBSERVE, self._follow)
         Player(job.script, run).start()
         self._mark_position()
-        while run.clock.now_us < job.forward_to_us:
-            run.run_until(min(job.forward_to_us, run.clock.now_us + _MOST_PACKETS * PACKET_US))
+        if run.clock.now_us < job.forward_to_us:
+            run.run_until(job.forward_to_us)
         self._station.take_over()
         if job.nt_port is not None:
             self._served = Served(job.nt_port, self._write)
@@ -141,7 +143,7 @@ class Session:
                 continue
             self._exchange()
             self._advance(target_us)
-            if 0 < pace.speed <= 1 or wall() - self._told_at >= _UPDATE_SECONDS:
+            if 0 < pace.speed <= 1 or wall() - self._told_at >= self._update_seconds:
                 self.tell()
 
     def _advance(self, target_us: int) -> None:

@@ -11,6 +11,8 @@ from ..errors import UsageError
 from ..project import Project
 from ..runtime.scripts.script import load_script
 from .extensions import WINDOW
+from .interruption import ending_like_ctrl_c
+from .kept import KeptFiles
 from .network import NT4_PORT
 from .options import SimOptions
 from .simulation import Simulation
@@ -58,16 +60,12 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
             say(f"No window: {why}. This is --ui none.\n")
     if request.mode is not None and ui != "none":
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
-    headless = Headless(say, request.mode, request.seconds) if ui == "none" else None
+    headless = Headless(say, request.mode, request.seconds, request.watch) if ui == "none" else None
     front_end = headless or window(ui)
     # Nobody watches what ends by itself.
     unattended = headless is not None and any(
         each is not None for each in (request.mode, request.seconds, request.script)
     )
-    if request.picture is not None:
-        from .picture import see_that_pictures_can_be_drawn
-
-        see_that_pictures_can_be_drawn(request.picture)
     port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
     options = SimOptions(
         speed=request.speed if request.speed is not None else 0.0 if unattended else 1.0,
@@ -82,24 +80,20 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         start_position=request.start_position,
     )
     simulation = Simulation(project, options)
+    kept = KeptFiles(request.record, request.wpilog, request.picture)
     with ExitStack() as closing:
+        closing.enter_context(ending_like_ctrl_c())
         if request.watch:
-            closing.enter_context(watching(simulation))
+            closing.enter_context(watching(simulation, (lambda files: None) if headless is None else headless.saved))
         try:
             code = front_end.run(simulation)
         except KeyboardInterrupt:  # in the terminal: another way to close a window
-            simulation.close()
             code = 0
-    if request.record is not None:
-        for file in simulation.save_all(request.record):
-            say(f"wrote {file}\n")
-    if request.wpilog is not None:
-        say(f"wrote {request.wpilog}\n")
-    if request.picture is not None and simulation.snapshot is not None:
-        from .picture import draw_picture
-
-        draw_picture(simulation.snapshot.scene, request.picture, simulation.status.former_trail)
-        say(f"wrote {request.picture}\n")
+        finally:  # also when the terminal has gone, and nothing can be said any more
+            simulation.close()
+            written = kept.write(simulation)
+    for file in written:
+        say(f"wrote {file}\n")
     return code
 
 

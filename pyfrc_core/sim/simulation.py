@@ -68,6 +68,8 @@ class Simulation:
         self._launch = 0
         self._tags: tuple[Tag, ...] | None = None
         self._assembly = Assembly()
+        #: Where time is to stand still, as long as nobody says otherwise.
+        self._until_us = None if self.options.run_until is None else to_us(self.options.run_until)
         self._output = ""
         self._processes: RobotProcesses | None = None
 
@@ -113,8 +115,7 @@ class Simulation:
         if self._processes is None:
             self._processes = RobotProcesses(self._on_message, self._on_exit, self._on_output, self.options.fork)
             options = self.options
-            until = None if options.run_until is None else to_us(options.run_until)
-            self._begin(self._recording, to_us(options.start_at), options.paused, until)
+            self._begin(self._recording, to_us(options.start_at), options.paused, self._until_us)
             image = self.project.sim_config.field.image
             if image is not None and self.field.image is None:
                 self._note(f"sim/config.json: pyfrc.field.image: there is no file {image!r} in sim/. Correct the path.")
@@ -140,6 +141,7 @@ class Simulation:
 
     def resume(self) -> None:
         """Let time go on."""
+        self._until_us = None
         self._send(Run())
 
     def pause(self) -> None:
@@ -148,6 +150,7 @@ class Simulation:
 
     def step(self, packets: int = 1) -> None:
         """Let so many packets' time pass, 0.02 s each, then pause."""
+        self._until_us = None
         self._send(Run(packets=max(1, packets)))
 
     def run_for(self, seconds: float) -> None:
@@ -156,6 +159,7 @@ class Simulation:
 
     def run_until(self, seconds: float) -> None:
         """Pause when robot time gets there."""
+        self._until_us = to_us(seconds)
         self._send(Run(until_us=to_us(seconds)))
 
     def set_speed(self, factor: float) -> None:
@@ -302,7 +306,9 @@ class Simulation:
         if keep and self._recording.length_us > to_us:
             self._older.insert(0, self._recording)
         self._status = replace(self._status, former_trail=self._assembly.trail if keep else ())
-        self._begin(recording, to_us, paused, None)
+        if keep:  # else new code is to get as far as the old one was to
+            self._until_us = None
+        self._begin(recording, to_us, paused, self._until_us)
 
     def _begin(self, recording: Recording, forward_to_us: int, paused: bool, until_us: int | None) -> None:
         assert self._processes is not None
@@ -344,8 +350,9 @@ class Simulation:
                 self._tags = message.tags
                 self.field = replace(self.field, tags=message.tags)
                 self._status = replace(self._status, network_address=message.network_address)
-                assert self._processes is not None
-                self._processes.preload(message.libraries)
+                if self.options.recording:  # else there is no other robot's process to come, in all likelihood
+                    assert self._processes is not None
+                    self._processes.preload(message.libraries)
             elif isinstance(message, Failed):
                 self._fail(message.failure)
             else:

@@ -75,11 +75,13 @@ class Failure:
     :param headline: the user's own file and line first, as ``robot.py:12: ZeroDivisionError: division by zero``
     :param details: the traceback, if there is one
     :param time: robot time, in seconds
+    :param exit_code: a command's: 1 when the robot's code failed, 2 when there is no way to run it
     """
 
     headline: str
     details: str
     time: float
+    exit_code: int = 1
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -26,10 +26,11 @@ class Watch:
         self._root = root
         self._seen = self._look()
 
-    def changed(self) -> bool:
-        """Whether a file has been saved, made or removed since this was last asked."""
+    def changed(self) -> list[str]:
+        """The files that have been saved, made or removed since this was last asked, relative to the root."""
         before, self._seen = self._seen, self._look()
-        return before != self._seen
+        changed = sorted({file for file, _ in before.items() ^ self._seen.items()})
+        return [Path(file).relative_to(self._root).as_posix() for file in changed]
 
     def _look(self) -> dict[str, tuple[int, int]]:
         found = {}
@@ -46,14 +47,18 @@ class Watch:
 
 
 @contextmanager
-def watching(simulation: Simulation) -> Iterator[None]:
-    """While this lasts, have the simulation go on with the project's code as it is on the disk."""
+def watching(simulation: Simulation, saved: Callable[[list[str]], object]) -> Iterator[None]:
+    """While this lasts, have the simulation go on with the project's code as it is on the disk.
+
+    :param saved: is told which files have changed, before that
+    """
     over = threading.Event()
     watch = Watch(simulation.project.root)
 
     def look() -> None:
         while not over.wait(_LOOK_SECONDS):
-            if watch.changed():
+            if files := watch.changed():
+                saved(files)
                 simulation.reload()
 
     thread = threading.Thread(target=look, name="pyfrc sim: watch", daemon=True)

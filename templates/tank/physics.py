@@ -26,8 +26,9 @@ class EncoderShaft:
     def turn_to(self, feet: float) -> None:
         """Turn it as far as a wheel turns that has rolled so far."""
         counts = round(feet * METRES_PER_FOOT / self.encoder.getDistancePerPulse())
-        self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
-        self.counts = counts
+        if counts != self.counts:
+            self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
+            self.counts = counts
 
 
 class PhysicsEngine:

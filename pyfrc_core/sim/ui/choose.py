@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-import importlib.util
-import os
-import sys
-
+from ...display import GET_TKINTER, has_display, has_tkinter
 from ...errors import UsageError
 from . import FrontEnd
 
 #: What there is, and which of them the user can choose.
 NAMES = ("tk", "wpilib", "none")
 
-_NO_TKINTER = "Install it with your system's package manager: sudo apt install python3-tk, or brew install python-tk."
-
 
 def default_name() -> tuple[str, str]:
     """The front end where nobody chooses one, and, where it is not the window, why."""
-    if not _has_display():
+    if not has_display():
         return "none", "there is no display"
-    if importlib.util.find_spec("tkinter") is None:
-        return "none", f"this Python has no tkinter. {_NO_TKINTER}"
+    if not has_tkinter():
+        return "none", f"this Python has no tkinter. {GET_TKINTER}"
     return "tk", ""
 
 
@@ -29,7 +24,7 @@ def window(name: str) -> FrontEnd:
 
     :raises UsageError: when there cannot be one here, saying what to do
     """
-    if not _has_display():
+    if not has_display():
         raise UsageError(
             f"--ui {name} needs a display, and there is none",
             remedy="Run without a window: pyfrc sim --ui none --mode practice. "
@@ -44,11 +39,5 @@ def window(name: str) -> FrontEnd:
     except ImportError as missing:
         if missing.name not in ("tkinter", "_tkinter"):
             raise
-        raise UsageError("--ui tk needs tkinter, which this Python has not", remedy=_NO_TKINTER) from None
+        raise UsageError("--ui tk needs tkinter, which this Python has not", remedy=GET_TKINTER) from None
     return TkFrontEnd()
-
-
-def _has_display() -> bool:
-    if sys.platform in ("win32", "darwin"):
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

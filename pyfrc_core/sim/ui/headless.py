@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from ...errors import UsageError
 from ...physics.pose import METRES_PER_FOOT
 from ...runtime.clock import to_us
 from ...runtime.match import MatchPeriods
@@ -55,8 +56,12 @@ class Summary:
                 found.append(f"distance driven: {snapshot.distance:.1f} ft ({metres:.1f} m)")
             found.append(f"packets that took longer than 20 ms: {self.overruns}")
         if self.failure is not None:
-            found.append(f"failed at {self.failure.time:.2f} s: {self.failure.headline}")
+            found.append(_text_of(self.failure))
         return found
+
+
+def _text_of(failure: Failure) -> str:
+    return f"failed at {failure.time:.2f} s: {failure.headline}"
 
 
 class Headless(FrontEnd):
@@ -65,34 +70,55 @@ class Headless(FrontEnd):
     :param say: prints
     :param mode: what to put the robot through; None: only what comes from scripts and dashboards
     :param seconds: for how long; None: until it is interrupted, or for as long as the script or the match takes
+    :param watching: whether a robot that fails gets new code, where nothing says when to end
     """
 
     def __init__(
-        self, say: Callable[[str], object], mode: HeadlessMode | None = None, seconds: float | None = None
+        self,
+        say: Callable[[str], object],
+        mode: HeadlessMode | None = None,
+        seconds: float | None = None,
+        watching: bool = False,
     ) -> None:
         self._say = say
         self._mode = mode
         self._seconds = seconds
+        self._watching = watching
+        self._simulation: Simulation | None = None
+        self._told: Failure | None = None
+        self._noted = ""
         self.summary: Summary | None = None
 
     def run(self, simulation: Simulation) -> int:
-        """The exit code is 1 when the robot has failed."""
+        """The exit code is that of the robot's failure, if it has failed."""
+        self._simulation = simulation
         end = self._end(simulation)
         interrupted = False
-        with simulation:
-            try:
-                speed = self._drive(simulation, end)
-            except KeyboardInterrupt:
-                interrupted, speed = True, 0.0
+        try:
+            simulation.start()
+            speed = self._drive(simulation, end)
+        except KeyboardInterrupt:
+            interrupted, speed = True, 0.0
+        finally:
             status = simulation.status
-            self.summary = Summary(simulation.snapshot, status.failure, speed, status.overruns)
+            simulation.close()
+        self.summary = Summary(simulation.snapshot, status.failure, speed, status.overruns)
         self._print(simulation)
         for line in self.summary.lines():
             self._say(f"{line}\n")
+        if interrupted and status.failure is None and simulation.snapshot is None:
+            self._say(f"interrupted while {simulation.project.main_file.name} was still being imported and started\n")
+            return 2
         if interrupted and end is not None:
             self._say("interrupted\n")
             return 2
-        return 1 if status.failure is not None else 0
+        return 0 if status.failure is None else status.failure.exit_code
+
+    def saved(self, files: list[str]) -> None:
+        """Say that the robot gets new code."""
+        seconds = 0.0 if self._simulation is None else self._time_us(self._simulation) / 1_000_000
+        verb = "was" if len(files) == 1 else "were"
+        self._say(f"{', '.join(files)} {verb} saved: going on with the new code at {seconds:.2f} s\n")
 
     def _drive(self, simulation: Simulation, end: float | None) -> float:
         """Let the robot run until it is over; answers the speed that was reached."""
@@ -110,7 +136,7 @@ class Headless(FrontEnd):
 
         def over() -> bool:
             state = simulation.status.state
-            return state == "failed" or (
+            return (state == "failed" and not (self._watching and end is None)) or (
                 state == "paused" and end is not None and self._time_us(simulation) >= to_us(end)
             )
 
@@ -126,6 +152,15 @@ class Headless(FrontEnd):
         return 0 if simulation.snapshot is None else to_us(simulation.snapshot.time)
 
     def _end(self, simulation: Simulation) -> float | None:
+        end = self._natural_end(simulation)
+        if end is not None and end < simulation.options.start_at:
+            raise UsageError(
+                f"--from {simulation.options.start_at:g} is after the end, at {end:g} s",
+                remedy="Choose a later end by --seconds.",
+            )
+        return end
+
+    def _natural_end(self, simulation: Simulation) -> float | None:
         script = simulation.options.script
         if self._seconds is not None:
             return self._seconds
@@ -139,3 +174,11 @@ class Headless(FrontEnd):
         output = simulation.take_output()
         if output:
             self._say(output)
+        status = simulation.status
+        if status.note not in ("", self._noted):
+            self._noted = status.note
+            self._say(f"warning: {status.note}\n")
+        if self._watching and status.failure is not None and status.failure is not self._told:
+            self._told = status.failure
+            if status.state == "failed":  # else it is over, and summed up
+                self._say(f"{_text_of(status.failure)}\nwaiting for the correction to be saved\n")

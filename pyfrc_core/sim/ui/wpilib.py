@@ -21,7 +21,7 @@ class WpilibWindow(FrontEnd):
         if failure is None:
             return 0
         sys.stdout.write(f"failed at {failure.time:.2f} s: {failure.headline}\n")
-        return 1
+        return failure.exit_code
 
     @staticmethod
     def _print(simulation: Simulation) -> None:

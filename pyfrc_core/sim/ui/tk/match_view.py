@@ -36,10 +36,11 @@ class MatchView:
         self._shown: tuple[object, ...] = ()
         self._alliance = self._box(list(STATIONS), self._choose_alliance)
         self._message = self._box(list(simulation.project.game_specific_messages), self._send_message)
-        self._message.configure(state="normal", width=8)
+        self._message.configure(state="normal")
         self._message.bind("<Return>", lambda event: self._send_message())
         tooltip.attach(self._message, "Game data, which the field tells all robots: choose, or type and press Enter")
-        self._place_row("Alliance", self._alliance, self._message)
+        self._place_row("Alliance", self._alliance)
+        self._place_row("Game data", self._message)
         starts = list(simulation.field.starts)
         self._start = self._box(starts, self._reset)
         if starts:

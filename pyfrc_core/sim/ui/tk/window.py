@@ -41,7 +41,7 @@ _MOST_NOTE = 90
 _HINT = "Ctrl+E or [ ] \\  enable   Enter  disable   Space  e-stop   F5  pause   F6  step"
 
 #: In the design's pixels.
-_WIDTH, _HEIGHT, _LEAST_WIDTH, _LEAST_HEIGHT = 1290, 696, 1000, 600
+_WIDTH, _HEIGHT, _LEAST_WIDTH, _LEAST_HEIGHT = 1290, 696, 1000, 660
 
 
 class Window:

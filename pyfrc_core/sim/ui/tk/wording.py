@@ -103,7 +103,7 @@ def number_text(value: float, decimals: int) -> str:
 def pose_text(robot: Pose | None) -> str:
     """Where the robot is."""
     if robot is None:
-        return "no physics.py: the robot has no place (pyfrc create-physics writes one)"
+        return "no physics.py: see pyfrc create-physics"
     degrees = (math.degrees(robot.angle) + 180) % 360 - 180
     return f"x {robot.x:.2f} ft   y {robot.y:.2f} ft   heading {number_text(degrees, 1)}°"
 

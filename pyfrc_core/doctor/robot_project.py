@@ -1,0 +1,140 @@
+"""Whether the robot project is whole: its program, its settings, its physics and tests, and what it asks for."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from packaging.requirements import InvalidRequirement, Requirement
+
+from ..errors import PyfrcError
+from ..project import Project
+from ..runtime.apart import run_apart
+from .findings import Finding, hint, ok, problem
+from .imports import MODULES
+from .installed import Installed, fits
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+if TYPE_CHECKING:
+    from ..runtime.own_process import LastWords
+
+_LIBRARIES = {*MODULES.values(), "hal", "ntcore", "wpimath", "wpiutil", "wpinet", "cscore", "pyfrc", "pytest", "numpy"}
+
+
+def examine_project(project: Project, installed: Installed) -> Iterator[Finding]:
+    """All of it; nothing of it is imported here."""
+    yield from _hidden_libraries(project)
+    yield from _asked_for(project, installed)
+    yield from _robot_class(project)
+    yield from _sim_config(project)
+    if project.physics_file.is_file():
+        yield ok("physics", project.physics_file.name)
+    else:
+        yield hint("physics", f"no {project.physics_file.name}: nothing moves in simulation", "pyfrc create-physics")
+    tests = project.find_tests()
+    if tests is not None:
+        yield ok("tests", str(tests))
+    else:
+        yield hint("tests", "the project has none", "pyfrc add-tests; or run the ready-made ones: pyfrc test --builtin")
+
+
+def problem_of(topic: str, error: PyfrcError | OSError, otherwise: str) -> Finding:
+    """An error as a finding.
+
+    :param otherwise: the remedy of an error that has none
+    """
+    if not isinstance(error, PyfrcError):
+        return problem(topic, str(error), otherwise)
+    text = f"{error.where}: {error.message}" if error.where else error.message
+    return problem(topic, text, error.remedy or otherwise)
+
+
+def _hidden_libraries(project: Project) -> Iterator[Finding]:
+    """Files of the project by whose names Python would miss a library."""
+    for library in sorted(_LIBRARIES | sys.stdlib_module_names):
+        for file in (project.root / f"{library}.py", project.root / library / "__init__.py"):
+            if file.is_file():
+                name = file.relative_to(project.root).as_posix()
+                yield problem(
+                    "project",
+                    f"{name} hides a library: import {library} finds it instead",
+                    f"Give {name} another name.",
+                )
+
+
+def _asked_for(project: Project, installed: Installed) -> Iterator[Finding]:
+    """What ``[tool.robotpy]`` asks for, and is not here."""
+    if not project.pyproject.is_file():
+        return
+    try:
+        tools: Any = tomllib.loads(project.pyproject.read_text("utf-8-sig")).get("tool", {})
+    except ValueError as malformed:
+        yield problem("project", f"{project.pyproject.name}: {malformed}", "Correct it there.")
+        return
+    robotpy = tools.get("robotpy") if isinstance(tools, dict) else None
+    if not isinstance(robotpy, dict):
+        return
+    name, wpilib, version = project.pyproject.name, installed.get("wpilib"), robotpy.get("robotpy_version")
+    if isinstance(version, str) and wpilib is not None and version != wpilib.version:
+        yield hint(
+            "project",
+            f"{name}: robotpy_version is {version}, but wpilib {wpilib.version} is installed here",
+            f'pip install "wpilib=={version}", or change robotpy_version to have the robot get {wpilib.version}.',
+        )
+    if "robotpy_extras" in robotpy:
+        text = f"{name}: robotpy_extras has another name since 2026, and robotpy deploy refuses this one"
+        yield hint("project", text, "Call it components.")
+    requires = robotpy.get("requires")
+    for text in requires if isinstance(requires, list) else []:
+        try:
+            needed = Requirement(str(text))
+        except InvalidRequirement as invalid:
+            yield problem(
+                "project", f"{name}: requires = {text!r}: {str(invalid).splitlines()[0]}", "Correct it there."
+            )
+            continue
+        if needed.marker is not None and not needed.marker.evaluate({"extra": ""}):
+            continue
+        there = installed.get(needed.name)
+        if there is None or not fits(there.version, needed):
+            instead = f"{there.version} is installed" if there else "it is not installed"
+            yield problem("project", f"{name}: requires {text}, but {instead} here", f'pip install "{text}"')
+
+
+def _robot_class(project: Project) -> Iterator[Finding]:
+    try:
+        name = run_apart(_name_of_class, project, "while it was imported")
+    except (PyfrcError, OSError) as error:
+        yield problem_of("program", error, "Correct that line; pyfrc test shows more of it.")
+    except Exception as error:  # what the other process could not tell
+        yield problem("program", f"{project.main_file.name} cannot be imported: {error}", "See what pyfrc test says.")
+    else:
+        yield ok("program", f"class {name} in {project.main_file}")
+
+
+def _name_of_class(project: Project, words: LastWords) -> str:
+    return project.load().__name__
+
+
+def _sim_config(project: Project) -> Iterator[Finding]:
+    from ..config.sim_file import SIM_CONFIG, load_sim_config
+
+    topic = SIM_CONFIG.as_posix()
+    try:
+        loaded = load_sim_config(project.root)
+    except (PyfrcError, OSError) as error:
+        yield problem_of(topic, error, "pyfrc config check")
+        return
+    doubtful = [*loaded.warnings, *loaded.doubts()]
+    if doubtful:
+        more = f", and {len(doubtful) - 1} more" if len(doubtful) > 1 else ""
+        yield hint(topic, f"{doubtful[0]}{more}", "See them all with: pyfrc config check")
+    elif loaded.text is None:
+        yield hint(topic, "there is none: everything is at its default", "pyfrc create-physics")
+    else:
+        yield ok(topic, "no mistakes")

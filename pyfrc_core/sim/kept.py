@@ -1,0 +1,67 @@
+"""The files that a simulation leaves behind: its recording, WPILib's data log, a picture."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from tempfile import TemporaryFile
+
+from ..errors import UsageError
+from .simulation import Simulation
+
+
+class KeptFiles:
+    """What is to be kept, seen before anything runs: nobody drives for an hour to learn that it cannot be written.
+
+    :raises UsageError: when one of these files cannot be written
+    """
+
+    def __init__(self, record: Path | None, wpilog: Path | None, picture: Path | None) -> None:
+        self._record, self._wpilog, self._picture = record, wpilog, picture
+        if picture is not None:
+            from .picture import see_that_pictures_can_be_drawn
+
+            see_that_pictures_can_be_drawn(picture)
+        for option, file in (("--record", record), ("--wpilog", wpilog), ("--picture", picture)):
+            if file is not None:
+                _see_that_it_can_be_written(option, file)
+        self._former_log = _stamp(wpilog)
+
+    def write(self, simulation: Simulation) -> list[Path]:
+        """Write what is to be kept of a robot that there has been.
+
+        :returns: every file that was written, the one that the robot's process writes included
+        """
+        snapshot = simulation.snapshot
+        if snapshot is None:
+            return []
+        written = [] if self._record is None else simulation.save_all(self._record)
+        if self._wpilog is not None and _stamp(self._wpilog) != self._former_log:
+            written.append(self._wpilog)
+        if self._picture is not None:
+            from .picture import draw_picture
+
+            draw_picture(snapshot.scene, self._picture, simulation.status.former_trail)
+            written.append(self._picture)
+        return written
+
+
+def _see_that_it_can_be_written(option: str, file: Path) -> None:
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if file.exists() and not os.access(file, os.W_OK):
+            raise PermissionError(0, "it is read-only")
+        with TemporaryFile(dir=file.parent, prefix=f".{file.name}-"):
+            pass
+    except OSError as error:
+        raise UsageError(
+            f"{option} {file} cannot be written: {error.strerror}", remedy="Choose a file in another place."
+        ) from None
+
+
+def _stamp(file: Path | None) -> tuple[int, int] | None:
+    """By which to see whether a file has been written since."""
+    if file is None or not file.is_file():
+        return None
+    status = file.stat()
+    return status.st_mtime_ns, status.st_size

@@ -1,0 +1,184 @@
+"""The command line as people expect it: help, exit codes, colours, what was meant, completion."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+import pytest
+
+from pyfrc_cli.completion import SHELLS
+from pyfrc_cli.main import COMMANDS, cli
+
+HEAVY = {"wpilib", "hal", "pytest", "pydantic", "pint", "paramiko", "hypothesis", "rich", "coverage", "numpy"}
+
+IN_A_TERMINAL = """
+import os, pty, sys
+status = pty.spawn([sys.executable, "-m", "pyfrc", "doctor", "--no-robot", "--main", "none.py"])
+sys.exit(os.waitstatus_to_exitcode(status))
+"""
+
+
+def leaves(group: click.Group, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], click.Command]]:
+    """Every command, and those within it."""
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        assert command is not None
+        if isinstance(command, click.Group):
+            yield from leaves(command, (*path, name))
+        else:
+            yield (*path, name), command
+
+
+EVERY = dict(leaves(cli))
+
+
+@pytest.mark.parametrize("path", EVERY, ids=" ".join)
+def test_each_command_tells_its_exit_codes_and_has_a_short_option_for_help(path: tuple[str, ...]) -> None:
+    command = EVERY[path]
+    help_text = command.get_help(click.Context(command, info_name=" ".join(path), terminal_width=200))
+    assert "Exit codes: " in help_text
+    assert command.context_settings["help_option_names"] == ["-h", "--help"]
+    for parameter in command.params:
+        assert not isinstance(parameter, click.Option) or parameter.help, parameter
+
+
+def test_the_same_option_is_of_the_same_kind_everywhere() -> None:
+    """But --json: a file where the command also prints a report for people, else a flag."""
+    kinds: dict[str, set[str]] = {}
+    for command in EVERY.values():
+        for parameter in command.params:
+            if isinstance(parameter, click.Option):
+                for name in parameter.opts:
+                    kinds.setdefault(name, set()).add("flag" if parameter.is_flag else type(parameter.type).__name__)
+    differing = {name for name, each in kinds.items() if ("flag" in each) and len(each) > 1}
+    assert differing <= {"--json", "--coverage"}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "meant"),
+    [
+        (["tset"], "'test'"),
+        (["deploi"], "'deploy'"),
+        (["test", "--isolatoin", "fork"], "'--isolation'"),
+        (["completion", "bsh"], "'bash'"),
+    ],
+)
+def test_a_mistyped_word_is_answered_with_the_right_one(wrong: list[str], meant: str, make_project) -> None:
+    result = make_project({}).run(*wrong)
+    assert result.code == 2
+    assert meant in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
+@pytest.mark.parametrize("no_color", [None, "1"])
+def test_colours_are_for_terminals_and_for_who_wants_them(no_color: str | None, make_project) -> None:
+    project = make_project({})
+    script = project.path / "in_a_terminal.py"
+    script.write_text(IN_A_TERMINAL, "utf-8")
+    environment = {name: value for name, value in os.environ.items() if name != "NO_COLOR"}
+    environment |= {"NO_COLOR": no_color} if no_color else {}
+    done = subprocess.run(
+        [sys.executable, str(script)], cwd=project.path, env=environment, capture_output=True, stdin=subprocess.DEVNULL
+    )
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert b"problem" in done.stdout
+    assert (b"\x1b[" in done.stdout) == (no_color is None)
+
+
+def test_no_colours_where_there_is_no_terminal(make_project) -> None:
+    result = make_project({}).run("doctor", "--no-robot", "--main", "none.py")
+    assert "problem" in result.stdout
+    assert "\x1b" not in result.output
+
+
+def ask(make_project, shell: str, words: list[str], incomplete: str) -> list[str]:
+    """What the script of this shell is answered, the way it asks."""
+    asked = [*words, incomplete] if incomplete else words
+    environment = {
+        "bash": {"COMP_WORDS": "\n".join([*words, incomplete]), "COMP_CWORD": str(len(words))},
+        "zsh": {"COMP_WORDS": " ".join([*words, incomplete]), "COMP_CWORD": str(len(words))},
+        "fish": {"COMP_WORDS": " ".join([*words, incomplete]), "COMP_CWORD": incomplete},
+        "powershell": {"COMP_WORDS": "\n".join(asked), "COMP_CWORD": incomplete},
+    }[shell]
+    result = make_project({}).run(env=environment | {"_PYFRC_COMPLETE": f"{shell}_complete"})
+    assert result.stderr == ""
+    return result.stdout.strip().splitlines()
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_commands_are_completed(shell: str, make_project) -> None:
+    told = "\n".join(ask(make_project, shell, ["pyfrc"], "dep"))
+    assert "deploy" in told
+    assert "deploy-info" in told
+    assert "test" not in told
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_options_and_their_choices_are_completed(shell: str, make_project, tmp_path: Path) -> None:
+    told = "\n".join(ask(make_project, shell, ["pyfrc", "test", "--isolation"], "sp"))
+    assert "spawn" in told
+    assert "fork" not in told
+
+
+def test_powershell_completes_files_itself(make_project) -> None:
+    assert ask(make_project, "powershell", ["pyfrc", "sim", "--record"], "x") == []
+
+
+def test_powershell_completes_options_and_shows_their_help(make_project) -> None:
+    (told,) = ask(make_project, "powershell", ["pyfrc", "config", "show"], "--j")
+    assert told.startswith("--json\tAs JSON")
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_each_shell_has_a_script(shell: str, make_project) -> None:
+    result = make_project({}).run("completion", shell)
+    assert result.code == 0, result.output
+    assert f"{shell}_complete" in result.stdout
+    assert "%(" not in result.stdout
+
+
+def test_bash_completes_by_the_script(make_project) -> None:
+    bash = shutil.which("bash")
+    if bash is None:
+        pytest.skip("there is no bash")
+    project = make_project({"pyfrc": f'#!/bin/sh\nexec {sys.executable!r} -m pyfrc "$@"\n'})
+    command = project.path / "pyfrc"
+    command.chmod(0o755)
+    program = f"""
+{project.run("completion", "bash").stdout}
+COMP_WORDS=(pyfrc create-) COMP_CWORD=1
+_pyfrc_completion {str(command)!r} create- pyfrc
+printf '%s\\n' "${{COMPREPLY[@]}}"
+"""
+    done = subprocess.run([bash, "-c", program], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    assert done.stdout.split() == ["create-tests", "create-physics"], done.stderr
+
+
+@pytest.mark.parametrize("words", ["pyfrc\nde", "pyfrc\ntest\n--cov"])
+def test_completing_loads_nothing_that_takes_time(words: str) -> None:
+    """No command either, while it is names of commands that are completed."""
+    asked = {"_PYFRC_COMPLETE": "bash_complete", "COMP_WORDS": words, "COMP_CWORD": str(words.count("\n"))}
+    code = f"""
+import atexit, json, os, sys
+os.environ |= {asked!r}
+sys.argv = ["pyfrc"]
+atexit.register(lambda: print(json.dumps(sorted(sys.modules))))
+from pyfrc_cli.main import run
+run()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    *told, modules = done.stdout.splitlines()
+    assert told, done.stderr
+    loaded = set(json.loads(modules))
+    assert not HEAVY & loaded
+    commands = {module for module, _ in COMMANDS.values()} - {"pyfrc_cli.completion"}
+    assert commands & loaded == ({"pyfrc_cli.test"} if "test" in words else set())

@@ -1,0 +1,76 @@
+"""The documentation as web pages: `docs/` builds without a warning, and lists every documented name."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import re
+import subprocess
+import sys
+import zlib
+from pathlib import Path
+
+import pytest
+from test_specification_names import FIXTURES, SPECIFICATION
+
+import pyfrc
+
+ROOT = Path(__file__).parents[1]
+COMMAND = ("sphinx", "-q", "-E", "-W", "--keep-going")
+
+NAMES = [f"{module}.{name}" for module, name, _ in SPECIFICATION]
+NAMES += [f"pyfrc.test_support.pytest_plugin.PyFrcPlugin.{name}" for name in FIXTURES]
+
+
+@pytest.fixture(scope="module")
+def build(tmp_path_factory: pytest.TempPathFactory) -> tuple[subprocess.CompletedProcess[str], Path]:
+    """What building them said, and where they are."""
+    site = tmp_path_factory.mktemp("site")
+    done = subprocess.run(
+        [sys.executable, "-m", *COMMAND, "docs", str(site)], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    return done, site
+
+
+def listed(site: Path) -> dict[str, str]:
+    """The Python names that the pages have entries for, and where; from what other projects' documentation links by."""
+    *_, packed = (site / "objects.inv").read_bytes().split(b"\n", 4)
+    entries = re.findall(r"^(\S+) py:\w+ -?\d+ (\S+) ", zlib.decompress(packed).decode("utf-8"), flags=re.MULTILINE)
+    return {name: place.partition("#")[0] for name, place in entries}
+
+
+def test_it_builds_without_a_warning(build: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    done, site = build
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert (site / "index.html").is_file()
+
+
+def test_the_api_pages_list_every_documented_name(build: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    entries = listed(build[1])
+    assert [name for name in NAMES if not entries.get(name, "").startswith("api/")] == []
+
+
+def test_they_list_everything_that_is_public(build: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    modules = [name for _, name, _ in pkgutil.walk_packages(pyfrc.__path__, "pyfrc.") if name != "pyfrc.__main__"]
+    names = [
+        f"{module}.{name}"
+        for module in (*modules, "pyfrc_core.hal", "pyfrc_core.sim")
+        for name in getattr(importlib.import_module(module), "__all__", ())
+    ]
+    assert len(names) > 60
+    entries = listed(build[1])
+    assert [name for name in names if name not in entries] == []
+
+
+def test_the_pages_need_no_network(build: tuple[subprocess.CompletedProcess[str], Path]) -> None:
+    pages = list(build[1].rglob("*.html"))
+    assert len(pages) > 20
+    for page in pages:
+        text = page.read_text("utf-8")
+        assert re.findall(r"<(?:script|img|iframe)[^>]+src=\"(?:https?:)?//[^\"]+", text) == []
+        assert re.findall(r"<link[^>]+href=\"(?:https?:)?//[^\"]+", text) == []
+
+
+def test_make_builds_them_the_same_way() -> None:
+    assert f"$(RUN) {' '.join(COMMAND)} docs build/docs" in (ROOT / "Makefile").read_text("utf-8")

@@ -1,0 +1,222 @@
+"""`pyfrc sim` without a window: how it ends, and what it leaves behind."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+from conftest import RobotProject
+from sim_robots import FILES, PATIENCE, wait
+
+from pyfrc_core.project import Project
+from pyfrc_core.runtime.forks import FORK_IS_SAFE
+from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.interruption import ending_like_ctrl_c
+
+SIGNALS = [
+    pytest.param(name, marks=pytest.mark.skipif(not hasattr(signal, name), reason="this system has no such signal"))
+    for name in ("SIGINT", "SIGTERM", "SIGHUP")
+]
+
+#: Says when it is enabled for the tenth time.
+ROBOT = """
+    import os
+
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        packets = 0
+
+        def robotPeriodic(self):
+            self.packets += 1
+            if self.packets == 10:
+                print("ten packets of", os.getppid(), flush=True)
+"""
+
+
+class Running:
+    """A `pyfrc sim` that goes on."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        self.read = ""
+
+    def until(self, text: str) -> str:
+        """Read what it prints until there is a line with this text; answers that line."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.read += line
+            if text in line:
+                return line
+        raise AssertionError(f"{text!r} was not printed:\n{self.read}")
+
+    def end(self, name: str) -> int:
+        """Send a signal; answers the exit code."""
+        self.process.send_signal(getattr(signal, name))
+        self.read += self.process.communicate(timeout=PATIENCE)[0]
+        return self.process.returncode
+
+
+@contextmanager
+def running(project: RobotProject, *arguments: str) -> Iterator[Running]:
+    command = [sys.executable, "-m", "pyfrc", "sim", "--ui", "none", *arguments]
+    with subprocess.Popen(
+        command,
+        cwd=project.path,
+        env=os.environ | {"TMPDIR": str(project.temporary)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    ) as process:
+        try:
+            yield Running(process)
+        finally:
+            process.kill()
+
+
+@pytest.mark.parametrize("call", ["exit()", "sys.exit()", "raise SystemExit(3)"])
+def test_a_robot_that_calls_exit(call: str, make_project) -> None:
+    head = "import sys\nimport wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n"
+    made = make_project({"robot.py": f"{head}    def teleopPeriodic(self):\n        {call}\n"})
+    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "1")
+    assert result.code == 1, result.output
+    assert "s: robot.py:6: " in result.stdout
+    assert "exit(" in result.stdout
+    assert "None" not in result.stdout
+
+
+@pytest.mark.parametrize("classes", [0, 2])
+def test_not_one_robot_class(classes: int, make_project) -> None:
+    robot = "".join(f"class MyRobot{number}(wpilib.TimedRobot): pass\n" for number in range(classes))
+    made = make_project({"robot.py": f"import wpilib\n{robot}"})
+    result = made.run("sim", "--ui", "none", "--seconds", "1", "--record", "run.jsonl", "--wpilog", "run.wpilog")
+    assert (result.code, "robot class" in result.stdout) == (2, True), result.output
+    assert "wrote" not in result.stdout
+    assert not (made.path / "run.jsonl").exists()
+
+
+@pytest.mark.parametrize("option", ["--record", "--wpilog", "--picture"])
+def test_what_cannot_be_written_is_said_before_anything_runs(option: str, make_project) -> None:
+    if option == "--picture":
+        pytest.importorskip("PIL")
+    made = make_project({"robot.py": "raise Exception('this has run')", "taken": "no directory"})
+    result = made.run("sim", "--ui", "none", "--seconds", "1", option, "taken/run.png")
+    assert result.code == 2, result.output
+    assert result.first_error.startswith(f"{option} {Path('taken/run.png')} cannot be written: ")
+    assert "this has run" not in result.output
+    assert "wrote" not in result.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--seconds", "2", "--from", "5"], "--seconds 2 is before --from 5"),
+        (["--mode", "auto", "--from", "20"], "--from 20 is after the end, at 15 s"),
+    ],
+)
+def test_ends_before_the_beginning(arguments: list[str], told: str, make_project) -> None:
+    result = make_project(FILES).run("sim", "--ui", "none", *arguments)
+    assert (result.code, result.first_error) == (2, told), result.output
+
+
+@pytest.mark.parametrize("name", SIGNALS)
+def test_what_was_driven_is_written_however_it_ends(name: str, make_project) -> None:
+    made = make_project({"robot.py": ROBOT})
+    with running(made, "--nt-port", "0", "--record", "run.jsonl", "--wpilog", "run.wpilog") as sim:
+        sim.until("ten packets")
+        assert sim.end(name) == 0, sim.read
+    assert "wrote run.jsonl" in sim.read
+    assert "wrote run.wpilog" in sim.read
+    assert (made.path / "run.jsonl").is_file()
+    assert list(made.temporary.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", SIGNALS)
+def test_interrupted_while_the_robot_is_imported(name: str, make_project) -> None:
+    made = make_project({"robot.py": "import time\n\nprint('importing', flush=True)\ntime.sleep(1e6)\n"})
+    with running(made, "--nt-port", "0") as sim:
+        sim.until("importing")
+        assert sim.end(name) == 2, sim.read
+    assert "interrupted while robot.py was still being imported" in sim.read
+    assert list(made.temporary.iterdir()) == []
+
+
+@pytest.mark.skipif(
+    not FORK_IS_SAFE or not hasattr(os, "pidfd_open"), reason="only where robots are forked, and others' ends are seen"
+)
+def test_nothing_is_left_by_one_that_is_killed(make_project) -> None:
+    made = make_project({"robot.py": ROBOT})
+    with running(made, "--nt-port", "0") as sim:
+        host = os.pidfd_open(int(sim.until("ten packets").split()[-1]))
+        try:
+            assert list(made.temporary.glob("pyfrc-sim-*"))
+            sim.end("SIGKILL")
+            assert select.select([host], [], [], PATIENCE)[0], "the robot's processes go on"
+        finally:
+            os.close(host)
+    assert list(made.temporary.iterdir()) == []
+
+
+def test_the_signals_are_the_programs_own_again() -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(KeyboardInterrupt), ending_like_ctrl_c():
+        signal.raise_signal(signal.SIGTERM)
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def save(file: Path, text: str) -> None:
+    file.write_text(dedent(text), encoding="utf-8")
+
+
+def test_a_mistake_that_is_saved_is_waited_out(make_project) -> None:
+    made = make_project({"robot.py": ROBOT})
+    robot = made.path / "robot.py"
+    good = robot.read_text(encoding="utf-8")
+    with running(made, "--nt-port", "0", "--watch") as sim:
+        sim.until("ten packets")
+        save(robot, good + "\n1 / 0\n")
+        saved = sim.until("was saved")
+        assert saved.startswith("robot.py was saved: going on with the new code at ")
+        seconds = saved.split()[-2]
+        failed = sim.until("failed at")
+        assert f"{made.place('robot.py', '1 / 0')}: ZeroDivisionError" in failed
+        # The robot is to go on from where it was.
+        assert float(failed.split()[2]) >= float(seconds) > 0
+        sim.until("waiting for the correction")
+        save(robot, good.replace("ten packets", "corrected") + "\n# corrected\n")
+        sim.until("was saved")
+        sim.until("corrected of")
+        assert sim.end("SIGINT") == 0, sim.read
+    assert "failed" not in sim.read.partition("corrected of")[2]
+
+
+def test_new_code_goes_as_far_as_the_old_one_was_to(make_project) -> None:
+    """With an end, a simulation that is watched ends there, also after its code has changed."""
+    project = Project(make_project({"robot.py": ROBOT}).path / "robot.py")
+    with Simulation(project, SimOptions(speed=0.01, run_until=0.5)) as simulation:
+        wait(simulation, lambda: simulation.status.state == "running")
+        simulation.reload()
+        simulation.set_speed(0)
+        wait(simulation, lambda: simulation.status.state == "paused")
+        assert simulation.snapshot.time == 0.5
+
+
+def test_a_port_that_is_taken_is_said(make_project) -> None:
+    with socket.socket() as other:
+        other.bind(("", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        result = make_project(FILES).run("sim", "--ui", "none", "--seconds", "0.1", "--nt-port", str(port))
+    assert result.code == 0, result.output
+    warning = f"warning: No NetworkTables: port {port} is taken: is another simulation running?"
+    assert warning in result.stdout.splitlines(), result.output
