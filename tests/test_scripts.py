@@ -367,6 +367,21 @@ def test_a_robot_that_exits_at_its_end_has_failed(make_project) -> None:
     assert (result.code, "exit() was called" in result.stdout) == (1, True), result.output
 
 
+def test_a_robot_with_a_loop_of_its_own_may_not_exit_either(make_project) -> None:
+    robot = """
+        import wpilib
+
+        class MyRobot(wpilib.RobotBase):
+            def startCompetition(self):
+                wpilib.wait(0.1)
+                exit()
+    """
+    project = make_project({"robot.py": robot, "script.jsonl": text()})
+    result = project.run("replay", "script.jsonl")
+    assert result.code == 1
+    assert f"{project.place('robot.py', 'exit()')}: exit() was called" in result.stdout
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
 def test_ctrl_c_ends_a_replay(make_project) -> None:
     robot = EXITING.format("print('here', flush=True)\n            while True: pass")
