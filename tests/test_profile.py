@@ -77,6 +77,11 @@ def profile(project: RobotProject, *command: str, options: tuple[str, ...] = ())
     return result, json.loads((project.path / "profile.json").read_text("utf-8"))
 
 
+def sampled(method: str) -> str:
+    """What a running function is called in the samples: its class is known since Python 3.11."""
+    return method if sys.version_info >= (3, 11) else method.rpartition(".")[2]
+
+
 def by_name(report: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return {function["name"]: function for function in report["functions"]}
 
@@ -114,7 +119,7 @@ def test_a_slow_function_is_named_with_its_mode_and_time(make_project: MakeProje
     assert re.search(
         rf"^  MyRobot\.teleopPeriodic +{place} +teleop +{len(named)} .* 0\.\d\d", result.stdout, re.MULTILINE
     )
-    assert {line["function"] for line in report["lines"][:2]} <= {"MyRobot.work", "real_time"}
+    assert {line["function"] for line in report["lines"][:2]} <= {sampled("MyRobot.work"), "real_time"}
     if "test_autonomous" in tests:  # merged from another process
         assert by_name(report)["MyRobot.autonomousPeriodic"]["count"] >= 8
     assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
@@ -342,8 +347,8 @@ def test_the_flame_view_shows_the_robots_functions(make_project: MakeProject) ->
     project = make_project({"robot.py": SLOW_ROBOT.replace("PLANTED", "0.03"), "tests/test_a.py": TELEOP})
     profile(project, "test", options=("--html", "pages/profile.html"))
     page = (project.path / "pages/profile.html").read_text("utf-8")
-    assert "MyRobot.teleopPeriodic" in page
-    assert "MyRobot.work" in page
+    assert sampled("MyRobot.teleopPeriodic") in page
+    assert sampled("MyRobot.work") in page
     assert "timed_method" not in page
 
 
