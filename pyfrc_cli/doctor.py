@@ -42,6 +42,7 @@ def command(
     # With `python -m pyfrc`, Python looks for modules here first: those of the project are not to be in our way.
     sys.path[:] = [place for place in sys.path if place and Path(place) != Path.cwd()]
     from pyfrc_core.doctor import Examination, examine
+    from pyfrc_core.wording import counted
 
     findings = []
     for finding in examine(Examination(directory, main, robot_class, not no_robot, robot, team)):
@@ -55,5 +56,5 @@ def command(
     if as_json:
         click.echo(json.dumps({"problems": problems, "findings": [asdict(each) for each in findings]}, indent=2))
     else:
-        click.echo(f"\n{problems} problem{'s' * (problems != 1)}" if problems else "\nno problems")
+        click.echo(f"\n{counted(problems, 'problem')}" if problems else "\nno problems")
     sys.exit(1 if problems else 0)

@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, field
 
 from ..errors import UsageError
 from ..project import Project
+from ..wording import counted
 from .connection import Connection, load_in_background
 from .console import follow_console
 from .deploy_json import deploy_json
@@ -61,7 +62,7 @@ def deploy(project: Project, options: DeployOptions, talk: Conversation) -> str:
     importing = None if options.dry_run else _check_program(project, options, talk)
     with progress.phase("files") as phase:
         manifest = survey(project.root, project.settings.deploy.exclude, options.large)
-        phase.detail = f"{_count(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
+        phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
     found = find(target, options.choice, progress)
     with connected(project, found, options.choice, progress) as connection, agent_on(connection, progress) as robot:
         refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
@@ -129,7 +130,7 @@ def _upload(robot: Robot, project: Project, manifest: Manifest, options: DeployO
         if deployed.unchanged:
             phase.detail = "nothing has changed"
         else:
-            phase.detail = f"{_count(deployed.files_sent, 'file')}, {_size(deployed.bytes_sent)}"
+            phase.detail = f"{counted(deployed.files_sent, 'file')}, {_size(deployed.bytes_sent)}"
         if deployed.release is not None:
             phase.detail += f"; release {deployed.release}"
     if deployed.taken is not None:
@@ -181,10 +182,6 @@ def _plan_as_text(plan: Plan) -> str:
     ]
     counts = f"{len(plan.added)} to add, {len(plan.changed)} to change, {len(plan.removed)} to remove"
     return "\n".join([*lines, f"{counts}; {_size(plan.bytes_to_send)} to send. Nothing was done."])
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}{'s' * (number != 1)}"
 
 
 def _size(count: int) -> str:

@@ -15,13 +15,12 @@ from ..errors import UsageError
 from ..project import Project
 from ..text_files import write_whole
 from .never_run import never_run, summary
-from .processes import announced, is_announced, measure_here, save_here
+from .processes import announced, is_announced
 
 if TYPE_CHECKING:
     from coverage import Coverage
 
-#: `measure_here` and `save_here`, for the processes that tests are isolated in.
-__all__ = ["CoverageOptions", "Measured", "begin", "measure_here", "measuring", "save_here"]
+__all__ = ["CoverageOptions", "Measured", "begin", "measuring"]
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,10 @@ from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
+from ..wording import counted, table
 from .figures import Figures, Line, Measurand, Overrun, distribution
 from .stopwatch import WHOLE_LOOP
 from .stopwatch_cost import Cost
-from .wording import counted, table
 
 #: So many of the robot times at which a function made the loop overrun are printed.
 _TIMES = 4

@@ -15,7 +15,7 @@ from typing import IO, Any
 
 import pytest
 
-from ...measure.coverage import save_here
+from ...measure.processes import save_here
 from ...runtime import forks
 from ...runtime.own_process import LastWords, end_processes_of_the_robot, exit_now, explain_end, write_all
 from ..pytest_plugin import PyFrcPlugin

@@ -13,7 +13,7 @@ import sys
 import threading
 from collections.abc import Callable
 
-from ...measure.coverage import save_here
+from ...measure.processes import save_here
 from ...runtime.forks import forking_quietly, left_behind
 
 

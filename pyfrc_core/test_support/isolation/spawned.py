@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from ...measure.coverage import measure_here, save_here
+from ...measure.processes import measure_here, save_here
 
 
 class OnlyOneTest:
