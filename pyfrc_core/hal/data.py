@@ -160,8 +160,8 @@ class HalData(LiveDict):
 
     def sync(self) -> None:
         """Find SimDevices that the robot has made, and hand them what was written to `robot` for them."""
-        robot = self["robot"]
-        if robot.waits_for_devices:  # looking for them costs more than a robot's whole loop
+        robot = self._rooms.get("robot")
+        if robot is not None and robot.waits_for_devices:  # looking for them costs more than a robot's whole loop
             robot.sync()
 
     def anything_made(self) -> bool:

@@ -245,9 +245,10 @@ class PhysicsInterface:
             for key in self._device_gyros:
                 angles[key] = angles.get(key, 0.0) + math.degrees(turn)
         pose = self._current()
-        if not (forward or right or turn):  # at rest, dashboards need not be told
+        moved = pose.moved(forward, right, turn)
+        if moved == pose:  # at rest, or all but: dashboards need not be told
             return self._shown
-        return self._place(pose.moved(forward, right, turn))
+        return self._place(moved)
 
     def _turn_analog_gyros(self, turn: float) -> None:
         if turn and self._hal_data is not None:

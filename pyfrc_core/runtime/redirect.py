@@ -23,8 +23,9 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
-from . import cooperative
+from . import cooperative, robot_stack
 from .clock import to_us
+from .loop_watchdog import Watchdog
 from .notifier import Notifier
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Redirection:
 
     def __init__(self) -> None:
         self.run: RobotRun | None = None
-        self._root = Path()
+        self._files: RobotFiles  # of the project that it was installed for
         self._originals: list[tuple[Any, str, Any]] = []
 
     @property
@@ -51,7 +52,8 @@ class Redirection:
 
     def install(self, files: RobotFiles) -> None:
         """Replace the names, for the robot project with these files. Doing it again only changes the project."""
-        self._root = Path(files.root)
+        self._files = files
+        robot_stack.show_lines_of(files)
         cooperative.scope.is_robot_code = files.is_robot_code
         if self.installed:
             return
@@ -66,6 +68,7 @@ class Redirection:
             owner, name, original = self._originals.pop()
             setattr(owner, name, original)
         cooperative.scope.is_robot_code = lambda filename: False
+        robot_stack.show_all_lines()
 
     def _leave(self) -> None:
         """A process that robot code has forked lives in real time: the clock, and the HAL's threads, are not there."""
@@ -95,6 +98,7 @@ class Redirection:
             *self._stepping_in_tests(),
             *self._timed_robot(),
             *self._directories(),
+            *robot_stack.reports(lambda: self._files),
         ]
 
     def _time_functions(self) -> list[tuple[Any, str, Any]]:
@@ -180,6 +184,7 @@ class Redirection:
         return [
             (wpilib, "wait", wait),
             (wpilib, "Notifier", Notifier),
+            (wpilib, "Watchdog", Watchdog),
             (wpilib.DriverStation, "waitForDsConnection", staticmethod(wait_for_connection)),
             notifier_call("initializeNotifier", "initialize"),
             notifier_call("updateNotifierAlarm", "update"),
@@ -245,6 +250,19 @@ class Redirection:
         TimedRobot = wpilib.TimedRobot
         real_add, real_start = TimedRobot.addPeriodic, TimedRobot.startCompetition
         real_loop_start = TimedRobot.getLoopStartTime
+        real_turn = wpilib.IterativeRobotBase._loopFunc
+
+        # Of this name, since profiles tell the loop from other callbacks by it.
+        def _loopFunc(robot: wpilib.IterativeRobotBase) -> None:
+            __tracebackhide__ = True
+            run = self.run
+            if run is None:
+                return real_turn(robot)
+            began_us = run.clock.now_us
+            real_turn(robot)
+            if run.clock.now_us != began_us:
+                run.overruns.look(robot, began_us)
+            return None
 
         def add_periodic(
             robot: wpilib.TimedRobot, callback: Callable[[], None], period: float, offset: float = 0.0
@@ -268,13 +286,14 @@ class Redirection:
             (TimedRobot, "addPeriodic", add_periodic),
             (TimedRobot, "startCompetition", start_competition),
             (TimedRobot, "getLoopStartTime", loop_start_time),
+            (wpilib.IterativeRobotBase, "_loopFunc", _loopFunc),
         ]
 
     def _directories(self) -> list[tuple[Any, str, Any]]:
         """WPILib takes the directory of whichever program was started for the robot's."""
         return [
-            (wpilib, "getOperatingDirectory", lambda: str(self._root)),
-            (wpilib, "getDeployDirectory", lambda: str(self._root / "deploy")),
+            (wpilib, "getOperatingDirectory", lambda: str(Path(self._files.root))),
+            (wpilib, "getDeployDirectory", lambda: str(Path(self._files.root, "deploy"))),
         ]
 
 

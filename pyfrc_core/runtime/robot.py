@@ -22,6 +22,7 @@ from ..hal import HalData, devices_exist, modes, timing
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .endings import TestEnded, TestFroze
+from .loop_watchdog import LoopOverruns, end_wpilibs_thread
 from .motor_safety import MotorSafetyCheck
 from .notifier import Alarms
 from .redirect import redirection
@@ -43,6 +44,7 @@ class RobotRun:
         self.threads = RobotThreads(self.clock)
         self.alarms = Alarms(self.threads)
         self.timed_loop = TimedLoop(self.clock, self.clock.now_us, self._on_initialized)
+        self.overruns = LoopOverruns(self.clock)
         self.robot: Any = None
         #: Called when the robot has been constructed, and when its `robotInit` is over (see `initializes`).
         self.when_constructed: list[Callable[[], object]] = []
@@ -73,6 +75,7 @@ class RobotRun:
         timing.deliver_packet()
         wpilib.DriverStation.refreshData()
         self.clock.before_packet.append(MotorSafetyCheck().on_packet)
+        end_wpilibs_thread()
         cooperative.begin_waiting_threads()
 
     def construct(self, robot_class: type[Any]) -> Any:

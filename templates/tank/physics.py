@@ -21,11 +21,12 @@ class EncoderShaft:
 
     def __init__(self, encoder: wpilib.Encoder) -> None:
         self.encoder = EncoderSim(encoder)
+        self.counts_per_foot = METRES_PER_FOOT / encoder.getDistancePerPulse()
         self.counts = 0
 
     def turn_to(self, feet: float) -> None:
         """Turn it as far as a wheel turns that has rolled so far."""
-        counts = round(feet * METRES_PER_FOOT / self.encoder.getDistancePerPulse())
+        counts = round(feet * self.counts_per_foot)
         if counts != self.counts:
             self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
             self.counts = counts

@@ -73,9 +73,10 @@ class EncoderShaft:
     def turn_to(self, position: float, velocity: float) -> None:
         """The velocity is per second."""
         counts = round(position * self.units / self.encoder.getDistancePerPulse())
-        self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
+        if counts != self.counts:
+            self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
+            self.counts = counts
         self.encoder.setRate(velocity * self.units)
-        self.counts = counts
 '''
 
 _ENGINE = '''

@@ -9,7 +9,7 @@ from ...errors import PyfrcError
 from ..clock import INPUT
 from ..robot import RobotRun
 from .script import InputScript, ScriptError, Step
-from .targets import Targets
+from .targets import MATCH_TIME, Targets
 
 
 class Player:
@@ -48,7 +48,8 @@ class Player:
         __tracebackhide__ = True
         run, script = self._run, self._script
         run.clock.limit_us = max(run.clock.limit_us, script.end_us)
-        run.clock.before_packet.append(self._on_packet)
+        if any(MATCH_TIME in step.writes for step in script.steps):
+            run.clock.before_packet.append(self._on_packet)
         if script.start_us > run.clock.now_us:
             run.run_until(script.start_us)
         self._write_until(script.start_us)

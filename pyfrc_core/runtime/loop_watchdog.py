@@ -1,0 +1,137 @@
+"""WPILib's watchdogs in robot time: the one that watches the robot's loop, and those that code makes for itself.
+
+WPILib has one C++ thread for all of them, which each turn of a loop wakes twice; at our speed that costs a quarter of
+the time, and what it has to say comes whenever the machine lets it. So it is ended, and what it did is done here.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from functools import cache
+
+import hal
+import wpilib
+
+from . import cooperative
+from .clock import WAKE_UP, Clock, to_us
+
+#: What is late again and again is told once in so much robot time, as WPILib does.
+_BETWEEN_REPORTS_US = 1_000_000
+
+_ERROR_CODE = 1
+_initialize, _clean, _stop = hal.initializeNotifier, hal.cleanNotifier, hal.stopNotifier
+_WPILibs = wpilib.Watchdog
+
+
+class Watchdog(_WPILibs):
+    """Calls a function when it has not been fed in time: `wpilib.Watchdog`, expiring in robot time.
+
+    :param timeout: seconds within which it has to be fed
+    :param callback: called when it was not, from wherever the time passes just then
+    """
+
+    def __init__(self, timeout: float, callback: Callable[[], None]) -> None:
+        end_wpilibs_thread()
+        super().__init__(timeout, callback)
+        self._callback = callback
+        self._silent = self._expired = False
+        self._told_us = -_BETWEEN_REPORTS_US
+        self._due_us: int | None = None
+        self._alarm_us: int | None = None  # the clock's, which may be earlier: feeding does not move it
+
+    def reset(self) -> None:
+        """Feed it: its time begins anew. Enables it, too."""
+        super().reset()
+        self._begin()
+
+    def enable(self) -> None:
+        """Have its time begin."""
+        super().enable()
+        self._begin()
+
+    def disable(self) -> None:
+        """No longer wait to be fed."""
+        super().disable()
+        self._due_us = None
+
+    def setTimeout(self, timeout: float) -> None:
+        """Give it another time-out, in seconds, which begins now."""
+        super().setTimeout(timeout)
+        self._begin()
+
+    def isExpired(self) -> bool:
+        """Whether it was not fed in time, since it was last enabled or fed."""
+        return self._expired
+
+    def suppressTimeoutMessage(self, suppress: bool) -> None:
+        """Whether to print nothing when it expires: the callback may have more to say."""
+        super().suppressTimeoutMessage(suppress)
+        self._silent = suppress
+
+    def _begin(self) -> None:
+        threads = cooperative.scope.threads
+        self._expired = False
+        if threads is not None:
+            self._due_us = threads.clock.now_us + to_us(self.getTimeout())
+            self._set_alarm(threads.clock, self._due_us)
+
+    def _set_alarm(self, clock: Clock, due_us: int) -> None:
+        if self._alarm_us is not None and clock.now_us <= self._alarm_us <= due_us:
+            return
+        self._alarm_us = due_us
+        this = weakref.ref(self)  # as in WPILib, one that was dropped is silent
+
+        def alarm() -> None:
+            __tracebackhide__ = True
+            watchdog = this()
+            if watchdog is not None and watchdog._alarm_us == due_us:
+                watchdog._on_alarm(clock)
+
+        clock.at(due_us, WAKE_UP, alarm)
+
+    def _on_alarm(self, clock: Clock) -> None:
+        __tracebackhide__ = True
+        self._alarm_us = None
+        if self._due_us is None:
+            return
+        if clock.now_us < self._due_us:
+            self._set_alarm(clock, self._due_us)
+            return
+        self._due_us, self._expired = None, True
+        if not self._silent and clock.now_us - self._told_us >= _BETWEEN_REPORTS_US:
+            self._told_us = clock.now_us
+            message = f"Watchdog not fed within {self.getTimeout():.6f}s, at {clock.now:.3f} s"
+            hal.sendError(False, _ERROR_CODE, False, message, "Watchdog", "", True)
+        self._callback()
+
+
+class LoopOverruns:
+    """Tells of turns of one robot's loop that took longer than its period, in robot time."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._told_us = -_BETWEEN_REPORTS_US
+
+    def look(self, robot: wpilib.IterativeRobotBase, began_us: int) -> None:
+        """Called when time has passed in a turn of the loop: say so if it was time that the robot did not have."""
+        took_us = self._clock.now_us - began_us
+        if took_us < to_us(robot.getPeriod()) or began_us - self._told_us < _BETWEEN_REPORTS_US:
+            return
+        self._told_us = began_us
+        # The HAL keeps to itself what it has been told in just the same words: so it says when.
+        message = (
+            f"Loop time of {robot.getPeriod():.6f}s overrun: "
+            f"the turn that began at {began_us / 1e6:.3f} s took {took_us / 1e6:.3f} s"
+        )
+        hal.sendError(True, _ERROR_CODE, False, message, type(robot).__name__, "", True)
+        robot.printWatchdogEpochs()
+
+
+@cache
+def end_wpilibs_thread() -> None:
+    """End the thread, of which a process has one: of its HAL notifier, which gets the first handle that is free."""
+    handle, _ = _initialize()
+    _clean(handle)
+    _WPILibs(1.0, lambda: None)  # the first one starts the thread
+    _stop(handle)

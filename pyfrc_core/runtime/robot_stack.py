@@ -1,0 +1,59 @@
+"""The stack that WPILib prints with an error or a warning: of the robot's own lines, not of what drives the robot.
+
+On a robot the user's code is nearly all that there is on it. Here a dozen calls of the runtime come before.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+import wpilib
+import wpiutil._wpiutil
+
+if TYPE_CHECKING:
+    from ..robot_files import RobotFiles
+
+_hook_of_wpilib: Callable[[Any], None] | None = getattr(wpiutil._wpiutil, "_setup_stack_trace_hook", None)
+
+
+def show_lines_of(files: RobotFiles) -> None:
+    """From now on, what is reported from C++ comes with the lines of this project that led there."""
+    if _hook_of_wpilib is not None:
+        _hook_of_wpilib(lambda offset: _lines(files, sys._getframe(1)))
+
+
+def show_all_lines() -> None:
+    """From now on, it comes with all lines, as without this module."""
+    from wpiutil._stacktrace import _stack_trace_hook
+
+    if _hook_of_wpilib is not None:
+        _hook_of_wpilib(_stack_trace_hook)
+
+
+def reports(files: Callable[[], RobotFiles]) -> list[tuple[Any, str, Any]]:
+    """`wpilib.reportError` and its kin, which have a stack of their own."""
+
+    def reporting(name: str) -> tuple[Any, str, Any]:
+        real = getattr(wpilib, name)
+
+        def report(error: str, printTrace: bool = False) -> None:
+            # Of an exception that is being handled they print the traceback, which has nothing of ours.
+            if printTrace and sys.exc_info()[1] is None:
+                error = f"{error}\n{_lines(files(), sys._getframe(1))}"
+                printTrace = False
+            real(error, printTrace)
+
+        report.__name__ = name
+        return wpilib, name, report
+
+    return [reporting("reportError"), reporting("reportWarning")]
+
+
+def _lines(files: RobotFiles, frame: FrameType | None) -> str:
+    import traceback
+
+    calls = [call for call in traceback.walk_stack(frame) if files.is_project_file(call[0].f_code.co_filename)]
+    return "".join(traceback.StackSummary.extract(reversed(calls)).format())
