@@ -192,6 +192,9 @@ class LiveList(Sequence[Any]):
     def __len__(self) -> int:
         return len(self._items)
 
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self._items)
+
     @overload
     def __getitem__(self, index: int) -> Any: ...
     @overload

@@ -58,7 +58,7 @@ class HalData(LiveDict):
         return {
             "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL),
             "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME),
-            "event": driver_station.event,
+            "event": driver_station.Event,
             "joysticks": driver_station.joysticks,
             "robot": lambda: RobotDict(self["CAN"]),
             "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER),
@@ -168,13 +168,17 @@ class HalData(LiveDict):
         """Whether any device exists in the HAL."""
         return self._recorder().anything_made()
 
-    def leaves(self) -> Iterator[tuple[str, Any]]:
+    def leaves(self) -> list[tuple[str, Any]]:
         """The robot and its inputs at this moment, as pairs of path and plain value, in a fixed order.
 
         Mode, match, joysticks that have any control, devices that the robot has made, SimDevices, `robot` and
         `custom`. Nothing in it depends on the wall clock or the machine.
         """
-        return self._recorder().leaves()
+        return list(zip(*self.paths_and_values(), strict=True))
+
+    def paths_and_values(self) -> tuple[list[str], list[Any]]:
+        """The same in two lists: the paths, the same list while they are the same, and the values."""
+        return self._recorder().look()
 
     def _recorder(self) -> Recording:
         if self._recording is None:

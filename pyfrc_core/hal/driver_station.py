@@ -60,32 +60,41 @@ def program_state() -> str | None:
     return "test" if DriverStation.isTest() else "teleop"
 
 
-def event() -> LiveDict:
+class Event(LiveDict):
     """The match as the field tells it."""
-    info = hal.MatchInfo()
 
-    def get(read: Callable[[], Any]) -> Callable[[], Any]:
-        def current() -> Any:
-            hs.getMatchInfo(info)
-            return read()
+    def __init__(self) -> None:
+        super().__init__("event", self._all)
+        self._info = hal.MatchInfo()
 
-        return current
+    def fingerprint(self) -> object:
+        """Differs when something has changed."""
+        info = self._info
+        hs.getMatchInfo(info)
+        texts = info.eventName.tobytes(), info.gameSpecificMessage.tobytes(), info.gameSpecificMessageSize
+        return texts, info.matchType, info.matchNumber, info.replayNumber
 
-    def message() -> str:
-        return info.gameSpecificMessage.tobytes()[: info.gameSpecificMessageSize].decode(errors="replace")
+    def _all(self) -> dict[str, Slot]:
+        info, station, named = self._info, DriverStationSim, MATCH_TYPE.load or int
 
-    station, named = DriverStationSim, MATCH_TYPE.load or int
-    return LiveDict(
-        "event",
-        lambda: {
+        def get(read: Callable[[], Any]) -> Callable[[], Any]:
+            def current() -> Any:
+                hs.getMatchInfo(info)
+                return read()
+
+            return current
+
+        def message() -> str:
+            return info.gameSpecificMessage.tobytes()[: info.gameSpecificMessageSize].decode(errors="replace")
+
+        return {
             "name": Slot(get(lambda: _c_text(info.eventName)), station.setEventName, text(63)),
             "match_type": Slot(get(lambda: named(info.matchType)), station.setMatchType, MATCH_TYPE),
             "match_number": Slot(get(lambda: info.matchNumber), station.setMatchNumber, whole(0, 65535)),
             "replay_number": Slot(get(lambda: info.replayNumber), station.setReplayNumber, whole(0, 255)),
             "game_specific_message": Slot(get(message), station.setGameSpecificMessage, text(64)),
             "has_source": kept(False),
-        },
-    )
+        }
 
 
 def _c_text(characters: memoryview) -> str:
@@ -109,8 +118,6 @@ class Joystick(LiveDict):
         super().__init__(join("joysticks", port), self._all)
         self._port = port
         self._axes, self._buttons, self._povs = hal.JoystickAxes(), hal.JoystickButtons(), hal.JoystickPOVs()
-        self._raw: Any = None
-        self._controls: tuple[list[float], list[bool], list[int]] = [], [], []
         # Both are views of the buffers above, which each read fills anew.
         self._axis_values, self._pov_values = self._axes.axes, self._povs.povs
         path = self._path
@@ -197,20 +204,18 @@ class Joystick(LiveDict):
         hs.getJoystickAxes(self._port, self._axes)
         return self._axis_values.tolist()  # type: ignore[return-value]
 
-    def controls(self) -> tuple[list[float], list[bool], list[int], tuple[int, int, int]]:
-        """Axes, buttons and POVs as far as the robot sees them, and what it sends back: outputs and rumbles.
-
-        The same objects again while nothing has changed: recorders ask at each packet, and sticks mostly rest.
-        """
+    def fingerprint(self) -> object:
+        """Differs when one of the controls has changed, or what is sent back."""
         port = self._port
         hs.getJoystickAxes(port, self._axes)
         hs.getJoystickPOVs(port, self._povs)
-        raw = (self._axis_values.tobytes(), self._pov_values.tobytes(), self._bits(), self.counts())
-        if raw != self._raw:
-            axes, buttons, povs = self.counts()
-            self._raw = raw
-            self._controls = self._load_axes()[:axes], self._load_buttons()[: buttons + 1], self._load_povs()[:povs]
-        return *self._controls, hs.getJoystickOutputs(port)
+        values = self._axis_values.tobytes(), self._pov_values.tobytes(), self._bits()
+        return values, self.counts(), hs.getJoystickOutputs(port)
+
+    def controls(self) -> tuple[list[float], list[bool], list[int]]:
+        """Axes, buttons and POVs as far as the robot sees them."""
+        axes, buttons, povs = self.counts()
+        return self._load_axes()[:axes], self._load_buttons()[: buttons + 1], self._load_povs()[:povs]
 
     def _set_axis(self, index: int, value: float) -> None:
         hs.setJoystickAxis(self._port, index, value)

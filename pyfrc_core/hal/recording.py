@@ -1,12 +1,13 @@
 """What a robot's run is recorded from: each value that may change, as ``(path, value)`` pairs.
 
-The list of what to read is made anew only when something was made or unmade, and a joystick's values only when its
-bytes have changed: a trace is taken at each packet.
+The list of what to read is made anew only when something was made or unmade, and the values of joysticks and of the
+event only when their bytes have changed: a trace is taken at each packet.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import hal.simulation
@@ -23,42 +24,60 @@ Leaf = tuple[str, Callable[[], Any]]
 
 
 class Recording:
-    """The compiled list of `HalData.leaves`."""
+    """The compiled list of what `HalData.leaves` tells."""
 
     def __init__(self, tree: HalData) -> None:
         self._tree = tree
         self._always = list(self._fixed())
+        event = list(_of(tree["event"]))
+        self._at_rest = [
+            _AtRest(tree["event"].fingerprint, lambda: [(path, get()) for path, get in event]),
+            *(_AtRest(stick.fingerprint, partial(_stick, stick)) for stick in tree["joysticks"]),
+        ]
         self._kinds = [(kind, [slot.get for slot in kind.initialized()]) for kind in KINDS]
         slots = [slot for kind in KINDS for slot in kind.initialized()]
         slots += [*tree.modules.initialized(), tree["accelerometer"]._slot("active")]
         self._made = _Made(slots)
         self._state: Any = None
         self._leaves: list[Leaf] = []
+        self._reads: list[Callable[[], Any]] = []
+        self._paths: list[str] = []
+        self._free: list[str] = []
 
     def anything_made(self) -> bool:
         """Whether any device exists, or any thread of WPILib's that waits for an alarm."""
         made = any(self._made.told()) or bool(self._tree["CAN"].signature())
         return made or hal.simulation.getNumNotifiers() > 0
 
-    def leaves(self) -> Iterator[tuple[str, Any]]:
+    def look(self) -> tuple[list[str], list[Any]]:
+        """The paths, the same list while it is the same paths, and the value of each."""
         tree = self._tree
         devices = tree["CAN"].signature()
         tree["robot"].sync(devices)
         state = (self._made.told(), devices)
-        if state != self._state:
-            self._leaves = [*self._always, *self._present()]
+        others = state != self._state
+        if others:
             self._state = state
-        found = [(path, get()) for path, get in self._leaves]
-        for stick in tree["joysticks"]:
-            found += _stick(stick)
-        for room in ("robot", "custom"):
-            found += [(join(room, key), plain(value)) for key, value in tree[room].items()]
-        return iter(found)
+            self._leaves = [*self._always, *self._present()]
+            self._reads = [get for _, get in self._leaves]
+        values = [read() for read in self._reads]
+        for part in self._at_rest:
+            others |= part.look()
+            values += part.values
+        free = []
+        for name in ("robot", "custom"):
+            if room := tree[name]:
+                free += [join(name, key) for key in room]
+                values += [plain(value) for value in room.values()]
+        if others or free != self._free:
+            self._free = free
+            here = [path for path, _ in self._leaves]
+            self._paths = [*here, *(path for part in self._at_rest for path in part.paths), *free]
+        return self._paths, values
 
     def _fixed(self) -> Iterator[Leaf]:
         tree = self._tree
-        for room in ("control", "event"):
-            yield from _of(tree[room])
+        yield from _of(tree["control"])
         # Supply and LED are what physics and robots touch; the rest of power and roborio stands still.
         yield from _of(tree["power"], "vin_voltage", "vin_current", "brownout_voltage")
         yield from _of(tree["roborio"], "radio_led_state")
@@ -85,6 +104,26 @@ class Recording:
             yield from _of(tree["CAN"][name])
 
 
+class _AtRest:
+    """What mostly stays as it is, and is read only when its fingerprint has changed."""
+
+    def __init__(self, fingerprint: Callable[[], object], read: Callable[[], list[tuple[str, Any]]]) -> None:
+        self._fingerprint, self._read = fingerprint, read
+        self._before: object = None
+        self.paths: list[str] = []
+        self.values: list[Any] = []
+
+    def look(self) -> bool:
+        """Bring `paths` and `values` up to date; answers whether the paths are others."""
+        now = self._fingerprint()
+        if now == self._before:
+            return False
+        self._before = now
+        found, before = self._read(), self.paths
+        self.paths, self.values = [path for path, _ in found], [value for _, value in found]
+        return self.paths != before
+
+
 class _Made:
     """Which devices there are, without asking for each of the hundreds that may be.
 
@@ -101,7 +140,7 @@ class _Made:
 
     def told(self) -> list[bool]:
         """For each device whether it is there: the same list while that is so."""
-        if self._noted or not all(tells() for tells in self._there):
+        if self._noted or False in [tells() for tells in self._there]:
             self._noted = False
             self._watches = [slot.watch(self._note) for slot in self._slots if slot.watch is not None]
             self._told = [bool(slot.get()) for slot in self._slots]
@@ -132,7 +171,7 @@ def _plain(get: Callable[[], Any], convert: Callable[[Any], Any]) -> Callable[[]
 
 def _stick(stick: driver_station.Joystick) -> list[tuple[str, Any]]:
     """One value for all axes, one for all buttons: lists that can be written back whole."""
-    axes, buttons, povs, (outputs, left_rumble, right_rumble) = stick.controls()
+    axes, buttons, povs = stick.controls()
     if not (axes or len(buttons) > 1 or povs):
         return []
     path = stick._path
@@ -143,5 +182,4 @@ def _stick(stick: driver_station.Joystick) -> list[tuple[str, Any]]:
         found.append((f"{path}.buttons", buttons))
     if povs:
         found.append((f"{path}.povs", povs))
-    found += (f"{path}.outputs", outputs), (f"{path}.left_rumble", left_rumble), (f"{path}.right_rumble", right_rumble)
-    return found
+    return found + [(f"{path}.{key}", stick[key]) for key in ("outputs", "left_rumble", "right_rumble")]

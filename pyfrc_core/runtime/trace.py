@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ..hal import HalData
@@ -25,26 +25,30 @@ class Trace:
     def __init__(self, hal_data: HalData, out: IO[str] | None = None) -> None:
         self._hal_data = hal_data
         self._out = out
-        self._before: dict[str, object] = {}
+        self._paths: list[str] = []
+        self._values: list[Any] = []
         self._hash = hashlib.sha256()
         if out is not None:
             out.write(json.dumps({"format": FORMAT}) + "\n")
 
     def look(self, now: float) -> None:
         """Record what has changed by `now`, in seconds of robot time."""
-        values = dict(self._hal_data.leaves())
-        before = self._before
-        # NaN differs from itself, so it is told apart by how it is written.
-        changed = {
-            path: value
-            for path, value in values.items()
-            if path not in before
-            or (before[path] is not value and before[path] != value and repr(before[path]) != repr(value))
-        }
-        gone = [path for path in before if path not in values]
+        # Two lists, since as many pairs at each packet would keep the garbage collector busy.
+        paths, values = self._hal_data.paths_and_values()
+        before = self._values
+        if paths is self._paths:
+            if values == before:
+                return
+            changed = {path: now for path, old, now in zip(paths, before, values, strict=True) if _differ(old, now)}
+            gone = []
+        else:
+            had, has = dict(zip(self._paths, before, strict=True)), dict(zip(paths, values, strict=True))
+            changed = {path: value for path, value in has.items() if path not in had or _differ(had[path], value)}
+            gone = [path for path in had if path not in has]
+            self._paths = paths
+        self._values = values
         if not changed and not gone:
             return
-        self._before = values
         line = json.dumps({"t": round(now, 6), "set": changed} | ({"gone": gone} if gone else {}), sort_keys=True)
         self._hash.update(line.encode())
         if self._out is not None:
@@ -60,3 +64,8 @@ class Trace:
         if self._out is not None:
             self._out.write(json.dumps({"sha256": digest}) + "\n")
         return digest
+
+
+def _differ(old: object, new: object) -> bool:
+    # NaN differs from itself, so it is told apart by how it is written.
+    return old != new and repr(old) != repr(new)
