@@ -148,15 +148,14 @@ class HalData(LiveDict):
 
     @staticmethod
     def _has_parts(place: Any, segments: tuple[Segment, ...], segment: Segment) -> None:
-        where = format_path(segments)
-        if isinstance(place, (LiveList, list, tuple)):
-            if not isinstance(segment, int):
-                raise WrongPath(
-                    f"{where} is a list: it has no part {segment!r}",
-                    remedy=f"use an index, such as {where}[0]",
-                )
-        elif not isinstance(place, (LiveDict, dict)):
-            raise WrongPath(f"{where} is a {type(place).__name__}: it has no part {segment!r}")
+        if isinstance(place, (LiveDict, dict)):
+            return
+        if not isinstance(place, (LiveList, list, tuple)):
+            raise WrongPath(f"{format_path(segments)} is a {type(place).__name__}: it has no part {segment!r}")
+        if not isinstance(segment, int):
+            where = format_path(segments)
+            problem = f"{where} is a list: it has no part {segment!r}"
+            raise WrongPath(problem, remedy=f"use an index, such as {where}[0]")
 
     def sync(self) -> None:
         """Find SimDevices that the robot has made, and hand them what was written to `robot` for them."""
