@@ -93,19 +93,22 @@ class Recorder:
     def _look(self) -> dict[str, Any]:
         found: dict[str, Any] = {MODE: modes.mode_name()}
         for port, stick in enumerate(self._hal_data["joysticks"]):
-            counts = {count: stick[count] for count in ("axis_count", "button_count", "pov_count")}
-            found[plugged(port)] = any(counts.values())
-            if found[plugged(port)]:
-                found |= {f"joysticks[{port}].{count}": number for count, number in counts.items()}
-        found |= self._hal_data.leaves()
-        found |= self._network.look()
+            axes, buttons, povs = stick.counts()
+            there = found[plugged(port)] = bool(axes or buttons or povs)
+            if there:
+                path = f"joysticks[{port}]"
+                found[f"{path}.axis_count"] = axes
+                found[f"{path}.button_count"] = buttons
+                found[f"{path}.pov_count"] = povs
+        found.update(zip(*self._hal_data.paths_and_values(), strict=True))
+        found.update(self._network.look())
         return found
 
     def _writes(self, before: dict[str, Any], now: dict[str, Any]) -> Iterator[tuple[str, Any]]:
         for target, value in now.items():
-            if target in _TOLD_OTHERWISE or target == REMAINING:
+            if target in before and _same(before[target], value):
                 continue
-            if target in before and repr(before[target]) == repr(value):
+            if target in _TOLD_OTHERWISE or target == REMAINING:
                 continue
             if value == math.inf and target.startswith("encoder") and target.endswith(".period"):
                 # JSON has no infinity; the HAL keeps a rate as its period.
@@ -142,6 +145,13 @@ class _MatchTime:
         self._last = writes
 
 
+def _same(before: object, now: object) -> bool:
+    """Whether they are written alike: -0.0 is not 0.0, True not 1, and NaN is NaN."""
+    if before is now or (before == now and type(before) is type(now) is float and now):
+        return True
+    return repr(before) == repr(now)
+
+
 def _parts(target: str, before: Any, value: Any) -> Iterator[tuple[str, Any]]:
     """Of a list, the entries that have changed; an unplugged joystick has none."""
     if not isinstance(value, list):
@@ -149,7 +159,7 @@ def _parts(target: str, before: Any, value: Any) -> Iterator[tuple[str, Any]]:
         return
     old = before if isinstance(before, list) else []
     for index, each in enumerate(value):
-        if index >= len(old) or repr(old[index]) != repr(each):
+        if index >= len(old) or not _same(old[index], each):
             yield f"{target}[{index}]", _shortest(each) if target.endswith(".axes") else each
 
 
@@ -164,22 +174,25 @@ def _shortest(axis: float) -> float:
 
 
 class _Network:
-    """The values that entries of NetworkTables have."""
+    """The values that entries of NetworkTables have, heard of as they change: to ask for each takes far longer."""
 
     def __init__(self) -> None:
-        self._instance = ntcore.NetworkTableInstance.getDefault()
-        self._subscribers: dict[str, ntcore.GenericSubscriber] = {}
+        self._news = ntcore.NetworkTableListenerPoller(ntcore.NetworkTableInstance.getDefault())
+        flags = ntcore.EventFlags
+        self._news.addListener([""], flags.kValueAll | flags.kUnpublish | flags.kImmediate)
+        self._found: dict[str, Any] = {}
 
     def look(self) -> dict[str, Any]:
-        for topic in self._instance.getTopics():
-            name = topic.getName()
-            if name not in self._subscribers:
-                self._subscribers[name] = topic.genericSubscribe()
-        found = {}
-        for name, subscriber in self._subscribers.items():
-            value = subscriber.get().value() if subscriber.exists() else None
-            if isinstance(value, _PLAIN) or (
-                isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)
-            ):
-                found[NETWORK + name] = value
-        return found
+        for event in self._news.readQueue():
+            news = event.data
+            if isinstance(news, ntcore.TopicInfo):
+                self._found.pop(NETWORK + news.name, None)
+            elif isinstance(news, ntcore.ValueEventData):
+                self._hear(NETWORK + news.topic.getName(), news.value.value())
+        return self._found
+
+    def _hear(self, target: str, value: object) -> None:
+        if isinstance(value, _PLAIN) or (isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)):
+            self._found[target] = value
+        else:
+            self._found.pop(target, None)
