@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from .loudness import hint
 from .project_options import chosen_project, from_here, project_options
 
 
@@ -23,5 +24,5 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
     from pyfrc_core.scaffold import add_tests
 
     file, written = add_tests(chosen_project(directory, main, robot_class), Path(__file__).parent)
-    click.echo(f"wrote {from_here(file)}" if written else f"left alone: {from_here(file)} (exists)")
-    click.echo("\nRun the tests with: pyfrc test")
+    hint(f"wrote {from_here(file)}" if written else f"left alone: {from_here(file)} (exists)")
+    hint("\nRun the tests with: pyfrc test")

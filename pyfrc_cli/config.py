@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .loudness import hint
 from .project_options import chosen_project, project_options
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def check(directory: Path | None, main: Path | None, robot_class: str | None, st
     Exit codes: 0 nothing is wrong, 1 there are warnings (with --strict), 2 something is wrong.
     """
     from pyfrc_core.config.findings import MOST_TOLD
+    from pyfrc_core.wording import counted
 
     loaded = _loaded(directory, main, robot_class)
     warnings = [*loaded.warnings, *loaded.doubts()]
@@ -39,9 +41,9 @@ def check(directory: Path | None, main: Path | None, robot_class: str | None, st
         click.secho(f"warning: {warning}", fg="yellow")
     what = "no mistakes" if loaded.text else "there is no such file, so everything is at its default"
     if warnings:
-        count = f"more than {MOST_TOLD}" if len(loaded.warnings) > MOST_TOLD else str(len(warnings))
-        what += f", but {count} warning{'s' * (count != '1')}"
-    click.echo(f"{loaded.name}: {what}")
+        many = len(loaded.warnings) > MOST_TOLD
+        what += f", but {f'more than {MOST_TOLD} warnings' if many else counted(len(warnings), 'warning')}"
+    hint(f"{loaded.name}: {what}")
     sys.exit(1 if strict and warnings else 0)
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .project_options import chosen_project, project_options
-from .robot_options import conversation, robot_options
+from .project_options import project_options
+from .robot_options import conversation, project_if_any, robot_options
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.reach import RobotChoice
@@ -30,4 +30,4 @@ def command(
     """
     from pyfrc_core.deploy.session import show_console
 
-    show_console(chosen_project(directory, main, robot_class), choice, conversation(), nc_ds)
+    show_console(project_if_any(directory, main, robot_class, choice), choice, conversation(), nc_ds)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from .loudness import loudness
 from .wrapping import WRAPPING, wrapped_command
 
 
@@ -43,7 +44,9 @@ def command(
     wrapped = wrapped_command(context, command_line, ("test", "sim", "fuzz", "replay"))
     from pyfrc_core.measure.coverage import CoverageOptions, measuring
 
-    options = CoverageOptions(enabled=True, html=html, xml=xml, json=as_json, fail_under=fail_under)
+    options = CoverageOptions(
+        enabled=True, html=html, xml=xml, json=as_json, fail_under=fail_under, quiet=loudness().quiet
+    )
     with measuring(wrapped.project, options) as measured:
         status = wrapped.run()
     sys.exit(status or measured.status)

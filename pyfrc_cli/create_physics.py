@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from .loudness import hint
 from .project_options import chosen_project, from_here, project_options
 
 
@@ -31,15 +32,15 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
     if done.problem:
         click.secho(f"warning: the sticks could not be tried: {done.problem}", fg="yellow", err=True)
     for line in done.recognised:
-        click.echo(line)
+        hint(line)
     for note in done.notes:
-        click.echo(f"note: {note}")
+        hint(f"note: {note}")
     for file, mistake in done.left_alone.items():
-        click.echo(f"left alone: {from_here(file)} (exists)")
+        hint(f"left alone: {from_here(file)} (exists)")
         if mistake:
             click.secho(f"warning: what is there is not valid: {mistake}", fg="yellow", err=True)
     for file in done.written:
-        click.echo(f"wrote {from_here(file)}")
+        hint(f"wrote {from_here(file)}")
     if project.physics_file in done.written:
         physics = from_here(project.physics_file)
-        click.echo(f"\nChange the numbers at the top of {physics} to your robot's; pyfrc test uses it from now on.")
+        hint(f"\nChange the numbers at the top of {physics} to your robot's; pyfrc test uses it from now on.")

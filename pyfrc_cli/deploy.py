@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import chosen_project, project_options
-from .robot_options import conversation, json_option, robot_options, told_as_json
+from .robot_options import conversation, json_option, project_if_any, robot_options, told_as_json
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.reach import RobotChoice
@@ -79,14 +79,14 @@ def command(
     if rollback and not rollback.isdecimal():
         raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
     with told_as_json(as_json):
-        project = chosen_project(directory, main, robot_class)
         from pyfrc_core.deploy import session
 
         talk = conversation(as_json)
         if rollback is not None:
             release = int(rollback) if rollback else None
-            host = session.rollback(project, choice, release, talk)
+            host = session.rollback(project_if_any(directory, main, robot_class, choice), choice, release, talk)
         else:
+            project = chosen_project(directory, main, robot_class)
             options = session.DeployOptions(
                 choice=choice,
                 builtin=builtin,
@@ -103,4 +103,4 @@ def command(
     if netconsole or nc_ds:
         from pyfrc_core.deploy.console import follow_console
 
-        follow_console(host, without_driver_station=nc_ds)
+        follow_console(host, without_driver_station=nc_ds, quiet=talk.progress.quiet)

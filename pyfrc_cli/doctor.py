@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from .loudness import hint, loudness
 from .project_options import project_options
 
 _COLOURS = {"ok": "green", "hint": "cyan", "problem": "red"}
@@ -47,7 +48,7 @@ def command(
     findings = []
     for finding in examine(Examination(directory, main, robot_class, not no_robot, robot, team)):
         findings.append(finding)
-        if not as_json:
+        if not as_json and (finding.status == "problem" or not loudness().quiet):
             click.secho(f"{finding.status:<8}", fg=_COLOURS[finding.status], nl=False)
             click.echo(f"{finding.topic}: {finding.text}")
             if finding.remedy:
@@ -56,5 +57,5 @@ def command(
     if as_json:
         click.echo(json.dumps({"problems": problems, "findings": [asdict(each) for each in findings]}, indent=2))
     else:
-        click.echo(f"\n{counted(problems, 'problem')}" if problems else "\nno problems")
+        hint(f"\n{counted(problems, 'problem')}" if problems else "\nno problems")
     sys.exit(1 if problems else 0)

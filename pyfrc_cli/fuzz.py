@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pyfrc_core.wording import counted
+
+from .loudness import hint, loudness
 from .project_options import chosen_project, project_options
 
 if TYPE_CHECKING:
@@ -66,31 +69,32 @@ def command(
     if seconds is not None and runs is not None:
         raise click.UsageError("--time and --runs exclude each other.")
     from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
-    from pyfrc_core.test_support.options import usable_processors
+    from pyfrc_core.processors import usable_processors
 
     project = chosen_project(directory, main, robot_class)
     if seconds is None and runs is None:
         seconds = _DEFAULT_SECONDS
-    teller = _Teller()
+    teller = _Teller(loudness().quiet)
     campaign = run_campaign(project, CampaignOptions(seed, runs, seconds, jobs or usable_processors()), teller)
     teller.end(campaign.progress)
     if campaign.interrupted:
         click.echo("interrupted")
     if not campaign.found:
-        click.echo("Nothing was found.")
+        hint("Nothing was found.")
     sys.exit(1 if campaign.found else 2 if campaign.interrupted else 0)
 
 
 class _Teller:
     """Tells how it goes: in one line that changes, or, where that cannot be, in one now and then."""
 
-    def __init__(self) -> None:
-        self._on_terminal = sys.stdout.isatty()
+    def __init__(self, quiet: bool) -> None:
+        self._quiet = quiet
+        self._on_terminal = sys.stdout.isatty() and not quiet
         self._told = time.monotonic()
 
     def on_progress(self, progress: Progress) -> None:
         now = time.monotonic()
-        if now - self._told < (_ON_TERMINAL if self._on_terminal else _ELSEWHERE):
+        if self._quiet or now - self._told < (_ON_TERMINAL if self._on_terminal else _ELSEWHERE):
             return
         self._told = now
         if self._on_terminal:
@@ -108,13 +112,13 @@ class _Teller:
         else:
             for line in found.story[:-1]:
                 click.echo(f"  {line}")
-            click.echo(f"  {_count(found.writes, 'write')}, {_count(found.runs, 'run')} of the robot to find them")
+            hint(f"  {counted(found.writes, 'write')}, {counted(found.runs, 'run')} of the robot to find them")
             click.echo(f"  pyfrc replay {found.kept.shown}")
 
     def end(self, progress: Progress) -> None:
         self._clear()
         progress.doing = ""
-        click.echo(_line(progress))
+        hint(_line(progress))
 
     def _clear(self) -> None:
         if self._on_terminal:
@@ -123,13 +127,9 @@ class _Teller:
 
 def _line(progress: Progress) -> str:
     parts = [
-        _count(progress.matches, "match", "matches"),
+        counted(progress.matches, "match", "matches"),
         f"{progress.simulated / 3600:.2f} h of robot time",
         *([] if progress.covered is None else [f"{progress.covered:.0%} of the robot's lines"]),
-        _count(progress.crashes, "failure"),
+        counted(progress.crashes, "failure"),
     ]
     return ", ".join([*parts, *([progress.doing] if progress.doing else [])])
-
-
-def _count(number: int, what: str, many: str | None = None) -> str:
-    return f"{number:,} {what if number == 1 else many or what + 's'}"

@@ -9,6 +9,8 @@ import click
 
 from pyfrc_core.scaffold import DEFAULT, TEMPLATES, create_project
 
+from .loudness import hint
+
 
 def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) -> None:
     """List the templates, and end."""
@@ -51,10 +53,10 @@ def command(directory: Path, template: str, team: int | None) -> None:
     Exit codes: 0 the project is there, 1 it cannot be written, 2 wrong usage.
     """
     for file in create_project(directory, Path(__file__).parent, template, team):
-        click.echo(f"wrote {directory / file}")
+        hint(f"wrote {directory / file}")
     place = "" if directory == Path() else f"cd {shlex.quote(str(directory))} && "
     if missing := TEMPLATES[template].missing:
-        click.echo(f"\nIt needs what is not installed here: {', '.join(missing)}")
-        click.echo(f"Install it with: {place}python -m pip install -r requirements.txt")
-    click.echo(f"\nTest it with: {place}pyfrc test")
-    click.echo(f"Drive it with: {place}pyfrc sim")
+        hint(f"\nIt needs what is not installed here: {', '.join(missing)}")
+        hint(f"Install it with: {place}python -m pip install -r requirements.txt")
+    hint(f"\nTest it with: {place}pyfrc test")
+    hint(f"Drive it with: {place}pyfrc sim")

@@ -6,11 +6,14 @@ import difflib
 import importlib
 import os
 import sys
+import traceback
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from pyfrc_core._version import __version__
+
+from .loudness import QUIET, VERBOSE, Loudness, add_options
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -50,8 +53,7 @@ class Commands(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in COMMANDS:
             return None
-        command: click.Command = importlib.import_module(COMMANDS[name][0]).command
-        return command
+        return loaded(name)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         if args and args[0] not in COMMANDS and not args[0].startswith("-"):
@@ -71,18 +73,24 @@ class Commands(click.Group):
             formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
 
 
-@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+def loaded(name: str) -> click.Command:
+    """One of the commands."""
+    command: click.Command = importlib.import_module(COMMANDS[name][0]).command
+    group = command.commands.values() if isinstance(command, click.Group) else ()
+    for each in (command, *group):
+        add_options(each)
+    return command
+
+
+@click.command(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]}, params=[VERBOSE, QUIET])
 @click.version_option(__version__, prog_name="pyfrc")
-@click.option("-v", "--verbose", is_flag=True, help="Show the traceback of errors.")
-@click.pass_context
-def cli(ctx: click.Context, verbose: bool) -> None:
+def cli() -> None:
     """Write, test and run FIRST Robotics Competition robot code in Python."""
-    ctx.obj = verbose
 
 
 def run() -> None:
     """Run the command line; errors that pyfrc knows are told in a sentence, with exit code 1 or 2."""
-    verbose = "-v" in sys.argv[1:2] or "--verbose" in sys.argv[1:2]
+    told = Loudness()
     # None: by whether it goes to a terminal.
     color = False if os.environ.get("NO_COLOR") else None
     if COMPLETE_VARIABLE in os.environ:
@@ -90,19 +98,23 @@ def run() -> None:
     from pyfrc_core.errors import PyfrcError
 
     try:
-        sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color))
+        sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color, obj=told))
     except click.exceptions.Abort:
         click.secho("interrupted", err=True)
         sys.exit(2)
     except click.ClickException as error:
+        if isinstance(error, click.NoSuchOption):
+            nearest = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
+            error = click.NoSuchOption(error.option_name, possibilities=nearest, ctx=error.ctx)
         error.show()
         if isinstance(error, click.NoSuchOption) and error.ctx is not None and error.ctx.info_name == "test":
             click.echo("Options of pytest stand behind --, as in: pyfrc test -- -k drive", err=True)
         sys.exit(error.exit_code)
     except (PyfrcError, OSError) as error:
-        if verbose:
-            raise
-        click.secho(f"error: {_told(error)}", fg="red", err=True, color=color)
+        if told.verbose:
+            traceback.print_exc()
+        else:
+            click.secho(f"error: {_told(error)}", fg="red", err=True, color=color)
         sys.exit(getattr(error, "exit_code", 1))
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from .loudness import loudness
 from .wrapping import WRAPPING, wrapped_command
 
 
@@ -57,7 +58,7 @@ def command(
     wrapped = wrapped_command(context, command_line, ("test", "sim", "fuzz", "replay"))
     from pyfrc_core.measure.profile import ProfileOptions, profiling
 
-    options = ProfileOptions(outfile, html, as_json, top)
+    options = ProfileOptions(outfile, html, as_json, top, loudness().quiet)
     with profiling(wrapped.project, options, f"pyfrc {' '.join(command_line)}"):
         status = wrapped.run()
     sys.exit(status)

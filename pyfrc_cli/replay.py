@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from .loudness import hint
 from .project_options import chosen_project, project_options
 
 
@@ -49,17 +50,17 @@ def command(
         from pyfrc_core.sim.simulate import draw_script
 
         draw_script(project, file, picture, until)
-        click.echo(f"wrote {picture}")
+        hint(f"wrote {picture}")
     replayed = replay(project, file, until=until, trace=trace)
-    click.echo(f"replayed {replayed.seconds:.2f} s of robot time")
+    hint(f"replayed {replayed.seconds:.2f} s of robot time")
     if replayed.failure is not None:
         click.secho(f"then {replayed.failure}", fg="red")
     if replayed.difference is not None:
         where = replayed.difference
         click.secho(f"It differs from the recorded trace, first at {where.now:.2f} s:", fg="red")
         click.echo(f"  {where.path} was {json.dumps(where.recorded)}, is {json.dumps(where.replayed)}")
+    elif replayed.equal:
+        hint("The trace equals the recorded one.")
     elif replayed.equal is not None:
-        click.echo(
-            "The trace equals the recorded one." if replayed.equal else "The trace differs from the recorded one."
-        )
+        click.echo("The trace differs from the recorded one.")
     sys.exit(1 if replayed.failure is not None or replayed.difference is not None or replayed.equal is False else 0)

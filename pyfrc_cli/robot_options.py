@@ -10,8 +10,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from .loudness import loudness
+from .project_options import chosen_project
+
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from pyfrc_core.deploy.progress import Conversation
+    from pyfrc_core.deploy.reach import RobotChoice
+    from pyfrc_core.project import Project
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -47,6 +54,23 @@ def robot_options(command: Function) -> Function:
     return wrapped  # type: ignore[no-any-return]
 
 
+def project_if_any(
+    directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice
+) -> Project | None:
+    """The project; none where nothing names one, there is none here, and the options name the robot."""
+    from pyfrc_core.errors import ProjectError
+
+    try:
+        return chosen_project(directory, main, robot_class)
+    except ProjectError as error:
+        if directory is not None or main is not None:
+            raise
+        if choice.names_robot:
+            return None
+        remedy = f"{error.remedy or ''}\n  Without a project, name the robot: --robot HOST or --team NUMBER."
+        raise ProjectError(error.message, where=error.where, remedy=remedy.strip()) from error
+
+
 def conversation(as_json: bool = False) -> Conversation:
     """How a command tells what it does, and asks; it asks nothing where there is no terminal."""
     from pyfrc_core.deploy.progress import Conversation, Questions, progress_for
@@ -57,7 +81,7 @@ def conversation(as_json: bool = False) -> Conversation:
             text=lambda question: str(click.prompt(question, prompt_suffix=" ")),
             yes=lambda question: click.confirm(question),
         )
-    return Conversation(progress_for(as_json), ask)
+    return Conversation(progress_for(as_json, loudness().quiet), ask)
 
 
 @contextmanager

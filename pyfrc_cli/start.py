@@ -17,9 +17,13 @@ def main() -> None:
     """The entry point."""
     if "PYTHONHASHSEED" not in os.environ and _RUN_ROBOTS.intersection(sys.argv[1:]):
         _start_again()
-    from .main import run
+    try:
+        from .main import run
 
-    run()
+        run()
+    except KeyboardInterrupt:  # while it was still being imported: after that, `run` says it
+        print("interrupted", file=sys.stderr)
+        sys.exit(2)
 
 
 def _start_again() -> None:

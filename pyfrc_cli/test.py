@@ -8,6 +8,7 @@ from typing import Literal
 
 import click
 
+from .loudness import loudness
 from .project_options import chosen_project, project_options
 
 
@@ -84,7 +85,7 @@ def command(
 ) -> None:
     """Run the robot project's tests, found in its directory tests/ or in ../tests.
 
-    What stands behind -- is passed on to pytest, as in: pyfrc test -- -x -k drive
+    What stands behind -- is passed on to pytest, as in: pyfrc test -- -x -k drive. So are -v and -q.
 
     \b
     Exit codes: 0 all passed, 1 a test failed or the robot's code did,
@@ -93,6 +94,8 @@ def command(
     if no_isolation and isolation not in (None, "none"):
         raise click.UsageError(f"--no-isolation and --isolation {isolation} cannot both be.")
     project = chosen_project(directory, main, robot_class)
+    told = loudness()
+    as_pytest_has_it = ["-q"] * told.quiet + ["-v"] * told.verbose
     from pyfrc_core.measure.coverage import CoverageOptions, measuring
 
     wanted = CoverageOptions(
@@ -101,6 +104,7 @@ def command(
         html=coverage_html,
         xml=coverage_xml,
         fail_under=fail_under,
+        quiet=told.quiet,
     )
     with measuring(project, wanted) as measured:
         # Imported within, for the robot's modules to be imported while their lines are counted.
@@ -115,5 +119,5 @@ def command(
             trace_directory=trace,
             record_directory=record,
         )
-        status = run_tests(project, options, builtin=builtin, pytest_args=pytest_args)
+        status = run_tests(project, options, builtin=builtin, pytest_args=[*as_pytest_has_it, *pytest_args])
     sys.exit(status or measured.status)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .project_options import chosen_project, project_options
-from .robot_options import conversation, json_option, robot_options, told_as_json
+from .project_options import project_options
+from .robot_options import conversation, json_option, project_if_any, robot_options, told_as_json
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.reach import RobotChoice
@@ -30,4 +30,4 @@ def command(
     with told_as_json(as_json):
         from pyfrc_core.deploy.session import undeploy
 
-        undeploy(chosen_project(directory, main, robot_class), choice, conversation(as_json), sure=yes)
+        undeploy(project_if_any(directory, main, robot_class, choice), choice, conversation(as_json), sure=yes)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from .main import COMMANDS
+from .main import COMMANDS, loaded
 from .project_options import chosen_project
 
 if TYPE_CHECKING:
@@ -56,7 +55,6 @@ def wrapped_command(context: click.Context, words: Sequence[str], wrappable: Seq
     known = [each for each in wrappable if each in COMMANDS]
     if name not in known:
         raise click.UsageError(f"{name!r} is not a command to be measured: those are {', '.join(known)}.", context)
-    command: click.Command = importlib.import_module(COMMANDS[name][0]).command
-    inner = command.make_context(name, arguments, parent=context)
+    inner = loaded(name).make_context(name, arguments, parent=context)
     options = inner.params
     return Wrapped(name, chosen_project(options["directory"], options["main"], options["robot_class"]), inner)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 
-def counted(number: int, noun: str) -> str:
-    """``1 line``, ``2 lines``."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+def counted(number: int, noun: str, many: str | None = None) -> str:
+    """``1 line``, ``2,000 lines``; ``2 matches`` where `many` is ``matches``."""
+    return f"{number:,} {noun if number == 1 else many or noun + 's'}"
 
 
 def table(rows: Sequence[Sequence[str]], left: int, left_at_end: int = 0) -> Iterator[str]:

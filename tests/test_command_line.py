@@ -78,6 +78,35 @@ def test_a_mistyped_word_is_answered_with_the_right_one(wrong: list[str], meant:
     assert "Traceback" not in result.stderr
 
 
+@pytest.mark.parametrize("args", [["-v", "config", "check"], ["config", "check", "--verbose"]], ids=" ".join)
+def test_verbose_shows_the_traceback_and_changes_no_exit_code(args: list[str], make_project) -> None:
+    result = make_project({}).run(*args)
+    assert result.code == 2
+    assert "Traceback (most recent call last)" in result.stderr
+    assert "no robot project found" in result.stderr
+
+
+INTERRUPTED_AT_ONCE = """
+import sys
+
+class Interrupting:
+    def find_spec(self, name, path, target=None):
+        if name == "pyfrc_cli.main":
+            raise KeyboardInterrupt
+
+sys.meta_path.insert(0, Interrupting())
+from pyfrc_cli.start import main
+
+main()
+"""
+
+
+def test_ctrl_c_while_it_is_still_starting_is_told_in_a_word() -> None:
+    command = [sys.executable, "-c", INTERRUPTED_AT_ONCE, "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "", "interrupted\n")
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 @pytest.mark.parametrize("no_color", [None, "1"])
 def test_colours_are_for_terminals_and_for_who_wants_them(no_color: str | None, make_project) -> None:

@@ -567,6 +567,7 @@ def test_without_a_robot_it_is_told_what_was_tried(make_project) -> None:
     result = make_project(program()).run("deploy", "--skip-tests", "--robot", "127.0.0.1:1")
     assert result.code == 1
     assert "127.0.0.1:1  by the command  refused" in result.stderr
+    assert "Is that the right address?" in result.stderr
 
 
 def test_without_a_project_it_is_told_how_to_begin(make_project) -> None:
@@ -585,6 +586,8 @@ def test_without_a_project_it_is_told_how_to_begin(make_project) -> None:
         ["--dry-run", "--nc-ds"],
         ["--robot", "127.0.0.1", "--team", "1"],
         ["--robot", "127.0.0.1:x"],
+        ["--robot", "lvuser@127.0.0.1"],
+        ["--robot", "robot.local", "--no-resolve"],
         ["--team", "0"],
     ],
     ids=" ".join,

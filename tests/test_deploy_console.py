@@ -12,6 +12,8 @@ from collections.abc import Iterator
 import pytest
 from roborio import Roborio, require_roborio
 
+import pyfrc_core.deploy.console
+
 ROBOT = """
 import wpilib
 
@@ -84,6 +86,30 @@ def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> No
         with running(project, "console", "--robot", "127.0.0.1", *option) as console:
             wait_for(console, "waiting for 127.0.0.1" if option else "Connecting to 127.0.0.1")
         assert console.returncode == 0
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_a_quiet_console_tells_only_what_the_program_prints(
+    quiet: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import netconsole
+
+    tries = []
+
+    def run(host: str, fakeds: bool) -> None:
+        print(f"Connecting to {host}...", file=sys.stderr)
+        if not tries:
+            tries.append(host)
+            raise ConnectionRefusedError
+        print("the words of our robot")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(netconsole, "run", run)
+    monkeypatch.setattr(pyfrc_core.deploy.console, "_SECONDS_BETWEEN_TRIES", 0.0)
+    pyfrc_core.deploy.console.follow_console("10.12.34.2", without_driver_station=True, quiet=quiet)
+    told, connection = capsys.readouterr()
+    assert told.splitlines()[-1] == "the words of our robot"
+    assert (told.count("\n"), connection.count("Connecting")) == ((1, 0) if quiet else (2, 2))
 
 
 @pytest.mark.parametrize("option", ["--netconsole", "--nc-ds"])

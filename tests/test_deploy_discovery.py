@@ -38,11 +38,11 @@ class Servers:
             except OSError:
                 return
             with connected:
-                connected.sendall(says)
-                if says.startswith(b"SSH-"):
-                    with suppress(ConnectionError):  # closed with our greeting unread
+                with suppress(ConnectionError):  # closed with our greeting unread
+                    connected.sendall(says)
+                    if says.startswith(b"SSH-"):
                         connected.recv(1)
-                    ended.set()
+                ended.set()
 
         threading.Thread(target=serve, daemon=True).start()
         return address
@@ -83,7 +83,8 @@ def test_the_others_are_closed(servers: Servers) -> None:
     found = find(servers, *robots)
     for robot in robots:
         if robot != found.address:
-            # Those that were connected see the end; the winner has not seen it.
+            # Those that were connected see the end; the winner has not seen it. One that was not yet, is now.
+            socket.create_connection((robot.host, robot.port)).close()
             assert servers.ends[robot].wait(10)
     assert not servers.ends[found.address].is_set()
     found.connected.close()
@@ -164,7 +165,13 @@ def test_addresses_are_read_and_shown_alike(text: str, address: Address) -> None
     assert parse_address(str(address)) == address
 
 
-@pytest.mark.parametrize("text", ["", ":22", "robot:", "robot:0", "robot:70000", "robot:ssh", "[::1]x:3"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("", ":22", "robot:", "robot:0", "robot:70000", "robot:ssh", "[::1]x:3"),
+        *("lvuser@10.12.34.2", "http://10.12.34.2", "10.12.34.2/", "my robot", "[]"),
+    ],
+)
 def test_what_is_no_address_is_refused(text: str) -> None:
     if text == "robot:":
         assert parse_address(text) == Address("robot")

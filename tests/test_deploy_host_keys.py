@@ -37,6 +37,21 @@ def test_a_changed_key_is_refused_with_the_option_that_accepts_it(tmp_path: Path
     assert HostKeys(tmp_path).known(RADIO) == [ONE, TWO]  # two robots of a team take turns at one address
 
 
+def test_outside_of_projects_each_robot_is_new_at_the_usb_cable_and_only_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(name, str(tmp_path))
+    keys = HostKeys.of_user()
+    assert keys.check(USB, ONE)
+    assert keys.check(USB, TWO)
+    assert not HostKeys.of_user().check(USB, ONE)
+    assert keys.check(RADIO, HostKey("ssh-ed25519", b"three"))
+    with pytest.raises(HostKeyError):
+        keys.check(RADIO, HostKey("ssh-ed25519", b"four"))
+    assert (tmp_path / KNOWN_HOSTS).is_file()
+
+
 def test_the_same_robot_at_another_address_is_no_news(tmp_path: Path) -> None:
     keys = HostKeys(tmp_path)
     keys.check(RADIO, ONE)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import queue
+import re
 import socket
 import struct
 import threading
@@ -25,6 +26,9 @@ CONNECT_SECONDS = 5.0
 RESOLVE_SECONDS = 5.0
 #: Seconds that the Driver Station gets to answer; Windows takes long to say that nobody listens.
 DRIVER_STATION_SECONDS = 1.0
+
+#: A robot's at the other end of a USB cable, whoever's it is.
+USB_CABLE = "172.22.11.2"
 
 _BANNER = b"SSH-"
 
@@ -86,7 +90,7 @@ def parse_address(text: str) -> Address:
         port = port.removeprefix(":")
     elif host.count(":") == 1:
         host, _, port = host.partition(":")
-    if not host or (port and not (port.isdecimal() and 1 <= int(port) <= 65535)):
+    if not re.fullmatch(r"[^\s/@\[\]]+", host) or (port and not (port.isdecimal() and 1 <= int(port) <= 65535)):
         raise UsageError(f"{text!r} is no address of a robot", remedy="Write HOST or HOST:PORT, as in 10.12.34.2")
     return Address(host, int(port or 22))
 
@@ -100,7 +104,7 @@ def addresses_of(team: int, resolve: bool = True) -> list[tuple[Address, str]]:
     every = [
         (Address(f"10.{team // 100}.{team % 100}.2"), "radio or Ethernet"),
         (Address(f"{name}.local"), "name, by multicast"),
-        (Address("172.22.11.2"), "USB cable"),
+        (Address(USB_CABLE), "USB cable"),
         (Address(name), "name"),
         (Address(f"{name}.lan"), "name, by the router"),
         (Address(f"{name}.frc-field.local"), "name, on a field"),
@@ -147,10 +151,11 @@ def not_found(whose: str, tried: Sequence[Tried]) -> RobotNotFoundError:
         "\n  " + "  ".join(text.ljust(width) for text, width in zip(_row(each), widths, strict=True)).rstrip()
         for each in tried
     )
+    named = len(tried) == 1 and str(tried[0].address) == whose
+    which = "address?" if named else "team? (--team NUMBER; or name the robot's address with --robot HOST)"
     error = RobotNotFoundError(
         f"no robot found for {whose}; tried:{table}",
-        remedy="Is the robot on, and this computer on its network or at its USB cable? Is that the right team? "
-        "(--team NUMBER; or name the robot's address with --robot HOST)",
+        remedy=f"Is the robot on, and this computer on its network or at its USB cable? Is that the right {which}",
     )
     error.tried = tuple(tried)
     return error

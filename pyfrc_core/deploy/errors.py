@@ -24,6 +24,12 @@ class ConnectionFailedError(DeployError):
     """The robot has answered, but does not let us in; or the link to it was lost."""
 
 
+class StoppedError(DeployError):
+    """The user has pressed Ctrl-C when the robot was being changed; the message says what is so now."""
+
+    exit_code = 2
+
+
 class HostKeyError(DeployError):
     """The robot's key is not the one that this project knows."""
 

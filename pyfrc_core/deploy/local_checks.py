@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tempfile
 import threading
 from typing import IO, TYPE_CHECKING
 
@@ -29,10 +30,11 @@ def refuse_other_main_files(project: Project, nonstandard: bool) -> None:
         )
 
 
-def run_tests(project: Project, builtin: bool, output: IO[str]) -> bool:
+def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = False) -> bool:
     """Run the project's tests as `pyfrc test` does; whether all have passed.
 
     :param output: where they print; it must be a file of the system's
+    :param quiet: let them print only when not all have passed
     """
     if project.settings_file is not None:
         which = ["--project", str(project.settings_file.parent)]
@@ -41,7 +43,14 @@ def run_tests(project: Project, builtin: bool, output: IO[str]) -> bool:
     which += [f"--robot-class={project.class_name}"] if project.class_name else []
     command = [sys.executable, "-m", "pyfrc", "test", *which, *(["--builtin"] if builtin else [])]
     output.flush()
-    return subprocess.run(command, stdout=output, check=False).returncode == 0
+    if not quiet:
+        return subprocess.run(command, stdout=output, check=False).returncode == 0
+    with tempfile.TemporaryFile() as printed:
+        passed = subprocess.run([*command, "--quiet"], stdout=printed, check=False).returncode == 0
+        if not passed:
+            printed.seek(0)
+            output.write(printed.read().decode(errors="replace"))
+        return passed
 
 
 class ImportCheck:

@@ -41,10 +41,14 @@ class Phase:
 
 
 class Progress:
-    """Plain lines: one for each phase, when it is over."""
+    """Plain lines: one for each phase, when it is over.
 
-    def __init__(self, stream: IO[str] | None = None) -> None:
+    :param quiet: tell only what was asked for, and what is wrong
+    """
+
+    def __init__(self, stream: IO[str] | None = None, quiet: bool = False) -> None:
         self._stream = stream or sys.stdout
+        self.quiet = quiet
 
     @property
     def child_output(self) -> IO[str]:
@@ -60,11 +64,13 @@ class Progress:
         began = time.monotonic()
         with self._shown(Phase(name), own_output) as phase:
             yield phase
-        self._over(phase, time.monotonic() - began)
+        if not self.quiet:
+            self._over(phase, time.monotonic() - began)
 
     def note(self, text: str) -> None:
         """Something to know."""
-        self._print(text)
+        if not self.quiet:
+            self._note(text)
 
     def warning(self, text: str) -> None:
         """Something that may be wrong, but hinders nothing."""
@@ -74,8 +80,15 @@ class Progress:
         """What the robot program printed."""
         self._print("".join(f"  | {line}\n" for line in text.splitlines()).rstrip("\n"))
 
-    def result(self, result: Mapping[str, Any], text: str) -> None:
-        """What came of it all."""
+    def result(self, result: Mapping[str, Any], text: str, asked_for: bool = False) -> None:
+        """What came of it all.
+
+        :param asked_for: whether it is to know this that the command was called
+        """
+        if asked_for or not self.quiet:
+            self._print(text)
+
+    def _note(self, text: str) -> None:
         self._print(text)
 
     @contextmanager
@@ -133,16 +146,13 @@ class JsonProgress(Progress):
     def child_output(self) -> IO[str]:
         return sys.stderr
 
-    def note(self, text: str) -> None:
-        self._event("note", text=text)
-
     def warning(self, text: str) -> None:
         self._event("warning", text=text)
 
     def output(self, text: str) -> None:
         self._event("output", text=text)
 
-    def result(self, result: Mapping[str, Any], text: str) -> None:
+    def result(self, result: Mapping[str, Any], text: str, asked_for: bool = False) -> None:
         self._event("result", **result)
 
     def failure(self, error: PyfrcError) -> None:
@@ -155,6 +165,9 @@ class JsonProgress(Progress):
             remedy=error.remedy,
             exit_code=error.exit_code,
         )
+
+    def _note(self, text: str) -> None:
+        self._event("note", text=text)
 
     def _over(self, phase: Phase, seconds: float) -> None:
         self._event("phase", phase=phase.name, detail=phase.detail, seconds=round(seconds, 3))
@@ -171,10 +184,10 @@ class Conversation:
     ask: Questions | None = None
 
 
-def progress_for(as_json: bool) -> Progress:
+def progress_for(as_json: bool, quiet: bool = False) -> Progress:
     """What suits where the output goes, which may not have all the letters of the robot's."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
     if as_json:
-        return JsonProgress()
-    return TerminalProgress() if sys.stdout.isatty() else Progress()
+        return JsonProgress(quiet=quiet)
+    return TerminalProgress() if sys.stdout.isatty() and not quiet else Progress(quiet=quiet)

@@ -6,12 +6,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from ..errors import UsageError
 from ..project import Project
 from .connection import Connection, connect, load_in_background
 from .discovery import Address, Found, addresses_of, find_robot, parse_address
 from .host_keys import HostKeys
 from .progress import Progress, Questions
 from .robot import Robot
+from .standing import told_what_is_so
 from .team import Target, find_target
 
 
@@ -29,15 +31,24 @@ class RobotChoice:
     resolve: bool = True
     accepted_key: str | None = None
 
+    @property
+    def names_robot(self) -> bool:
+        """Whether it says by itself which robot is meant, so that no project has to."""
+        return self.robot is not None or self.team is not None
 
-def chosen_target(project: Project, choice: RobotChoice, ask: Questions | None) -> Target:
+
+def chosen_target(project: Project | None, choice: RobotChoice, ask: Questions | None) -> Target:
     """Whose robot is meant; asked for, where nobody has said it yet.
 
+    :param project: none where the user is not in one, for a choice that names a robot
     :raises UsageError: when there is nobody to ask, or what is said somewhere cannot be
     """
     target = find_target(project, robot=choice.robot, team=choice.team, ask=ask.text if ask else None)
-    if target.robot is not None:
-        parse_address(target.robot)
+    if target.robot is not None and parse_address(target.robot).is_name and not choice.resolve:
+        raise UsageError(
+            f"{target.robot} is a name, and with --no-resolve none is looked up",
+            remedy="Leave --no-resolve out, or name the robot's address with --robot, as in 10.12.34.2",
+        )
     return target
 
 
@@ -60,14 +71,19 @@ def find(target: Target, choice: RobotChoice, progress: Progress) -> Found:
     return found
 
 
+def keys_known_to(project: Project | None) -> HostKeys:
+    """The keys of a project's robots; outside of projects, those of the robots that this user has met."""
+    return HostKeys.of_user() if project is None else HostKeys(project.pyproject.parent)
+
+
 @contextmanager
-def connected(project: Project, found: Found, choice: RobotChoice, progress: Progress) -> Iterator[Connection]:
+def connected(project: Project | None, found: Found, choice: RobotChoice, progress: Progress) -> Iterator[Connection]:
     """The robot that was found, logged in to.
 
     :raises HostKeyError: when its key is not the one that the project knows
     :raises ConnectionFailedError: when it does not let us in
     """
-    keys = HostKeys(project.pyproject.parent)
+    keys = keys_known_to(project)
     with progress.phase("connect") as phase:
         connection = connect(found.address, keys, connected=found.connected, accepted_key=choice.accepted_key)
         phase.detail = "its key is the known one"
@@ -87,14 +103,15 @@ def agent_on(connection: Connection, progress: Progress) -> Iterator[Robot]:
         facts = robot.facts
         phase.detail = f"wpilib {facts.wpilib or 'missing'}, image {facts.image or 'unknown'}"
     try:
-        yield robot
+        with told_what_is_so(robot):
+            yield robot
     finally:
         robot.close()
 
 
 @contextmanager
 def robot_of(
-    project: Project, target: Target, choice: RobotChoice, progress: Progress
+    project: Project | None, target: Target, choice: RobotChoice, progress: Progress
 ) -> Iterator[tuple[Connection, Robot]]:
     """All of the way."""
     found = find(target, choice, progress)

@@ -13,6 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
+from . import standing
 from .agent import wire
 from .errors import ConnectionFailedError, DeployError, RefusedError
 from .facts import Deployed, DeployRequest, Plan, Release, RobotFacts, RolledBack, Watched
@@ -20,6 +21,7 @@ from .facts import Deployed, DeployRequest, Plan, Release, RobotFacts, RolledBac
 if TYPE_CHECKING:
     from .discovery import Address
     from .manifest import Entry, Manifest
+    from .standing import Standing
 
 __all__ = ["DeployRequest", "Deployed", "Plan", "Release", "Robot", "RobotFacts", "RolledBack", "Watched"]
 
@@ -97,6 +99,9 @@ class Robot:
         self._channel = channel
         self._where = where
         self._planned: Manifest | None = None
+        self._current: int | None = None
+        #: What is so while the robot's program is being changed.
+        self.standing: Standing | None = None
         #: What there was on the robot when the conversation began.
         self.facts: RobotFacts
 
@@ -149,7 +154,15 @@ class Robot:
             wanted = set(need["need"])
             by_path = {entry.path: entry for entry in manifest.entries if entry.path in wanted}
             self._send_contents([by_path[path] for path in need["need"]], need["bytes"], on_progress)
-        told = self._answer(_WORK_SECONDS, lambda said: on_progress(said["phase"], 0, 0))
+
+        def heard(said: dict[str, Any]) -> None:
+            if said["phase"] == "switch" and not request.in_place:
+                self.standing = standing.TAKES_OVER
+            on_progress(said["phase"], 0, 0)
+
+        told = self._answer(_WORK_SECONDS, heard)
+        self._current = told["release"]
+        self.standing = None if request.in_place else standing.deployed(told["release"])
         return Deployed(
             release=told["release"],
             previous=told["previous"],
@@ -161,8 +174,8 @@ class Robot:
 
     def restart(self) -> None:
         """Stop the program and start what is current; the robot listens to its console from before on."""
-        self._say("restart")
-        self._answer(_WORK_SECONDS)
+        self._ask("restart")
+        self.standing = standing.started(self._current)
 
     def watch(self, seconds: float, on_output: Callable[[str], None] | None = None) -> Watched:
         """See how the program that was just started does: until it has started, has ended, or `seconds` are over.
@@ -178,16 +191,29 @@ class Robot:
 
         self._say("watch", seconds=seconds)
         told = self._answer(seconds + _ANSWER_SECONDS, heard)
+        self.standing = None
         return Watched(told["alive"], told["started"], "".join(output))
 
     def rollback(self, release: int | None = None) -> RolledBack:
         """Make an earlier release current again: the one with this number, or that before. It is not restarted."""
-        told = self._ask("rollback", release=release)
+        told = self._change(standing.GOES_BACK, "rollback", release=release)
+        self._current = told["release"]
+        self.standing = standing.went_back(told["release"])
         return RolledBack(Release.of(told["about"]), told["previous"], tuple(told["changed"]))
 
     def undeploy(self) -> bool:
         """Stop the program and remove it, with all releases; whether there was one."""
-        return bool(self._ask("undeploy")["removed"])
+        removed = bool(self._change(standing.GOES_AWAY, "undeploy")["removed"])
+        self.standing = None
+        return removed
+
+    def _change(self, meanwhile: Standing, op: str, **request: Any) -> dict[str, Any]:
+        self.standing = meanwhile
+        try:
+            return self._ask(op, **request)
+        except RefusedError:
+            self.standing = None
+            raise
 
     def _ask(self, op: str, **request: Any) -> dict[str, Any]:
         self._say(op, **request)

@@ -12,11 +12,10 @@ from .console import follow_console
 from .deploy_json import deploy_json
 from .errors import RefusedError
 from .facts import Deployed, DeployRequest, Plan
-from .host_keys import HostKeys
 from .local_checks import ImportCheck, go_on_after, refuse_other_main_files, run_tests
 from .manifest import Manifest, ascii_path, survey
 from .progress import Conversation
-from .reach import RobotChoice, address_to_follow, agent_on, chosen_target, connected, find, robot_of
+from .reach import RobotChoice, address_to_follow, agent_on, chosen_target, connected, find, keys_known_to, robot_of
 from .robot import Robot
 from .robot_checks import MemorySaver, refuse_unfit_robot
 from .starting import go_back, start
@@ -70,9 +69,9 @@ def deploy(project: Project, options: DeployOptions, talk: Conversation) -> str:
             _refuse_unimportable(importing, talk)
         if options.dry_run:
             plan = robot.plan(manifest)
-            progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan))
+            progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), asked_for=True)
             return connection.host
-        memory = MemorySaver(robot.facts, connection.address, HostKeys(project.pyproject.parent))
+        memory = MemorySaver(robot.facts, connection.address, keys_known_to(project))
         deployed = _upload(robot, project, manifest, options, talk)
         try:
             if not options.in_place:
@@ -83,7 +82,7 @@ def deploy(project: Project, options: DeployOptions, talk: Conversation) -> str:
     return connection.host
 
 
-def rollback(project: Project, choice: RobotChoice, release: int | None, talk: Conversation) -> str:
+def rollback(project: Project | None, choice: RobotChoice, release: int | None, talk: Conversation) -> str:
     """Start an earlier release again: the one with this number, or that before; the robot's host."""
     with robot_of(project, chosen_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
         went_back_to = go_back(robot, talk, release)
@@ -92,7 +91,7 @@ def rollback(project: Project, choice: RobotChoice, release: int | None, talk: C
     return connection.host
 
 
-def undeploy(project: Project, choice: RobotChoice, talk: Conversation, sure: bool) -> None:
+def undeploy(project: Project | None, choice: RobotChoice, talk: Conversation, sure: bool) -> None:
     """Remove the program from the robot.
 
     :param sure: whether the user has said already that this is meant
@@ -111,10 +110,12 @@ def undeploy(project: Project, choice: RobotChoice, talk: Conversation, sure: bo
         talk.progress.result({"host": connection.host, "removed": removed}, text)
 
 
-def show_console(project: Project, choice: RobotChoice, talk: Conversation, without_driver_station: bool) -> None:
+def show_console(
+    project: Project | None, choice: RobotChoice, talk: Conversation, without_driver_station: bool
+) -> None:
     """Print what the robot program prints, until Ctrl-C."""
     address = address_to_follow(chosen_target(project, choice, talk.ask), choice, talk.progress)
-    follow_console(address.host, without_driver_station)
+    follow_console(address.host, without_driver_station, talk.progress.quiet)
 
 
 def _upload(robot: Robot, project: Project, manifest: Manifest, options: DeployOptions, talk: Conversation) -> Deployed:
@@ -160,7 +161,7 @@ def _check_program(project: Project, options: DeployOptions, talk: Conversation)
             talk.progress.note("this project has no tests; the ready-made ones run with --builtin")
         return ImportCheck(project)
     with talk.progress.phase("tests", own_output=True) as phase:
-        passed = run_tests(project, options.builtin, talk.progress.child_output)
+        passed = run_tests(project, options.builtin, talk.progress.child_output, talk.progress.quiet)
         phase.detail = "passed" if passed else "failed"
     if not passed:
         go_on_after("the tests failed", talk.ask, "Correct what failed, or deploy without tests: --skip-tests")

@@ -40,7 +40,7 @@ class Target:
 
 
 def find_target(
-    project: Project,
+    project: Project | None,
     *,
     robot: str | None = None,
     team: int | None = None,
@@ -48,6 +48,7 @@ def find_target(
 ) -> Target:
     """Which robot is meant, by what the command says, else the project's files, else the user.
 
+    :param project: may be none where the command says it
     :param ask: asks the user a question; its answer is kept in ``.wpilib/wpilib_preferences.json``
     :raises UsageError: when nobody says it, or with the file and the key of a value that is no team number
     """
@@ -55,6 +56,8 @@ def find_target(
         return Target(robot=robot)
     if team is not None:
         return Target(_in_range(team, "--team"))
+    if project is None:
+        raise UsageError("whose robot?", remedy="Name it with --team NUMBER or --robot HOST.")
     for found in _said_in_files(project):
         return found
     if ask is None:

@@ -11,10 +11,10 @@ from .progress import Conversation
 from .reach import RobotChoice, chosen_target, robot_of
 
 
-def show_info(project: Project, choice: RobotChoice, talk: Conversation) -> None:
+def show_info(project: Project | None, choice: RobotChoice, talk: Conversation) -> None:
     """Tell what is on the robot: which program, who has deployed it, and which releases are kept."""
     with robot_of(project, chosen_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
-        talk.progress.result({"host": connection.host, **asdict(robot.facts)}, _as_text(robot.facts))
+        talk.progress.result({"host": connection.host, **asdict(robot.facts)}, _as_text(robot.facts), asked_for=True)
 
 
 def _as_text(facts: RobotFacts) -> str:

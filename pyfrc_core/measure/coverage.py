@@ -28,6 +28,7 @@ class CoverageOptions:
     """Which reports are wanted.
 
     :param fail_under: the least percentage that counts as success
+    :param quiet: print the report, and what is wrong, but not where the others are
     """
 
     enabled: bool
@@ -35,6 +36,7 @@ class CoverageOptions:
     xml: Path | None = None
     json: Path | None = None
     fail_under: float | None = None
+    quiet: bool = False
 
 
 @dataclass
@@ -105,6 +107,10 @@ def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:
     """
     from coverage.exceptions import NoDataError
 
+    def say(text: str) -> None:
+        if not options.quiet:
+            print(text)
+
     print()
     try:
         # A file that cannot be parsed is told and left out: it need not be one that the robot uses.
@@ -115,13 +121,13 @@ def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:
             print(unused)
         if options.html is not None:
             combined.html_report(directory=str(options.html), ignore_errors=True)
-            print(f"coverage as web pages: {options.html / 'index.html'}")
+            say(f"coverage as web pages: {options.html / 'index.html'}")
         if options.xml is not None:
             combined.xml_report(outfile=str(options.xml), ignore_errors=True)
-            print(f"coverage as XML: {options.xml}")
+            say(f"coverage as XML: {options.xml}")
         if options.json is not None:
             write_whole(options.json, [text])
-            print(f"coverage as JSON: {options.json}")
+            say(f"coverage as JSON: {options.json}")
     except NoDataError:
         print("coverage: no line of the project was run", file=sys.stderr)
         return 1

@@ -35,12 +35,14 @@ class ProfileOptions:
     :param html: a web page with a flame view
     :param json: all that was measured
     :param top: how many functions and lines to print
+    :param quiet: print the report, but not where the others are
     """
 
     pstats: Path | None = None
     html: Path | None = None
     json: Path | None = None
     top: int = 20
+    quiet: bool = False
 
 
 class _CallProfile:
@@ -151,16 +153,21 @@ def _report(directory: Path, options: ProfileOptions, command: str) -> None:
     figures = added_up(sorted(directory.glob("*.figures")))
     profiled_calls = _add_up_calls(sorted(directory.glob("*.pstats")), options.pstats)
     cost = measured_cost(figures, profiled_calls)
+
+    def say(text: str) -> None:
+        if not options.quiet:
+            print(text)
+
     print()
     print(as_text(figures, cost, options.top))
     if options.pstats is not None and profiled_calls:
-        print(f"profile for pstats: {options.pstats}")
+        say(f"profile for pstats: {options.pstats}")
     if options.html is not None:
         write_flame(figures, options.html, command)
-        print(f"profile as a web page: {options.html}")
+        say(f"profile as a web page: {options.html}")
     if options.json is not None:
         write_whole(options.json, [json.dumps(as_json(figures, cost, command), indent=1), "\n"])
-        print(f"profile as JSON: {options.json}")
+        say(f"profile as JSON: {options.json}")
 
 
 def _add_up_calls(files: list[Path], wanted: Path | None) -> int:

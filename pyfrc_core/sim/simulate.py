@@ -30,6 +30,7 @@ class SimRequest:
     :param seconds: for how long, in robot time; likewise `start_at`
     :param speed: robot seconds a second; None: real time, or as fast as it goes where nobody watches
     :param nt_port: None: the usual one where somebody may look; 0: none
+    :param quiet: say only what the robot prints, and what is wrong
     """
 
     ui: str | None = None
@@ -46,6 +47,7 @@ class SimRequest:
     picture: Path | None = None
     nt_port: int | None = None
     extensions: tuple[str, ...] = ()
+    quiet: bool = False
 
 
 def simulate(project: Project, request: SimRequest, say: Callable[[str], object]) -> int:
@@ -56,11 +58,11 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     ui = request.ui
     if ui is None:
         ui, why = default_name()
-        if why:
+        if why and not request.quiet:
             say(f"No window: {why}. This is --ui none.\n")
     if request.mode is not None and ui != "none":
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
-    headless = Headless(say, request.mode, request.seconds, request.watch) if ui == "none" else None
+    headless = Headless(say, request.mode, request.seconds, request.watch, request.quiet) if ui == "none" else None
     front_end = headless or window(ui)
     # Nobody watches what ends by itself.
     unattended = headless is not None and any(
@@ -84,7 +86,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     with ExitStack() as closing:
         closing.enter_context(ending_like_ctrl_c())
         if request.watch:
-            closing.enter_context(watching(simulation, (lambda files: None) if headless is None else headless.saved))
+            closing.enter_context(watching(simulation, front_end.saved))
         try:
             code = front_end.run(simulation)
         except KeyboardInterrupt:  # in the terminal: another way to close a window
@@ -92,7 +94,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         finally:  # also when the terminal has gone, and nothing can be said any more
             simulation.close()
             written = kept.write(simulation)
-    for file in written:
+    for file in () if request.quiet else written:
         say(f"wrote {file}\n")
     return code
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias
 
 from ..config.settings import TestSettings
+from ..processors import usable_processors
 
 Isolation: TypeAlias = Literal["auto", "fork", "spawn", "none"]
 
@@ -56,10 +56,3 @@ class TestOptions:
             record_directory=record_directory,
             hang_seconds=settings.hang_seconds,
         )
-
-
-def usable_processors() -> int:
-    """How many processes this one may keep busy."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

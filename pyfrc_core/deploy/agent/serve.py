@@ -8,8 +8,8 @@ import pwd
 import re
 import sys
 import traceback
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -52,13 +52,15 @@ class Agent:
         self._releases = Releases(places)
         self._program = Program(places)
         self._who = who
+        #: Held from a change of the program until it has been started again and watched.
+        self._lock: ExitStack | None = None
         #: The manifest that was last planned with: a deploy that brings none is of these files.
         self._files: list[Any] = []
         self._requests: dict[str, Callable[[Said], Said]] = {
             "plan": self._plan,
             "deploy": self._deploy,
             "restart": lambda request: self._restart(),
-            "watch": lambda request: self._program.watch(self._wire, float(request["seconds"])),
+            "watch": self._watch,
             "rollback": self._roll_back,
             "info": self.facts,
             "undeploy": lambda request: self._undeploy(),
@@ -68,8 +70,8 @@ class Agent:
         """Answer until the laptop hangs up."""
         self._answer(self.facts, {})
         while True:
-            # Between two requests no lock is held, and the laptop may have to ask its user something.
-            self._wire.impatient = False
+            # Where no lock is held, the laptop may have to ask its user something.
+            self._wire.impatient = self._lock is not None
             try:
                 request = self._wire.hear()
             except EndedError:
@@ -135,11 +137,22 @@ class Agent:
         known = {key: record.get(key) for key in ("main", "debug", "deploy", "from")}
         return {"release": number, "taken": bool(record.get("taken")), "files": len(record.get("files", ())), **known}
 
-    def _transaction(self) -> Lock:
+    @contextmanager
+    def _transaction(self, keep: bool = False) -> Iterator[None]:
+        """The lock is held meanwhile.
+
+        :param keep: and when all went well, after it, for the restart that follows
+        """
         self._wire.impatient = True
         if not self._places.home.is_dir():
             raise Refusal("roborio", f"there is no {self._places.home} here: this is no roboRIO")
-        return Lock(self._places, self._who)
+        held, self._lock = self._lock, None
+        with held or ExitStack() as lock:
+            if held is None:
+                lock.enter_context(Lock(self._places, self._who))
+            yield
+            if keep:
+                self._lock = lock.pop_all()
 
     def _plan(self, request: Said) -> Said:
         self._files = request["files"]
@@ -147,7 +160,7 @@ class Agent:
 
     def _deploy(self, request: Said) -> Said:
         request.setdefault("files", self._files)
-        with self._transaction():
+        with self._transaction(keep=not request.get("in_place")):
             self._releases.recover()
             try:
                 return Deploy(self._releases, self._wire, request).run()
@@ -156,16 +169,21 @@ class Agent:
                 raise
 
     def _restart(self) -> Said:
-        self._program.restart()
-        current = self._releases.current()
-        if current is not None:
-            # Whoever holds the lock by now has done this.
-            with suppress(Refusal), self._transaction():
+        with self._transaction(keep=True):
+            self._program.restart()
+            current = self._releases.current()
+            if current is not None:
                 self._releases.settle(current)
         return {}
 
+    def _watch(self, request: Said) -> Said:
+        # Locked: somebody else's restart in the middle of it would be taken for this program's end.
+        with self._lock or ExitStack():
+            self._lock = None
+            return self._program.watch(self._wire, float(request["seconds"]))
+
     def _roll_back(self, request: Said) -> Said:
-        with self._transaction():
+        with self._transaction(keep=True):
             self._releases.recover()
             return self._roll_back_to(request.get("release"))
 

@@ -13,7 +13,7 @@ class FrontEnd(ABC):
     """Shows one simulation.
 
     A front end asks `Simulation.snapshot` and `Simulation.status` when it wants to draw, and calls the simulation's
-    methods for what its user wants. It need know nothing else, and is told nothing.
+    methods for what its user wants. It need know nothing else.
     """
 
     @abstractmethod
@@ -22,3 +22,6 @@ class FrontEnd(ABC):
 
         :returns: the command's exit code
         """
+
+    def saved(self, files: list[str]) -> None:  # noqa: B027 - who shows nothing of it need not listen
+        """These files were saved, and the robot gets their code: with --watch, from another thread."""

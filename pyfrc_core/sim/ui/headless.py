@@ -71,6 +71,7 @@ class Headless(FrontEnd):
     :param mode: what to put the robot through; None: only what comes from scripts and dashboards
     :param seconds: for how long; None: until it is interrupted, or for as long as the script or the match takes
     :param watching: whether a robot that fails gets new code, where nothing says when to end
+    :param quiet: say only what the robot prints, and what is wrong
     """
 
     def __init__(
@@ -79,8 +80,10 @@ class Headless(FrontEnd):
         mode: HeadlessMode | None = None,
         seconds: float | None = None,
         watching: bool = False,
+        quiet: bool = False,
     ) -> None:
         self._say = say
+        self._quiet = quiet
         self._mode = mode
         self._seconds = seconds
         self._watching = watching
@@ -104,8 +107,11 @@ class Headless(FrontEnd):
             simulation.close()
         self.summary = Summary(simulation.snapshot, status.failure, speed, status.overruns)
         self._print(simulation)
-        for line in self.summary.lines():
-            self._say(f"{line}\n")
+        if not self._quiet:
+            for line in self.summary.lines():
+                self._say(f"{line}\n")
+        elif status.failure is not None:
+            self._say(f"{_text_of(status.failure)}\n")
         if interrupted and status.failure is None and simulation.snapshot is None:
             self._say(f"interrupted while {simulation.project.main_file.name} was still being imported and started\n")
             return 2
@@ -116,6 +122,8 @@ class Headless(FrontEnd):
 
     def saved(self, files: list[str]) -> None:
         """Say that the robot gets new code."""
+        if self._quiet:
+            return
         seconds = 0.0 if self._simulation is None else self._time_us(self._simulation) / 1_000_000
         verb = "was" if len(files) == 1 else "were"
         self._say(f"{', '.join(files)} {verb} saved: going on with the new code at {seconds:.2f} s\n")
@@ -181,4 +189,6 @@ class Headless(FrontEnd):
         if self._watching and status.failure is not None and status.failure is not self._told:
             self._told = status.failure
             if status.state == "failed":  # else it is over, and summed up
-                self._say(f"{_text_of(status.failure)}\nwaiting for the correction to be saved\n")
+                self._say(f"{_text_of(status.failure)}\n")
+                if not self._quiet:
+                    self._say("waiting for the correction to be saved\n")

@@ -1,0 +1,81 @@
+"""What is so on the robot while its program is changed: for the user who is cut off, or has had enough, in between."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Protocol
+
+from .errors import ConnectionFailedError, StoppedError
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A moment at which a deploy may be cut short.
+
+    :param what: what is so then
+    :param remedy: what the user can do about it
+    """
+
+    what: str
+    remedy: str
+
+
+TAKES_OVER = Standing(
+    "the new release is taking over: the robot starts it or the one before from now on, and still runs the one before",
+    "Deploy again to have it started: pyfrc deploy. To see which it has: pyfrc deploy-info.",
+)
+GOES_BACK = Standing(
+    "the robot may have gone back already, but still runs the program from before",
+    "Run the command again. To see which release it has: pyfrc deploy-info.",
+)
+GOES_AWAY = Standing(
+    "the robot may have no program any more, or only a part of its releases",
+    "Run the command again. To see what it has: pyfrc deploy-info.",
+)
+
+
+def deployed(release: int) -> Standing:
+    """It is on the robot, and has not been started there yet."""
+    return Standing(
+        f"release {release} is on the robot, which starts it when it is switched on, but may still run the program "
+        "from before",
+        "Deploy again to have it started now: pyfrc deploy. Or go back to the one before: pyfrc deploy --rollback.",
+    )
+
+
+def went_back(release: int) -> Standing:
+    """The same of an earlier release."""
+    return Standing(
+        f"the robot starts release {release} when it is switched on, but may still run the program from before",
+        f"To have it started now: pyfrc deploy --rollback {release}.",
+    )
+
+
+def started(release: int | None) -> Standing:
+    """It was started a moment ago."""
+    return Standing(
+        f"{f'release {release}' if release else 'the program'} was started, but not seen to run",
+        "To see whether it does: pyfrc deploy-info. To go back to the one before: pyfrc deploy --rollback.",
+    )
+
+
+class Stands(Protocol):
+    """Who knows what is so."""
+
+    standing: Standing | None
+
+
+@contextmanager
+def told_what_is_so(robot: Stands) -> Iterator[None]:
+    """Ctrl-C, or a link that breaks, while the robot's program is being changed: the error says what is so now."""
+    try:
+        yield
+    except (KeyboardInterrupt, ConnectionFailedError) as error:
+        now = robot.standing
+        if now is None:
+            raise
+        if isinstance(error, KeyboardInterrupt):
+            raise StoppedError(f"interrupted; {now.what}", remedy=now.remedy) from error
+        raise ConnectionFailedError(f"{error.message}; {now.what}", where=error.where, remedy=now.remedy) from error

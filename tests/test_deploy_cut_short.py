@@ -1,0 +1,252 @@
+"""A deploy that ends between its change on the robot and the program's start: what is so then is told. And the lock."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import io
+import socket
+import zlib
+from collections.abc import Callable, Generator, Iterator
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from roborio import Proxy, Roborio, require_roborio
+from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+
+from pyfrc_core.deploy import session
+from pyfrc_core.deploy.agent import serve, wire
+from pyfrc_core.deploy.agent.places import Places
+from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError, StoppedError
+from pyfrc_core.deploy.manifest import Manifest
+from pyfrc_core.deploy.progress import Conversation, Phase, Progress
+from pyfrc_core.deploy.reach import RobotChoice
+from pyfrc_core.deploy.robot import DeployRequest, Robot
+from pyfrc_core.deploy.session import DeployOptions
+from pyfrc_core.deploy.standing import told_what_is_so
+from pyfrc_core.project import find_project
+
+REQUEST = DeployRequest("robot.py", {})
+
+
+@pytest.fixture(scope="module")
+def agents() -> Generator[Agents]:
+    with Agents() as agents:
+        yield agents
+
+
+@pytest.fixture
+def robot() -> Generator[LocalRobot]:
+    with directory_in_memory() as directory:
+        yield LocalRobot.new(directory / "robot")
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Manifest:
+    return project_of(tmp_path / "project", {"robot.py": ROBOT_PY})
+
+
+def interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def interrupt_after(do: Callable[[Robot, Manifest], object], agent: Robot, project: Manifest) -> None:
+    with told_what_is_so(agent):
+        do(agent, project)
+        interrupt()
+
+
+def refuse(agent: Robot, project: Manifest) -> None:
+    with pytest.raises(RefusedError):
+        agent.rollback(77)
+
+
+def is_held(robot: LocalRobot) -> bool:
+    with (robot.home / ".pyfrc/lock").open() as stream:
+        try:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return True
+    return False
+
+
+def in_switch(phase: str, done: int, total: int) -> None:
+    if phase == "switch":
+        interrupt()
+
+
+#: What has been done, what is told, and the command that helps.
+CUT_SHORT: dict[str, tuple[Callable[[Robot, Manifest], object], str, str]] = {
+    "switching": (
+        lambda agent, project: agent.deploy(project, REQUEST, in_switch),
+        "still runs the one before",
+        "pyfrc deploy.",
+    ),
+    "deployed": (
+        lambda agent, project: agent.deploy(project, REQUEST),
+        "release 2 is on the robot, which starts it when it is switched on, but may still run the program from before",
+        "pyfrc deploy. Or go back to the one before: pyfrc deploy --rollback.",
+    ),
+    "restarted": (
+        lambda agent, project: (agent.deploy(project, REQUEST), agent.restart()),
+        "release 2 was started, but not seen to run",
+        "pyfrc deploy-info. To go back to the one before: pyfrc deploy --rollback.",
+    ),
+    "went back": (
+        lambda agent, project: (agent.deploy(project, REQUEST), agent.rollback()),
+        "the robot starts release 1 when it is switched on, but may still run the program from before",
+        "pyfrc deploy --rollback 1.",
+    ),
+}
+
+
+@pytest.mark.parametrize("moment", CUT_SHORT)
+def test_ctrl_c_tells_what_is_so_on_the_robot(
+    moment: str, robot: LocalRobot, agents: Agents, project: Manifest, tmp_path: Path
+) -> None:
+    robot.deploy(agents, project)
+    do, what, remedy = CUT_SHORT[moment]
+    agent = robot.start(agents)
+    second = project_of(tmp_path / "project", {"robot.py": ROBOT_PY + "# 2\n"})
+    with contextlib.closing(agent), pytest.raises(StoppedError) as caught:
+        interrupt_after(do, agent, second)
+    assert caught.value.exit_code == 2
+    assert caught.value.message.startswith("interrupted; ")
+    assert what in caught.value.message
+    assert remedy in str(caught.value.remedy)
+
+
+@pytest.mark.parametrize(
+    "do",
+    [
+        lambda agent, project: agent.plan(project),
+        lambda agent, project: agent.deploy(project, DeployRequest("robot.py", {}, in_place=True)),
+        lambda agent, project: (agent.deploy(project, REQUEST), agent.restart(), agent.watch(0.0)),
+        lambda agent, project: agent.undeploy(),
+        refuse,
+    ],
+    ids=["plan", "in place", "watched", "undeployed", "refused"],
+)
+def test_where_nothing_is_half_done_ctrl_c_is_just_that(
+    do: Callable[[Robot, Manifest], object], robot: LocalRobot, agents: Agents, project: Manifest
+) -> None:
+    robot.deploy(agents, project)
+    agent = robot.start(agents)
+    with contextlib.closing(agent), pytest.raises(KeyboardInterrupt):
+        interrupt_after(do, agent, project)
+
+
+def test_the_remedies_help(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
+    """A release that is current already can be gone back to, which starts it."""
+    robot.deploy(agents, project)
+    agent = robot.start(agents)
+    with contextlib.closing(agent):
+        assert agent.rollback(1).release.number == 1
+        agent.restart()
+        assert agent.deploy(project, REQUEST).unchanged
+        agent.restart()
+
+
+# -- the lock ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_lock_is_held_until_the_program_was_started_and_watched(
+    robot: LocalRobot, agents: Agents, project: Manifest, tmp_path: Path
+) -> None:
+    agent = robot.start(agents)
+    with contextlib.closing(agent):
+        agent.deploy(project, REQUEST)
+        assert is_held(robot)
+        agent.restart()
+        assert is_held(robot)
+        agent.watch(0.0)
+        assert not is_held(robot)
+        agent.deploy(project_of(tmp_path / "project", {"robot.py": ROBOT_PY + "# 2\n"}), REQUEST)
+        agent.rollback()
+        assert is_held(robot)
+        agent.restart()
+        agent.watch(0.0)
+        assert not is_held(robot)
+        agent.deploy(project, DeployRequest("robot.py", {}, in_place=True))
+        assert not is_held(robot)
+        agent.deploy(project, REQUEST)
+        with pytest.raises(RefusedError):
+            agent.rollback(77)
+        assert not is_held(robot), "nothing is going to be started"
+        agent.deploy(project, REQUEST)
+        assert is_held(robot)
+    assert not is_held(robot), "it goes with the connection"
+
+
+def test_nobody_else_restarts_in_between(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
+    first, second = robot.start(agents), robot.start(agents)
+    with contextlib.closing(first), contextlib.closing(second):
+        first.deploy(project, REQUEST)
+        with pytest.raises(RefusedError, match="is deploying to this robot right now"):
+            second.restart()
+        first.restart()
+        first.watch(0.0)
+        second.restart()
+
+
+def test_a_laptop_that_says_nothing_while_the_lock_is_held_loses_its_turn(robot: LocalRobot) -> None:
+    """Before a restart the user is asked nothing; after it, perhaps."""
+
+    class Listening(wire.Wire):
+        def hear(self) -> wire.Said:
+            impatient.append(self.impatient)
+            return super().hear()
+
+    impatient: list[bool] = []
+    ours, theirs = socket.socketpair()
+    nothing = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"  # SHA-256
+    with ours, theirs, theirs.makefile("rb", buffering=0) as source:
+        for said in (
+            wire.said_frame({"op": "deploy", "main": "robot.py", "files": [["robot.py", 0, nothing, False]]}),
+            wire.frame(wire.CONTENT, zlib.compress(b"")),
+            *(wire.said_frame(each) for each in ({"op": "restart"}, {"op": "watch", "seconds": 0.0})),
+        ):
+            ours.sendall(said)
+        ours.shutdown(socket.SHUT_WR)
+        serve.Agent(Listening(source, io.BytesIO()), Places(str(robot.root)), "somebody").serve()
+    assert impatient == [False, True, True, False]
+
+
+# -- as it is seen -----------------------------------------------------------------------------------------------------
+
+
+class Cutting(Progress):
+    """Does something when the program is to be started."""
+
+    def __init__(self, do: Callable[[], object]) -> None:
+        super().__init__(io.StringIO())
+        self._do = do
+
+    @contextlib.contextmanager
+    def _shown(self, phase: Phase, own_output: bool) -> Iterator[Phase]:
+        if phase.name == "start":
+            self._do()
+        yield phase
+
+
+def test_a_deploy_that_is_cut_before_the_start_tells_what_is_so(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+    require_roborio()
+    monkeypatch.setenv("SSH_AUTH_SOCK", "")
+    project = find_project(make_project({"robot.py": ROBOT_PY}).path)
+    with Roborio(wpilib=version("wpilib")) as robot:
+
+        def deploy_by(where: str, progress: Progress) -> None:
+            options = DeployOptions(choice=RobotChoice(robot=where), skip_tests=True)
+            session.deploy(project, options, Conversation(progress))
+
+        with pytest.raises(StoppedError, match=r"interrupted; release 1 is on the robot"):
+            deploy_by(robot.where, Cutting(interrupt))
+        with contextlib.ExitStack() as link:
+            proxy = link.enter_context(Proxy((robot.host, robot.port)))
+            what = r"link to the robot was lost: .*; release 1 is on the robot"
+            with pytest.raises(ConnectionFailedError, match=what) as caught:
+                deploy_by(f"{proxy.host}:{proxy.port}", Cutting(link.close))
+        assert "pyfrc deploy --rollback" in str(caught.value.remedy)
+        deploy_by(robot.where, Progress(io.StringIO()))
+        robot.said("Robot program startup complete")

@@ -1,0 +1,196 @@
+"""`-q`: what was asked for, warnings and errors are printed, and nothing else, by each command."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+from collections.abc import Iterator
+from importlib.metadata import version
+
+import pytest
+from conftest import MakeProject, RobotProject
+from roborio import Roborio, require_roborio
+from test_command_line import EVERY
+
+ROBOT = """
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            print("the robot's words")
+            self.stick = wpilib.Joystick(0)
+
+        def teleopPeriodic(self):
+            if self.stick.getRawButton(1):
+                raise ValueError("not that button")
+
+        def simulationPeriodic(self):
+            pass
+"""
+
+DIES = """
+
+    import os
+
+    if os.path.exists("/usr/local/frc"):
+        raise RuntimeError("no such gyro")
+"""
+
+
+@pytest.fixture(scope="module")
+def project(make_shared_project: MakeProject) -> RobotProject:
+    project = make_shared_project(
+        {"robot.py": ROBOT, "tests/test_it.py": "def test_it(robot):\n    assert robot\n", "sim/config.json": "{}\n"}
+    )
+    recorded = project.run("sim", "--ui", "none", "--mode", "disabled", "--seconds", "0.1", "--record", "ran.jsonl")
+    assert "simulated 0.10 s" in recorded.stdout
+    assert "wrote ran.jsonl" in recorded.stdout
+    return project
+
+
+def words(printed: str) -> list[str]:
+    """What the robot prints, without what WPILib does."""
+    return [line for line in printed.splitlines() if not re.match("Not loading|Default .* Override me!$", line)]
+
+
+@pytest.mark.parametrize("path", EVERY, ids=" ".join)
+def test_each_command_takes_it_behind_its_name(path: tuple[str, ...]) -> None:
+    options = {name for parameter in EVERY[path].params for name in parameter.opts}
+    assert {"-q", "--quiet", "-v", "--verbose"} <= options
+
+
+@pytest.mark.parametrize("args", [["-q", "-v", "init"], ["-q", "config", "show", "-v"], ["test", "-v", "--quiet"]])
+def test_quiet_and_verbose_cannot_both_be(args: list[str], project: RobotProject) -> None:
+    result = project.run(*args)
+    assert (result.code, result.stdout) == (2, "")
+    assert "--verbose and --quiet cannot both be" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["-q", "init", "another"],
+        ["add-tests", "-q"],
+        ["create-physics", "--quiet"],
+        ["-q", "config", "check"],
+        ["config", "-q", "check", "--strict"],
+        ["fuzz", "-q", "--runs", "1", "-j", "1", "--seed", "4"],
+    ],
+    ids=" ".join,
+)
+def test_where_only_something_was_to_be_done_nothing_is_printed(args: list[str], make_project: MakeProject) -> None:
+    robot = ROBOT.replace('            print("the robot\'s words")\n', "").replace("raise ValueError", "str")
+    result = make_project({"robot.py": robot, "sim/config.json": "{}\n"}).run(*args)
+    assert (result.code, result.output) == (0, "")
+
+
+@pytest.mark.parametrize(
+    "args", [["init", "--list"], ["config", "show"], ["config", "schema"], ["completion", "zsh"]], ids=" ".join
+)
+def test_what_was_asked_for_is_printed_all_the_same(args: list[str], project: RobotProject) -> None:
+    quiet = project.run(*args[:-1], "-q", args[-1])
+    assert quiet.code == 0, quiet.output
+    assert quiet.output == project.run(*args).output != ""
+
+
+@pytest.mark.parametrize(
+    "args",
+    [
+        ["sim", "--ui", "none", "--mode", "disabled", "--seconds", "0.1", "--record", "again.jsonl"],
+        ["replay", "ran.jsonl"],
+    ],
+    ids=" ".join,
+)
+def test_of_a_run_only_the_robots_words_are_printed(args: list[str], project: RobotProject) -> None:
+    result = project.run("-q", *args)
+    assert (result.code, words(result.output)) == (0, ["the robot's words"])
+
+
+def test_tests_print_as_pytest_does_with_it(project: RobotProject) -> None:
+    result = project.run("test", "-q")
+    assert result.code == 0
+    assert "test session starts" not in result.stdout
+    assert "1 passed" in result.stdout
+    assert "tests/test_it.py::test_it PASSED" in project.run("test", "-v").stdout
+
+
+def test_a_measurement_is_a_report_and_does_not_say_where_the_others_are(project: RobotProject) -> None:
+    measured = project.run("coverage", "-q", "--xml", "coverage.xml", "replay", "ran.jsonl")
+    assert measured.code == 0, measured.output
+    assert words(measured.stdout)[:2] == ["the robot's words", ""]
+    assert "\nTOTAL" in measured.stdout
+    assert "coverage.xml" not in measured.output
+    assert (project.path / "coverage.xml").is_file()
+    profiled = project.run("profile", "--json", "profile.json", "replay", "-q", "ran.jsonl")
+    assert profiled.code == 0, profiled.output
+    assert "How long each call took" in profiled.stdout
+    assert "profile.json" not in profiled.output
+    assert "replayed" not in profiled.output
+
+
+def test_the_doctor_tells_problems_only(project: RobotProject) -> None:
+    all_told = project.run("doctor", "--no-robot", "--main", "none.py").stdout.splitlines()
+    result = project.run("-q", "doctor", "--no-robot", "--main", "none.py")
+    assert result.code == 1
+    (problem, remedy) = result.stdout.splitlines()
+    assert problem.startswith("problem ")
+    assert problem in all_told
+    assert "--main" in remedy
+
+
+def test_failures_are_told(project: RobotProject) -> None:
+    fuzzed = project.run("fuzz", "-q", "--runs", "3", "-j", "1")
+    assert fuzzed.code == 1, fuzzed.output
+    assert "ValueError: not that button" in words(fuzzed.stdout)[0]
+    *_, last = fuzzed.stdout.splitlines()
+    command, found = last.rsplit(maxsplit=1)
+    assert command == "  pyfrc replay"
+    for args in (["replay", found], ["sim", "--ui", "none", "--script", found]):
+        failed = project.run(*args, "--quiet")
+        assert failed.code == 1
+        said, failure = words(failed.stdout)
+        assert said == "the robot's words"
+        assert "ValueError: not that button" in failure
+    wrong = project.run("-q", "config", "show", "--main", "none.py")
+    assert (wrong.code, wrong.first_error) == (2, "there is no file none.py")
+
+
+# -- on a robot --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def robot() -> Iterator[Roborio]:
+    require_roborio()
+    with contextlib.ExitStack() as stack:
+        yield stack.enter_context(Roborio(wpilib=version("wpilib")))
+
+
+def test_a_deploy_and_its_kin(robot: Roborio, make_project: MakeProject) -> None:
+    failing = "def test_it():\n    print('the words of a test')\n    assert not {}\n"
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": failing.format(False)})
+
+    def quiet(*args: str) -> tuple[int, str, str]:
+        result = project.run(*args, "-q", "--robot", robot.where, env={"SSH_AUTH_SOCK": ""})
+        return result.code, result.stdout, result.stderr
+
+    code, plan, errors = quiet("deploy", "--dry-run")
+    assert (code, plan.splitlines()[0], errors) == (0, "+ robot.py", "")
+    assert quiet("deploy") == (0, "", "")
+    code, told, errors = quiet("deploy-info")
+    assert (code, told[:10], errors) == (0, "robot     ", "")
+    project.write({"tests/test_it.py": failing.format(True)})
+    code, told, errors = quiet("deploy")
+    assert (code, errors.startswith("error: not deployed: the tests failed")) == (1, True)
+    assert "the words of a test" in told
+    project.write({"robot.py": ROBOT + DIES})
+    code, told, errors = quiet("deploy", "--skip-tests")
+    assert (code, errors.startswith("error: the new program ended at once")) == (3, True)
+    assert all(line.startswith("  | ") for line in told.splitlines())
+    assert "RuntimeError: no such gyro" in told
+    assert quiet("deploy", "--rollback") == (0, "", "")
+    code, told, errors = quiet("deploy", "--rollback", "1", "--json")
+    assert [line.split('"')[3] for line in told.splitlines()] == ["result"]
+    assert quiet("undeploy", "--yes") == (0, "", "")
+    assert not os.path.lexists(robot.home / "py")

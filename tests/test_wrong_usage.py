@@ -1,0 +1,95 @@
+"""Wrong settings, wrong options, the wrong directory: told in a sentence, with what to do."""
+
+from __future__ import annotations
+
+import pytest
+from conftest import MakeProject
+from test_failures import ANY_TEST, ROBOT
+
+
+@pytest.mark.parametrize(
+    ("settings", "line", "message", "remedy"),
+    [
+        ("[tool.pyfrc.match]\ntelop = 1\n", 2, "unknown key 'tool.pyfrc.match.telop'", "did you mean 'teleop'?"),
+        ("[tool.pyfrc]\n\nrobot_clas = 1\n", 3, "unknown key 'tool.pyfrc.robot_clas'", "did you mean 'robot_class'?"),
+        ('[tool.pyfrc.match]\nteleop = "long"\n', 2, "tool.pyfrc.match.teleop = 'long': input should be a valid", ""),
+        ("[tool.pyfrc.match]\n# s\nteleop = -1\n", 3, "tool.pyfrc.match.teleop = -1: ", "greater than 0"),
+        ('[tool.pyfrc.test]\njobs = "many"\n', 2, "tool.pyfrc.test.jobs = 'many': ", "'auto'"),
+        ('[tool.pyfrc.test]\nisolation = "full"\n', 2, "tool.pyfrc.test.isolation = 'full': ", "'spawn'"),
+    ],
+    ids=["unknown-key", "unknown-top-key", "wrong-type", "out-of-range", "neither-of-two", "not-a-choice"],
+)
+def test_a_wrong_setting_is_told_with_its_line(
+    make_project: MakeProject, settings: str, line: int, message: str, remedy: str
+) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": ANY_TEST, "pyproject.toml": settings})
+    result = project.run("test")
+    assert result.code == 2, result.output
+    assert result.first_error.startswith(f"pyproject.toml:{line}: {message}")
+    assert remedy in result.stderr
+    assert "Traceback" not in result.output
+
+
+def test_a_broken_pyproject_toml_is_told_with_its_line(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.pyfrc]\nmain =\n"})
+    result = project.run("test")
+    assert result.code == 2, result.output
+    assert result.first_error.startswith("pyproject.toml")
+    assert "not valid TOML: " in result.first_error
+    assert "line 2" in result.first_error
+    assert "Traceback" not in result.output
+
+
+@pytest.mark.parametrize("name", ["mian", "main"])
+def test_plain_pytest_tells_wrong_settings_in_a_sentence(make_project: MakeProject, name: str) -> None:
+    project = make_project({"robot.py": ROBOT, "pyproject.toml": f'[tool.pyfrc]\n{name} = "nothing.py"\n'})
+    result = project.pytest()
+    assert result.code == 4
+    assert "INTERNALERROR" not in result.output
+    assert name in result.output
+
+
+def test_a_project_without_tests_is_told_where_they_are_looked_for(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT})
+    result = project.run("test")
+    assert result.code == 1, result.output
+    assert "test_*.py" in result.stderr
+    assert str(project.path / "tests") in result.stderr
+    assert str(project.path.parent / "tests") in result.stderr
+    assert "pyfrc test --builtin" in result.stderr
+
+    builtin = project.run("test", "--builtin")
+    assert builtin.code == 0, builtin.output
+    assert "4 passed" in builtin.stdout
+
+
+def test_a_mistyped_command_is_told_the_nearest(make_project: MakeProject) -> None:
+    result = make_project({"robot.py": ROBOT}).run("tset")
+    assert result.code == 2
+    assert "There is no command 'tset'. Did you mean 'test'?" in result.stderr
+
+
+def test_outside_of_a_project_there_is_a_remedy(make_project: MakeProject) -> None:
+    project = make_project({"notes.txt": "No robot here."})
+    result = project.run("test")
+    assert result.code == 2
+    assert f"there is no robot.py in or above {project.path}" in result.first_error
+    for remedy in ("--project", "--main", "pyfrc init"):
+        assert remedy in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("args", "message"),
+    [
+        (["--jobs", "none"], "'none' is neither a number of processes, 1 or more, nor 'auto'"),
+        (["--jobs", "0"], "'0' is neither a number of processes, 1 or more, nor 'auto'"),
+        (["--seed", "-1"], "--seed"),
+        (["--project", "nowhere"], "there is no directory nowhere"),
+        (["--main", "nothing.py"], "there is no file nothing.py"),
+    ],
+)
+def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], message: str) -> None:
+    result = make_project({"robot.py": ROBOT}).run("test", *args)
+    assert result.code == 2
+    assert message in result.stderr
+    assert "Traceback" not in result.stderr
