@@ -141,6 +141,50 @@ def test_what_was_driven_is_written_however_it_ends(name: str, make_project) -> 
     assert list(made.temporary.iterdir()) == []
 
 
+def test_the_data_log_of_a_robot_that_dies_at_once(make_project) -> None:
+    """What WPILib holds back for one large write is lost with the process."""
+    from wpiutil.log import DataLogReader
+
+    robot = """
+        import os
+
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.motor, self.packets = wpilib.PWMSparkMax(0), 0
+
+            def teleopPeriodic(self):
+                self.packets += 1
+                self.motor.set(self.packets % 100 / 100)
+                if self.packets == 500:
+                    os._exit(3)
+    """
+    made = make_project({"robot.py": robot})
+    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20", "--wpilog", "run.wpilog")
+    assert (result.code, "wrote run.wpilog" in result.stdout) == (1, True), result.output
+    records = DataLogReader(str(made.path / "run.wpilog"))
+    assert max(record.getTimestamp() for record in records if not record.isControl()) > 8_000_000
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no file is too large there")
+def test_a_data_log_for_which_there_is_no_room(make_project) -> None:
+    """Files that may not grow any further stand for a disk that is full."""
+    made = make_project(FILES)
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))"
+    command = "import sys; sys.argv[0] = 'pyfrc'; from pyfrc_cli.main import run; run()"
+    arguments = ["sim", "--ui", "none", "--mode", "teleop", "--seconds", "20", "--wpilog", "run.wpilog"]
+    result = subprocess.run(
+        [sys.executable, "-c", f"{limit}; {command}", *arguments],
+        cwd=made.path, env=os.environ | {"PYTHONHASHSEED": "0"}, capture_output=True, text=True, timeout=PATIENCE,
+    )  # fmt: skip
+    assert result.returncode == 2, result.stdout + result.stderr
+    assert "run.wpilog is not complete: " in result.stderr
+    assert "wrote" not in result.stdout
+    assert "Fatal Python error" not in result.stdout + result.stderr
+
+
 @pytest.mark.parametrize("name", SIGNALS)
 def test_interrupted_while_the_robot_is_imported(name: str, make_project) -> None:
     made = make_project({"robot.py": "import time\n\nprint('importing', flush=True)\ntime.sleep(1e6)\n"})

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 import socket
+import subprocess
+import sys
+import tempfile
 import threading
 from collections.abc import Iterator
 from dataclasses import FrozenInstanceError, replace
@@ -274,6 +277,9 @@ def test_a_robot_that_fails_takes_nothing_with_it(
     )
     place, _, what = status.failure.headline.partition(": ")
     assert place in (f"robot.py:{line}", f"robot.py:{line + 1}"), what
+    if button == 5:
+        assert f'\n  File "robot.py", line {line}, in ' in status.failure.details
+        assert str(project.root) not in status.failure.details
     simulation.rewind(1.0)
     wait(simulation, lambda: simulation.status.state == "paused")
     assert simulation.snapshot == before
@@ -359,6 +365,50 @@ def test_where_processes_cannot_be_forked(project: Project) -> None:
         simulation.rewind(1.0)
         wait(simulation, lambda: simulation.status.state == "paused")
         assert simulation.snapshot == there
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="connections have no files there")
+def test_a_long_name_of_the_temporary_directory(project: Project, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A local connection's name may have about a hundred characters."""
+    long = tmp_path / ("long" * 40)
+    long.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(long))
+    with Simulation(project, STILL) as simulation:
+        drive_forward(simulation)
+        run(simulation, 0.5)
+        assert simulation.snapshot is not None
+        assert simulation.snapshot.mode == "teleop"
+        assert len(list(long.iterdir())) == 1
+    assert list(long.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "fork", [False, pytest.param(True, marks=pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork"))]
+)
+def test_closed_right_after_the_start(fork: bool, project: Project, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[subprocess.Popen[bytes]] = []
+
+    class Noted(subprocess.Popen):  # type: ignore[type-arg]
+        def __init__(self, *args: object, **options: object) -> None:
+            super().__init__(*args, **options)  # type: ignore[call-overload]
+            made.append(self)
+
+    monkeypatch.setattr(subprocess, "Popen", Noted)
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(kept))
+    simulation = Simulation(project, replace(STILL, fork=fork))
+    simulation.start()
+    simulation.enable()
+    simulation.close()
+    simulation.close()
+    assert simulation.status.state == "closed"
+    assert simulation.snapshot is None
+    assert made
+    assert all(process.returncode is not None for process in made)
+    assert list(kept.iterdir()) == []
+    simulation.restart()  # nothing comes of it any more
+    assert simulation.status.state == "closed"
 
 
 @pytest.mark.parametrize("speed", [-1, 0.001, 1e6, math.nan])

@@ -28,7 +28,9 @@ from pyfrc_core.project import Project
 from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.interruption import ending_like_ctrl_c
 from pyfrc_core.sim.scene import Tag, Target
+from pyfrc_core.sim.snapshot import Chooser, Failure
 from pyfrc_core.sim.ui.choose import default_name, window
 from pyfrc_core.sim.ui.tk import TkFrontEnd
 from pyfrc_core.sim.ui.tk.window import Window
@@ -398,6 +400,10 @@ def test_joysticks_by_mouse(user: User) -> None:
     x, y = joystick.center_of(("axis", 3))
     user.click(canvas, x + 30, y)
     user.until(lambda: user.snapshot.values["joysticks[0].axes"][3] > 0.2)
+    user.click(joystick._plug)
+    user.until(lambda: "joysticks[0].axes" not in user.snapshot.values)
+    user.shown()
+    assert joystick._plug.cget("text") == "Not plugged in"
     x, y = joystick.center_of(("button", 1))
     joystick.chosen.set(4)
     joystick._make()
@@ -485,12 +491,24 @@ def test_choices_before_a_match(user: User) -> None:
     user.until(lambda: user.snapshot.values["alliance_station"] == 6)
     user.shown()
     assert match._alliance.get() == "Blue 3"
+    user.display.do(*user._to(match._alliance, None, None), "click", 4, "mousemove_relative", "--", 5, 0)
+    user.shown()
+    assert match._alliance.get() == "Blue 3"  # the wheel chooses nothing
     user.click(match._message, 10)
     user.keys("type", "RRL")
     user.press("Return")
     user.until(lambda: user.snapshot.values["event.game_specific_message"] == "RRL")
     assert "LRL" in match._message.cget("values")
     assert not user.snapshot.emergency_stopped
+
+    # A list that is closed without a choice leaves nothing to the box: the arrows drive.
+    user.click(match._alliance)
+    user.until(lambda: int(match._alliance.tk.eval(f"winfo exists {match._alliance}.popdown.f.l")))
+    user.until(lambda: int(match._alliance.tk.eval(f"winfo ismapped {match._alliance}.popdown.f.l")))
+    user.simulation.set_game_message("LRL")  # while it is open, which takes the keys from what tkinter knows
+    user.until(lambda: match._message.get() == "LRL")
+    user.press("Escape")
+    user.until(lambda: user.window.root.focus_displayof() is user.window.field.canvas)
 
     user.choose(user.window.drive.layout, 1)  # two joysticks
     user.press("ctrl+e")
@@ -621,6 +639,146 @@ def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None
     assert '"mode": "teleop"' in (project.path / "run.jsonl").read_text(encoding="utf-8")
     replayed = project.run("replay", "run.jsonl")
     assert replayed.code == 0, replayed.output
+
+
+def seen_in(text: tk.Text) -> str:
+    """The lines that are to be seen."""
+    return str(text.get("@0,0", f"@0,{text.winfo_height()} lineend"))
+
+
+def test_words_are_not_cut_where_the_window_is_small(user: User) -> None:
+    from tkinter import font, ttk
+
+    root, window = user.window.root, user.window
+    bold = font.Font(root, ttk.Style(root).lookup("Segment.Toolbutton", "font", ["selected"]))
+    assert bold.actual("weight") == "bold"
+    root.geometry("1000x660")
+    user.until(lambda: root.winfo_width() == 1000)
+    for mode, button in window.station.mode_buttons.items():
+        user.click(button)
+        user.until(lambda mode=mode: user.snapshot.chosen_mode == mode)
+        user.shown()
+        assert button.winfo_width() >= bold.measure(button.cget("text")) + 2 * 10
+    user.press("ctrl+e")
+    user.until(lambda: user.snapshot.enabled)
+    user.shown()
+    state, stop = window.station.state, window.station.stop
+    assert state.winfo_width() == state.winfo_reqwidth()
+    assert state.winfo_x() + state.winfo_width() <= stop.winfo_x()
+    # Long names leave room for what is chosen.
+    long = Chooser("/SmartDashboard/What to do in autonomous, at first", ("Nothing at all",), "Nothing at all", "")
+    window.match._show_choosers((long,))
+    root.update()
+    assert window.match._start.winfo_width() > 80
+
+
+def test_what_there_is_no_room_for_is_scrolled(user: User) -> None:
+    root, column = user.window.root, user.window.column
+    names = [Chooser(f"/SmartDashboard/{number}", ("a",), "a", "a") for number in range(6)]
+    assert column.canvas.yview() == (0.0, 1.0)
+    user.window.match._show_choosers(tuple(names))
+    user.until(lambda: column.canvas.yview()[1] < 1)
+    user.display.do(*user._to(user.window.joystick.canvas, 20, 200), "click", "--repeat", 20, 5)
+    user.until(lambda: column.canvas.yview()[1] == 1)
+    help_text = user.window.drive._help
+    assert (
+        help_text.winfo_rooty() + help_text.winfo_height() <= column.canvas.winfo_rooty() + column.canvas.winfo_height()
+    )
+    root.geometry("1300x760")
+    user.window.match._show_choosers(())
+    user.until(lambda: column.canvas.yview() == (0.0, 1.0))
+
+
+def test_the_console_follows_what_is_printed(user: User) -> None:
+    window, console = user.window, user.window.console
+    for number in range(100):
+        console.mark(f"line {number}{' and so on' * 30}")
+    window.root.update()
+    assert "line 99" in seen_in(console.text)
+    window.root.geometry("1000x660")  # the same words need more lines
+    user.until(lambda: window.root.winfo_width() == 1000)
+    console.mark("after another size")
+    window.root.update()
+    assert "after another size" in seen_in(console.text)
+    # Who reads something above stays there.
+    user.display.do(*user._to(console.text, 20, 20), "click", "--repeat", 5, 4)
+    user.until(lambda: not console._follows)
+    seen = console.text.yview()[0]
+    console.mark("not seen")
+    window.root.update()
+    assert console.text.yview()[0] == pytest.approx(seen, abs=0.02)
+    # What is marked there can be taken along.
+    console.text.tag_add("sel", "1.0", "1.0 lineend")
+    user.press("ctrl+c")
+    user.until(lambda: console.text.clipboard_get() == console.text.get("1.0", "1.0 lineend"))
+
+
+def test_the_console_says_where_the_program_starts_again(user: User) -> None:
+    console = user.window.console
+    user.window.tell("saved: robot.py")
+    user.press("F9")
+    user.until(lambda: console.text.get("1.0", "end").count("the robot is there") == 2)
+    marked = [line for line in console.text.get("1.0", "end").splitlines() if line.startswith("—")]
+    assert marked == ["— saved: robot.py —", "— the robot program starts again —"]
+
+
+def test_a_long_message_leaves_room_for_the_traceback(user: User) -> None:
+    console = user.window.console
+    console.show(Failure(f"robot.py:3: ValueError: {'long ' * 2000}", "the traceback", 1.0))
+    user.window.center.make_room_for_a_traceback(True)
+    user.window.root.update()
+    assert console.headline.cget("text").endswith("…\nafter 1.00 s")
+    assert console.text.winfo_height() > 60
+
+
+def test_the_end_of_the_recording_is_never_before_now(user: User) -> None:
+    user.press("F5")
+    user.until(lambda: user.status.state == "paused")
+    for _ in range(6):  # over a tenth of a second
+        at = user.snapshot.time
+        user.press("F6")
+        user.until(lambda at=at: user.snapshot.time > at and user.status.state == "paused")
+        user.shown()
+        assert user.window.time._length.cget("text") == user.window.time._time.cget("text")
+
+
+def test_a_colour_that_there_is_not(make_project: MakeProject, sit: Sit) -> None:
+    config = '{"pyfrc": {"field": {"objects": [{"color": "yelow", "rect": [20, 5, 2, 2]}]}}}'
+    user = sit(make_project({**ROBOT, "sim/config.json": config}).path)
+    note = user.window._note
+    user.until(lambda: "yelow" in note.cget("text"))
+    # What is newer comes before it.
+    user.press("space")
+    user.until(lambda: user.snapshot.emergency_stopped)
+    user.press("ctrl+e")
+    user.until(lambda: "emergency" in note.cget("text"))
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_ended_from_outside_while_a_file_is_chosen(name: str, user: User) -> None:
+    root, late = user.window.root, []
+    others: list[subprocess.Popen[bytes]] = []
+
+    def end() -> None:
+        if root.tk.eval("grab current .") == ".__tk_filedialog":
+            # A little later: Tk waits in C then, as it nearly always does.
+            kill = f"sleep 0.1; kill -s {name.removeprefix('SIG')} {os.getpid()}"
+            others.append(subprocess.Popen(["sh", "-c", kill]))
+        else:
+            root.after(10, end)
+
+    def give_up() -> None:
+        late.append(True)
+        root.tk.call("set", "::tk::Priv(selectFilePath)", "")
+
+    root.after(1, user.window.time.save.invoke)
+    root.after(10, end)
+    alarm = root.after(20_000, give_up)
+    with pytest.raises(KeyboardInterrupt), ending_like_ctrl_c():
+        user.window.loop()
+    root.after_cancel(alarm)
+    assert not late
+    assert others[0].wait() == 0
 
 
 # -- what cannot be shown ---------------------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ from pyfrc_core.sim.snapshot import Failure
 from pyfrc_core.sim.ui.tk.devices import SETTABLE, DeviceRows, Row, panels_of
 from pyfrc_core.sim.ui.tk.gamepads import HINT, GamepadRouter, Reading, hat_angle
 from pyfrc_core.sim.ui.tk.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
-from pyfrc_core.sim.ui.tk.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical
+from pyfrc_core.sim.ui.tk.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
 from pyfrc_core.sim.ui.tk.theme import scale_for
 from pyfrc_core.sim.ui.tk.viewport import FARTHEST, NEAREST, Viewport
 from pyfrc_core.sim.ui.tk.wording import (
@@ -136,6 +136,7 @@ def test_each_row_shows_values_that_there_are() -> None:
                 assert len(row.paths) == 1
     assert len(rows(VALUES)["Pneumatics"]["PH 1"].paths) == 16
     assert "2 Claw" in rows(VALUES)["Pneumatics"]["PCM 0"].tooltip
+    assert rows(VALUES)["PWM"]["3  Arm"].tooltip.startswith("PWM 3, Arm: ")  # there may be no room for it beside the 3
 
 
 def test_only_what_the_robot_has_made_is_shown() -> None:
@@ -281,6 +282,19 @@ def test_digits_are_buttons_whether_or_not_shift_is_held() -> None:
     made.release_all()
     assert not any(made.buttons().values())
     assert canonical("dollar") == "4"
+
+
+@pytest.mark.parametrize(
+    ("joysticks", "layout"),
+    [
+        ({}, "Tank: both sides"),
+        ({0: {"axes": {"y": "left side"}}, 1: {"axes": {"y": "right side"}}}, "Tank: both sides"),
+        ({0: {"axes": {"x": "turn", "y": "drive"}}}, "Two joysticks"),
+        ({0: {"axes": {1: "drive", 4: "turn"}}}, "Gamepad"),
+    ],
+)
+def test_keys_are_laid_out_for_what_the_robot_is_driven_with(joysticks: dict[int, Any], layout: str) -> None:
+    assert layout_for(SimConfig.model_validate({"joysticks": joysticks})).name == layout
 
 
 def test_three_keys_at_once_enable() -> None:
@@ -449,6 +463,12 @@ def test_the_speed_slider_has_real_time_and_no_limit() -> None:
         (snapshot(), Status("running"), ("Teleoperated disabled", "disabled")),
         (snapshot("disabled autonomous"), Status("paused"), ("Autonomous disabled", "disabled")),
         (snapshot("teleop"), Status("running"), ("Teleoperated enabled", "enabled")),
+        # A practice match has the Driver Station's countdown.
+        (
+            snapshot("autonomous", practice_since=0.0, match_left=11.8),
+            Status("running"),
+            ("Autonomous enabled, 12 s", "enabled"),
+        ),
         (snapshot("test", emergency_stopped=True), Status("running"), ("Emergency stopped", "error")),
         (snapshot("teleop"), Status("failed", failure=Failure("x", "", 1)), ("No robot code", "error")),
         (snapshot("teleop"), Status("running", responding=False), ("Not responding", "error")),
@@ -466,11 +486,9 @@ def test_the_status_line() -> None:
         "Loop 1.5 ms, worst 12.0 ms",
         "Overruns 3",
     ]
-    practising = status_texts(
-        snapshot("autonomous", practice_since=0.0, match_left=12.0), Status("paused", network_address="127.0.0.1:5810")
-    )
-    assert practising[1:3] == ["Match: 12 s left", "Paused"]
-    assert practising[-1] == "NetworkTables 127.0.0.1:5810"
+    served = status_texts(snapshot(), Status("paused", network_address="127.0.0.1:5810"))
+    assert served[1::3] == ["Paused", "NetworkTables 127.0.0.1:5810"]
+    assert status_texts(snapshot(), Status("running", speed=0, reached=431.2))[1] == "Speed 431x, as fast as it goes"
 
 
 def test_small_words() -> None:

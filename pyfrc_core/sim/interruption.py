@@ -4,20 +4,35 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from types import FrameType
 
 #: Sent to a program that is to end; and when its terminal is closed, where there is such a signal.
 _ENDING = ("SIGTERM", "SIGHUP")
 
+_Handler = Callable[[int, FrameType | None], object]
+
+
+def ending_like_ctrl_c() -> AbstractContextManager[None]:
+    """While this lasts, raise KeyboardInterrupt for them, too."""
+    return _handling(_ENDING, signal.default_int_handler)
+
+
+def calling_when_ended(call: Callable[[], object]) -> AbstractContextManager[None]:
+    """While this lasts, have them and Ctrl-C raise nothing, but call this.
+
+    For loops in C, which exceptions do not end wherever they are raised.
+    """
+    return _handling((*_ENDING, "SIGINT"), lambda number, frame: call())
+
 
 @contextmanager
-def ending_like_ctrl_c() -> Iterator[None]:
-    """While this lasts, raise KeyboardInterrupt for them, too."""
+def _handling(names: tuple[str, ...], handle: _Handler) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    numbers = [getattr(signal, name) for name in _ENDING if hasattr(signal, name)]
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
     # None: another language's handler, which is to stay; SIG_IGN: as by nohup.
     former = {
         number: handler
@@ -25,7 +40,7 @@ def ending_like_ctrl_c() -> Iterator[None]:
         if (handler := signal.getsignal(number)) is not None and handler is not signal.SIG_IGN
     }
     for number in former:
-        signal.signal(number, signal.default_int_handler)
+        signal.signal(number, handle)
     try:
         yield
     finally:

@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 from ..errors import UsageError
+from .room import lack_of_room
 from .simulation import Simulation
 
 
@@ -31,12 +32,15 @@ class KeptFiles:
         """Write what is to be kept of a robot that there has been.
 
         :returns: every file that was written, the one that the robot's process writes included
+        :raises UsageError: when there was no room for one of them
         """
         snapshot = simulation.snapshot
         if snapshot is None:
             return []
         written = [] if self._record is None else simulation.save_all(self._record)
         if self._wpilog is not None and _stamp(self._wpilog) != self._former_log:
+            if why := lack_of_room(self._wpilog):
+                raise UsageError(f"{self._wpilog} is not complete: {why}", remedy="Make room on the disk.")
             written.append(self._wpilog)
         if self._picture is not None:
             from .picture import draw_picture

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
 import threading
 import traceback
@@ -104,7 +105,10 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
     entry = error.__traceback__
     while entry is not None and entry.tb_next is not None and is_pyfrc(entry.tb_frame.f_code.co_filename):
         entry = entry.tb_next  # _run's own
-    return Failure(str(failure), "".join(traceback.format_exception(type(error), error, entry)), now)
+    told = "".join(traceback.format_exception(type(error), error, entry))
+    for root in {str(project.root), str(project.root.resolve())}:
+        told = told.replace(f'  File "{root}{os.sep}', '  File "')  # in a window, every letter is dear
+    return Failure(str(failure), told, now)
 
 
 @contextmanager

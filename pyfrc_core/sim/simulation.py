@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -17,19 +17,8 @@ from ..runtime.clock import PACKET_US, to_us
 from ..runtime.own_process import explain_end
 from ..runtime.scripts.script import InputScript, Step
 from .assembly import Assembly
-from .commands import (
-    ChooseMode,
-    ChosenMode,
-    Command,
-    EmergencyStop,
-    Enable,
-    Pause,
-    Practice,
-    Run,
-    Speed,
-    Write,
-    chosen,
-)
+from .commands import Command, Pause, Run, Speed
+from .controls import Controls
 from .field import field_of, robot_at, start_named
 from .messages import Failed, Job, Message, Ready, Update
 from .options import SimOptions, check_speed
@@ -44,7 +33,7 @@ _MOST_OUTPUT = 200_000
 _SILENCE = 1.0
 
 
-class Simulation:
+class Simulation(Controls):
     """A robot that a person, a script or a dashboard can drive.
 
     Everything may be called at any time, from any thread: what makes no sense then does nothing, or is answered in
@@ -204,61 +193,7 @@ class Simulation:
             self._keep_and_begin(again, to, paused=self._status.state == "paused", keep=False)
             self._status = replace(self._status, former_trail=former)
 
-    # -- the driver station ---------------------------------------------------------------------------------------
-
-    def choose_mode(self, mode: ChosenMode) -> None:
-        """Disable the robot, and choose what it does when it is enabled."""
-        self._send(ChooseMode(mode))
-
-    def enable(self) -> None:
-        """Enable the robot in the chosen mode."""
-        self._send(Enable(True))
-
-    def disable(self) -> None:
-        """Disable the robot."""
-        self._send(Enable(False))
-
-    def emergency_stop(self) -> None:
-        """Stop the robot; it cannot be enabled again until it is restarted."""
-        self._send(EmergencyStop())
-
-    def practice(self) -> None:
-        """Begin a practice match, with the periods under ``[tool.pyfrc.match]``."""
-        self._send(Practice())
-
-    def set_alliance(self, station: str) -> None:
-        """Choose an alliance station: ``red1`` to ``red3``, ``blue1`` to ``blue3``."""
-        self.write({"alliance_station": station})
-
-    def set_game_message(self, message: str) -> None:
-        """Choose what the field sends to all robots."""
-        self.write({"event.game_specific_message": message})
-
-    def choose(self, chooser: str, option: str) -> None:
-        """Choose one of a `Chooser`'s options, by the names of both."""
-        self.write({chosen(chooser): option})
-
-    # -- inputs ---------------------------------------------------------------------------------------------------
-
-    def write(self, values: Mapping[str, Any]) -> None:
-        """Write inputs by target, as input scripts do: ``{"dio[3].value": True, "nt:/SmartDashboard/kP": 0.1}``."""
-        self._send(Write(dict(values)))
-
-    def set_axis(self, stick: int, axis: int, value: float) -> None:
-        """Move a joystick's axis, from -1 to 1."""
-        self.write({f"joysticks[{stick}].axes[{axis}]": value})
-
-    def set_button(self, stick: int, button: int, pressed: bool) -> None:
-        """Press or release a joystick's button; they count from 1."""
-        self.write({f"joysticks[{stick}].buttons[{button}]": pressed})
-
-    def set_pov(self, stick: int, pov: int, angle: int) -> None:
-        """Press a joystick's POV: degrees clockwise from up; -1 releases it."""
-        self.write({f"joysticks[{stick}].povs[{pov}]": angle})
-
-    def plug(self, stick: int, plugged_in: bool) -> None:
-        """Plug a joystick in, or out."""
-        self.write({f"joysticks[{stick}].plugged": plugged_in})
+    # -- where the robot is ---------------------------------------------------------------------------------------
 
     def place(self, x: float, y: float, degrees: float) -> None:
         """Put the robot elsewhere on the field: feet and degrees, as in ``sim/config.json``."""

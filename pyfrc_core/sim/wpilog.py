@@ -23,6 +23,7 @@ from wpiutil.log import (
 )
 
 from ..errors import UsageError
+from .room import lack_of_room
 
 _DRIVER_STATION = {
     "control.enabled": "DS:enabled",
@@ -30,7 +31,12 @@ _DRIVER_STATION = {
     "control.test": "DS:test",
     "control.eStop": "DS:estop",
 }
+#: How often what WPILib holds back is written, in microseconds of robot time: the robot's process may die at once.
+_FLUSH_US = 100_000
 _STICK = re.compile(r"joysticks\[(\d)\]\.(axes|buttons|povs)")
+
+#: Logs that could not be written: when WPILib learns that, at their end, it ends the process with a dump of memory.
+_UNFINISHED: list[DataLogWriter] = []
 
 
 class WpiLog:
@@ -45,9 +51,11 @@ class WpiLog:
             file.write_bytes(b"")
         except OSError as error:
             raise UsageError(f"{file} cannot be written: {error.strerror}", remedy="--wpilog names a file.") from None
+        self._file = file
         self._log = DataLogWriter(str(file), "pyfrc sim")
         self._entries: dict[str, Any] = {}
         self._pose: int | None = None
+        self._flush_us = 0
 
     def write(self, now_us: int, changed: Mapping[str, Any], pose: Pose2d | None) -> None:
         """Write what has changed by `now_us`, in microseconds of robot time."""
@@ -60,11 +68,17 @@ class WpiLog:
                 self._log.addStructSchema(Pose2d, stamp)
                 self._pose = self._log.start("/pose", f"struct:{wpistruct.getTypeName(Pose2d)}", "", stamp)
             self._log.appendRaw(self._pose, wpistruct.pack(pose), stamp)
+        if now_us >= self._flush_us:
+            self._flush_us = now_us + _FLUSH_US
+            self._log.flush()
 
     def close(self) -> None:
         """Write what is still to be written."""
         self._log.flush()
-        self._log.stop()
+        if lack_of_room(self._file):
+            _UNFINISHED.append(self._log)
+        else:
+            self._log.stop()
 
     def _entry(self, path: str, value: Any) -> Callable[[Any, int], object]:
         found = self._entries.get(path)

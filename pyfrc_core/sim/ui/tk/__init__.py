@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 class TkFrontEnd(FrontEnd):
     """Shows a simulation in a window until it is closed."""
 
+    def __init__(self) -> None:
+        self._window: Window | None = None
+
     def run(self, simulation: Simulation) -> int:
         try:
             self._show(simulation)
@@ -24,11 +27,16 @@ class TkFrontEnd(FrontEnd):
             simulation.close()
         return 0
 
-    @staticmethod
-    def _show(simulation: Simulation) -> None:
-        window = Window(simulation)
+    def saved(self, files: list[str]) -> None:
+        """Say that the robot gets new code."""
+        if (window := self._window) is not None:
+            window.tell(f"saved: {', '.join(files)}")
+
+    def _show(self, simulation: Simulation) -> None:
+        self._window = window = Window(simulation)
         try:
             simulation.start()
             window.loop()
         finally:
+            self._window = None
             window.close()

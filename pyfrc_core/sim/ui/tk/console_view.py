@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tkinter as tk
 from tkinter import ttk
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ...snapshot import Failure
 from . import theme as colors
@@ -14,8 +14,8 @@ from .wording import plain_output
 if TYPE_CHECKING:
     from ...simulation import Simulation
 
-#: So many lines stay to be seen.
-_MOST_LINES = 2000
+#: So many lines stay to be seen; and so much of what has gone wrong stands above them, in letters.
+_MOST_LINES, _MOST_HEADLINE = 2000, 300
 
 
 class ConsoleView:
@@ -57,8 +57,15 @@ class ConsoleView:
         )
         text.tag_configure("trace", foreground=colors.RED)
         text.tag_configure("hint", foreground=colors.MUTED)
-        scrollbar = ttk.Scrollbar(body, command=text.yview)
+        scrollbar = ttk.Scrollbar(body, command=self._scroll)
         text.configure(yscrollcommand=scrollbar.set)
+        #: Whether the last line is to be seen; else the user reads something above.
+        self._follows = True
+        for turned in ("<MouseWheel>", "<Button-4>", "<Button-5>"):
+            text.bind(turned, lambda event: text.after_idle(self._look))
+        text.bind("<Configure>", lambda event: self._show_end())
+        # A text that nobody can type into gets no keys.
+        frame.winfo_toplevel().bind("<<Copy>>", lambda event: self._copy(), add="+")
         scrollbar.pack(side="right", fill="y")
         text.pack(side="left", fill="both", expand=True)
         self._empty = True
@@ -75,13 +82,21 @@ class ConsoleView:
         if failure is None:
             self._banner.pack_forget()
             return
-        self.headline.configure(text=f"{failure.headline}\nafter {failure.time:.2f} s")
+        headline = failure.headline
+        if len(headline) > _MOST_HEADLINE:
+            headline = f"{headline[:_MOST_HEADLINE].rstrip()}…"
+        self.headline.configure(text=f"{headline}\nafter {failure.time:.2f} s")
         self._banner.pack(side="top", fill="x", before=self._body)
         self._append(f"\n{failure.details or failure.headline}\n", "trace")
 
+    def mark(self, what: str) -> None:
+        """Say what has happened here, between what was printed before it and after it."""
+        if not self._empty or self._simulation.snapshot is not None:
+            self.show(self._failure)
+            self._append(f"— {what} —\n", "hint")
+
     def _append(self, new: str, tag: str = "") -> None:
         text = self.text
-        follows = float(text.yview()[1]) >= 0.999  # else the user is reading something above
         text.configure(state="normal")
         if self._empty:
             text.delete("1.0", "end")
@@ -90,5 +105,20 @@ class ConsoleView:
         if (lines := int(text.index("end-1c").partition(".")[0])) > _MOST_LINES:
             text.delete("1.0", f"{lines - _MOST_LINES}.0")
         text.configure(state="disabled")
-        if follows:
-            text.see("end")
+        self._show_end()
+
+    def _show_end(self) -> None:
+        if self._follows:
+            self.text.see("end")
+
+    def _scroll(self, *how: Any) -> None:
+        self.text.yview(*how)
+        self._look()
+
+    def _look(self) -> None:
+        self._follows = float(self.text.yview()[1]) >= 0.999
+
+    def _copy(self) -> None:
+        if self.text.tag_ranges("sel"):
+            self.text.clipboard_clear()
+            self.text.clipboard_append(self.text.get("sel.first", "sel.last"))

@@ -9,7 +9,7 @@ from typing import Any
 
 from . import theme as colors
 from .devices import Row
-from .theme import Theme
+from .theme import Theme, fitting
 from .wording import number_text
 
 _MOST_LEDS = 48
@@ -27,8 +27,8 @@ class Place:
 class Item:
     """One row. Its class is the one for a text, or for a title without a value."""
 
-    #: How high the row is, in the design's pixels.
-    height = 22
+    #: How high the row is, in the design's pixels; and how wide what is beside its label.
+    height, value_room = 22, 96
 
     def __init__(self, canvas: tk.Canvas, theme: Theme, row: Row, place: Place) -> None:
         self.row, self.place = row, place
@@ -39,7 +39,7 @@ class Item:
         canvas.create_text(
             theme.px(12) + indent,
             place.y,
-            text=_fitting(label.strip(), theme, self._label_room() - indent),
+            text=fitting(label.strip(), theme.body, self._label_room() - indent),
             anchor="w",
             font=theme.body,
             fill=colors.TEXT,
@@ -64,7 +64,7 @@ class Item:
     def _label_room(self) -> int:
         """How wide the label may be, in pixels."""
         whole = self.place.right - self._theme.px(12)
-        return whole - self._theme.px(96) if self.row.paths else whole
+        return whole - self._theme.px(self.value_room) if self.row.paths else whole
 
     def _make(self) -> None:
         self._text = self._value_text(self.place.right)
@@ -162,6 +162,8 @@ class Number(Item):
 class Lamp(Item):
     """An output that is on or off."""
 
+    value_room = 76
+
     def _make(self) -> None:
         r, x, y = self._theme.px(6), self.place.right - self._theme.px(7), self.place.y
         self._lamp = self._canvas.create_oval(x - r, y - r, x + r, y + r, outline="")
@@ -175,6 +177,8 @@ class Lamp(Item):
 
 class Switch(Item):
     """An input that is switched by a click."""
+
+    value_room = 76
 
     def _make(self) -> None:
         px, y = self._theme.px, self.place.y
@@ -220,7 +224,7 @@ class Lamps(Item):
     def _make(self) -> None:
         px, y = self._theme.px, self.place.y
         count = len(self.row.paths)
-        apart = min(px(22), (self.place.right - self.place.left + px(24)) // max(count, 1))
+        apart = min(px(22), (self.place.right - self.place.left + px(52)) // max(count, 1))
         r = min(px(6), apart // 2 - 1)
         self._lamps = []
         for number in range(count):
@@ -301,15 +305,6 @@ ITEMS: dict[str, type[Item]] = {
     "leds": Leds,
     "text": Item,
 }
-
-
-def _fitting(text: str, theme: Theme, room: int) -> str:
-    """As much of a text as there is room for, in pixels."""
-    if theme.body.measure(text) <= room:
-        return text
-    while text and theme.body.measure(f"{text}…") > room:
-        text = text[:-1]
-    return f"{text.rstrip()}…"
 
 
 def _shortened(text: str, most: int) -> str:

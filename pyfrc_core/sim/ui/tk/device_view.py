@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ...simulation import Simulation
 
 #: In the design's pixels: the whole width, and where labels end.
-WIDTH, _LABELS = 292, 122
+WIDTH, _LABELS = 292, 150
 
 
 class DeviceView:
@@ -106,6 +106,7 @@ class DeviceView:
         canvas.bind("<Button-5>", lambda event: self._scroll(1))
 
     def _scroll(self, way: int) -> None:
+        self._tooltip.hide()  # another row is under the mouse
         self._close_editor()
         if self.canvas.yview() != (0.0, 1.0):
             self.canvas.yview_scroll(way * self._theme.px(48), "units")

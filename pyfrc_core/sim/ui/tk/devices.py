@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 #: ``bars``, ``leds``, ``text``. Inputs: ``switch``, ``slider`` and ``number``, which can be set.
 Kind = Literal["meter", "lamp", "lamps", "relay", "bars", "leds", "text", "switch", "slider", "number"]
 
+_INPUT = "an input, click to change it"
+
 SETTABLE = frozenset({"switch", "slider", "number"})
 
 Values = Mapping[str, Any]
@@ -117,6 +119,11 @@ def _named(channel: int | str, labels: Mapping[int, str]) -> str:
     return f"{channel}  {label}" if label else f"{channel}"
 
 
+def _titled(what: str, channel: int, labels: Mapping[int, str]) -> str:
+    """With its whole label, for which there may be no room beside the channel."""
+    return f"{what} {channel}, {labels[channel]}" if channel in labels else f"{what} {channel}"
+
+
 def _channels(tree: dict[Any, Any], room: str) -> Iterator[tuple[int, dict[Any, Any]]]:
     yield from sorted(tree.get(room, {}).items())
 
@@ -124,7 +131,7 @@ def _channels(tree: dict[Any, Any], room: str) -> Iterator[tuple[int, dict[Any, 
 def _pwm(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "pwm"):
         if "value" in fields:
-            what = f"PWM {channel}: what the robot sends to the motor, from -1 to 1"
+            what = f"{_titled('PWM', channel, config.pwm)}: what the robot sends to the motor, from -1 to 1"
             yield Row("meter", (fields["value"][0],), _named(channel, config.pwm), -1.0, 1.0, 2, "", what)
     for channel, fields in _channels(tree, "d0_pwm"):
         if "duty_cycle" in fields:
@@ -137,8 +144,8 @@ def _dio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
             continue
         is_input = "is_input" in fields and fields["is_input"][1]
         kind: Kind = "switch" if is_input else "lamp"
-        what = "an input: click to change it" if is_input else "an output of the robot"
-        yield Row(kind, (fields["value"][0],), _named(channel, config.dio), tooltip=f"DIO {channel}, {what}")
+        what = f"{_titled('DIO', channel, config.dio)}: {_INPUT if is_input else 'an output of the robot'}"
+        yield Row(kind, (fields["value"][0],), _named(channel, config.dio), tooltip=what)
     for channel, fields in _channels(tree, "duty_cycle"):
         if "output" in fields:
             what = "The duty cycle that the robot measures"
@@ -148,7 +155,7 @@ def _dio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
 def _analog_in(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "analog_in"):
         if "voltage" in fields:
-            what = f"Analog input {channel}: the voltage that the robot measures"
+            what = f"{_titled('Analog input', channel, config.analog)}: the voltage that the robot measures"
             yield Row("slider", (fields["voltage"][0],), _named(channel, config.analog), 0.0, 5.0, 2, "V", what)
 
 
@@ -163,7 +170,8 @@ def _relays(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "relay"):
         if {"fwd", "rev"} <= fields.keys():
             paths = fields["fwd"][0], fields["rev"][0]
-            yield Row("relay", paths, _named(channel, config.relay), tooltip=f"Relay {channel}: its two directions")
+            what = f"{_titled('Relay', channel, config.relay)}: its two directions"
+            yield Row("relay", paths, _named(channel, config.relay), tooltip=what)
 
 
 def _pneumatics(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from tkinter import ttk
 
 from . import theme as colors
+from .boxes import tame
 from .keyboard import LAYOUTS
 from .keys import Keys
 from .theme import Theme
@@ -32,10 +33,13 @@ class DriveView:
         self.layout = ttk.Combobox(
             head, values=[each.name for each in LAYOUTS], state="readonly", width=16, font=theme.body, takefocus=False
         )
-        self.layout.current(0)
+        self.layout.current(LAYOUTS.index(keys.driver.layout))
         self.layout.bind("<<ComboboxSelected>>", lambda event: self._choose())
+        tame(self.layout, done)
         self.layout.pack(side="right", fill="x", expand=True)
-        self._help = ttk.Label(inside, style="CardMuted.TLabel", wraplength=px(256), text=LAYOUTS[0].help + _OTHERS)
+        self._help = ttk.Label(
+            inside, style="CardMuted.TLabel", wraplength=px(256), text=keys.driver.layout.help + _OTHERS
+        )
         self._help.pack(anchor="w", pady=(px(4), 0))
 
     def _choose(self) -> None:

@@ -36,7 +36,7 @@ class FieldView:
         field = simulation.field
         self._field = field
         self._image = None if field.image is None else FieldImage(canvas, field.image)
-        self._image_problem = ""
+        self._image_problem = self._color_problem = ""
         self._picture: tk.PhotoImage | None = None
         self.view = Viewport.whole(field.width, field.height, 100, 100)
         self._whole = True
@@ -58,7 +58,7 @@ class FieldView:
     @property
     def problem(self) -> str:
         """What could not be drawn, if anything."""
-        return self._image_problem or self._drawings.problem
+        return self._image_problem or self._drawings.problem or self._color_problem
 
     def show(self, snapshot: Snapshot, status: Status) -> None:
         """Draw what has changed since the last one."""
@@ -116,6 +116,7 @@ class FieldView:
     def _draw_field(self) -> None:
         canvas, px, field = self.canvas, self._theme.px, self._field
         canvas.delete("field")
+        self._color_problem = ""
         self._fixed: list[tuple[int, tuple[tuple[float, float], ...]]] = []
         w, h = field.width, field.height
 
@@ -152,7 +153,8 @@ class FieldView:
     def _draw_shape(self, shape: Shape) -> int:
         try:
             return self.canvas.create_polygon(*[0] * 2 * len(shape.points), fill=shape.color, tags="field")
-        except tk.TclError:  # a colour that Tk does not know; what is there is to be seen all the same
+        except tk.TclError:  # what is there is to be seen all the same
+            self._color_problem = f"sim/config.json: pyfrc.field.objects: no colour is called {shape.color!r}."
             return self.canvas.create_polygon(*[0] * 2 * len(shape.points), fill=colors.EDGE, tags="field")
 
     def _place_all(self, scene: Scene) -> None:

@@ -8,16 +8,19 @@ from tkinter import ttk
 from typing import TYPE_CHECKING
 
 from . import theme as colors
+from .boxes import tame
 from .gamepads import HINT, GamepadRouter
 from .joysticks import BUTTONS, JOYSTICKS, RELEASED, Sticks, axis_labels, button_labels, direction
-from .theme import Theme
+from .theme import Theme, fitting
 from .tooltip import Tooltip
 
 if TYPE_CHECKING:
     from ....config.sim import SimConfig
 
 #: In the design's pixels.
-WIDTH, _PAD, _DIAL, _AXIS, _BUTTON = 288, 84, 66, 18, 18
+WIDTH, _PAD, _DIAL, _AXIS, _BUTTON = 288, 84, 60, 18, 18
+#: How wide the label of axis 1 is at most, beside the POV.
+_LABEL = 100
 
 _PAD_HELP = "Drag: axes 0 and 1. With the right button, it stays where you let it go."
 _BUTTON_HELP = "Click: pressed while you hold it. Right click: stays pressed."
@@ -61,16 +64,17 @@ class JoystickView:
         source = ttk.Frame(frame, style="Card.TFrame")
         source.pack(fill="x", padx=px(10))
         self._plugged = tk.BooleanVar(frame, True)
-        ttk.Checkbutton(
+        self._plug = ttk.Checkbutton(
             source,
-            text="Plugged in",
             variable=self._plugged,
             command=lambda: sticks.plug(self.chosen.get(), self._plugged.get()),
             style="Small.Segment.Toolbutton",
             takefocus=False,
-        ).pack(side="left")
+        )
+        self._plug.pack(side="left")
         self._source = ttk.Combobox(source, state="readonly", width=18, font=theme.small, takefocus=False)
         self._source.bind("<<ComboboxSelected>>", self._choose_source)
+        tame(self._source, lambda: self.canvas.focus_set())
         self._names: tuple[str, ...] | None = None
         if gamepads is not None:
             self._source.pack(side="right")
@@ -146,9 +150,12 @@ class JoystickView:
         self._knob = canvas.create_oval(0, 0, 0, 0, fill=colors.ACCENT, outline=colors.CARD, width=px(2))
         text_x = left + px(_PAD + 10)
         self._xy = [
-            canvas.create_text(text_x, y + px(8 + 17 * row), anchor="w", font=small, fill=colors.MUTED)
-            for row in (0, 1)
+            canvas.create_text(text_x, y + px(middle), anchor="w", font=small, fill=fill)
+            for middle, fill in zip((7, 21, 41, 55), (colors.TEXT, colors.MUTED) * 2, strict=True)
         ]
+        for axis, item in zip((0, 1), self._xy[::2], strict=True):
+            label = fitting(self._axes[axis], small, px(WIDTH - 12) - text_x if axis == 0 else px(_LABEL))
+            canvas.itemconfigure(item, text=label)
         dial_x, dial_y, radius = px(WIDTH) - px(12 + _DIAL / 2), y + px(_PAD - _DIAL / 2), px(_DIAL / 2)
         self._add(("pov", 0), dial_x - radius, dial_y - radius, dial_x + radius, dial_y + radius)
         canvas.create_oval(
@@ -165,7 +172,7 @@ class JoystickView:
         for axis, label in list(self._axes.items())[2:]:
             x0, x1, row = px(96), px(WIDTH - 52), y + px(_AXIS) // 2
             self._add(("axis", axis), x0 - px(6), y, x1 + px(6), y + px(_AXIS))
-            canvas.create_text(left, row, text=label[:13], anchor="w", font=small, fill=colors.TEXT)
+            canvas.create_text(left, row, text=fitting(label, small, px(72)), anchor="w", font=small, fill=colors.TEXT)
             canvas.create_line(x0, row, x1, row, fill=colors.TRACK, width=px(4), capstyle="round")
             canvas.create_line((x0 + x1) / 2, row - px(5), (x0 + x1) / 2, row + px(5), fill=colors.FAINT)
             knob = canvas.create_oval(0, 0, 0, 0, fill=colors.CARD, outline=colors.ACCENT, width=px(2))
@@ -186,7 +193,7 @@ class JoystickView:
             canvas.create_text(
                 x + px(31),
                 top + px(2) + size / 2,
-                text=names.get(button, "")[:14],
+                text=fitting(names.get(button, ""), small, half - px(34)),
                 anchor="w",
                 font=small,
                 fill=colors.TEXT,
@@ -203,13 +210,14 @@ class JoystickView:
         canvas, px = self.canvas, self._theme.px
         stick = self._sticks.sticks[self.chosen.get()]
         self._plugged.set(stick.plugged)
+        self._plug.configure(text="Plugged in" if stick.plugged else "Not plugged in")
         x0, y0, x1, y1 = dict(self._parts)[("pad", 0)]
         r = px(8)
         reach = (x1 - x0) / 2 - r
         x, y = (x0 + x1) / 2 + stick.axes[0] * reach, (y0 + y1) / 2 + stick.axes[1] * reach
         canvas.coords(self._knob, x - r, y - r, x + r, y + r)
-        for item, axis in zip(self._xy, (0, 1), strict=True):
-            canvas.itemconfigure(item, text=f"{self._axes[axis][:10]}  {stick.axes[axis]:.2f}")
+        for item, axis in zip(self._xy[1::2], (0, 1), strict=True):
+            canvas.itemconfigure(item, text=f"{stick.axes[axis]:.2f}")
         r = px(6)
         for axis, (knob, text, left, right, row) in self._bars.items():
             x = left + (stick.axes[axis] + 1) / 2 * (right - left)
@@ -233,7 +241,7 @@ class JoystickView:
             return ""
         kind, number = part
         if kind == "pad":
-            return _PAD_HELP
+            return f"{self._axes[0]}, {self._axes[1]}. {_PAD_HELP}"
         if kind == "axis":
             return f"Axis {number}: {self._axes[number]}. It stays where you let it go."
         if kind == "pov":

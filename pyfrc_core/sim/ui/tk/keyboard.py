@@ -7,6 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ....config.sim import SimConfig
 
 #: A joystick and one of its axes, or one of its buttons.
 Control = tuple[int, int]
@@ -81,6 +85,16 @@ LAYOUTS = (
         },
     ),
 )
+
+
+def layout_for(config: SimConfig) -> Layout:
+    """The layout that fits a robot's labels: which axes of joystick 0 it names says what is held in the hands."""
+    tank, joysticks, gamepad = LAYOUTS
+    named = config.joysticks[0].axes.keys() if 0 in config.joysticks else set()
+    if named & {4, 5}:
+        return gamepad
+    return joysticks if named & {0, 2} else tank
+
 
 #: The keys of the first joystick's buttons.
 BUTTON_KEYS = {**{str(number): number for number in range(1, 10)}, "0": 10}

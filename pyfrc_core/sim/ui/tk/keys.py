@@ -7,7 +7,7 @@ from tkinter import ttk
 from typing import TYPE_CHECKING
 
 from .joysticks import Sticks
-from .keyboard import Control, KeyDriver, canonical
+from .keyboard import Control, KeyDriver, canonical, layout_for
 from .time_bar import TimeBar
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class Keys:
 
     def __init__(self, root: tk.Tk, simulation: Simulation, sticks: Sticks, time_bar: TimeBar) -> None:
         self._root, self._simulation, self._sticks = root, simulation, sticks
-        self.driver = KeyDriver()
+        self.driver = KeyDriver(layout_for(simulation.project.sim_config))
         self._axes: dict[Control, float] = {}
         self._buttons: dict[Control, bool] = {}
         self._leaving: dict[str, str] = {}

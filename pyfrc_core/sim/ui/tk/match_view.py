@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING
 
 from ...snapshot import Chooser, Snapshot
 from . import theme as colors
-from .theme import Theme
+from .boxes import has_keys, tame
+from .theme import Theme, fitting
 from .tooltip import Tooltip
 from .wording import STATIONS, station_name
 
 if TYPE_CHECKING:
     from ...simulation import Simulation
+
+#: How wide what stands before a box is at most, in the design's pixels.
+_LABEL = 96
 
 
 class MatchView:
@@ -26,7 +30,7 @@ class MatchView:
     def __init__(
         self, parent: tk.Misc, theme: Theme, tooltip: Tooltip, simulation: Simulation, done: Callable[[], None]
     ) -> None:
-        self._theme, self._simulation, self._done = theme, simulation, done
+        self._theme, self._tooltip, self._simulation, self._done = theme, tooltip, simulation, done
         px = theme.px
         self.frame = colors.card(parent, theme)
         self._grid = grid = ttk.Frame(self.frame, style="Card.TFrame")
@@ -35,8 +39,7 @@ class MatchView:
         self._rows = 0
         self._shown: tuple[object, ...] = ()
         self._alliance = self._box(list(STATIONS), self._choose_alliance)
-        self._message = self._box(list(simulation.project.game_specific_messages), self._send_message)
-        self._message.configure(state="normal")
+        self._message = self._box(list(simulation.project.game_specific_messages), self._send_message, "normal")
         self._message.bind("<Return>", lambda event: self._send_message())
         tooltip.attach(self._message, "Game data, which the field tells all robots: choose, or type and press Enter")
         self._place_row("Alliance", self._alliance)
@@ -45,7 +48,7 @@ class MatchView:
         self._start = self._box(starts, self._reset)
         if starts:
             self._start.current(0)
-        self.reset = ttk.Button(grid, text="Reset", style="Tiny.TButton", command=self._reset, takefocus=False)
+        self.reset = ttk.Button(grid, text="Reset", width=6, style="Tiny.TButton", command=self._reset, takefocus=False)
         tooltip.attach(self.reset, "Put the robot back to where it starts. It can be dragged on the field, too.")
         self._place_row("Start", self._start, self.reset)
         self._choosers: dict[str, tuple[Chooser, ttk.Label, ttk.Combobox]] = {}
@@ -58,7 +61,7 @@ class MatchView:
             return
         self._shown = chosen
         self._alliance.set(station_name(chosen[0]))
-        if self._message.focus_get() is not self._message:
+        if not has_keys(self._message):
             self._message.set(str(chosen[1] or ""))
         self._show_choosers(snapshot.choosers)
 
@@ -71,23 +74,29 @@ class MatchView:
         for name, chooser in named.items():
             if name not in self._choosers:
                 box = self._box([], lambda name=name: self._choose(name))  # type: ignore[misc]
-                label = self._place_row(name.rpartition("/")[2][:14], box)
+                # The list may be wider than the box, towards the left.
+                box.configure(style="Wide.TCombobox")
+                label = self._place_row(name.rpartition("/")[2], box)
+                self._tooltip.attach(label, name)
+                box.bind("<Enter>", lambda event, box=box: self._tooltip.expect(box.get(), event.x_root, event.y_root))  # type: ignore[misc]
+                box.bind("<Leave>", lambda event: self._tooltip.hide())
+                box.bind("<Button>", lambda event: self._tooltip.hide(), add="+")
             else:
                 _, label, box = self._choosers[name]
             self._choosers[name] = chooser, label, box
             box.configure(values=chooser.options)
             box.set(chooser.active or chooser.default)
 
-    def _box(self, values: list[str], chosen: Callable[[], None]) -> ttk.Combobox:
-        box = ttk.Combobox(
-            self._grid, values=values, state="readonly", width=10, font=self._theme.body, takefocus=False
-        )
+    def _box(self, values: list[str], chosen: Callable[[], None], state: str = "readonly") -> ttk.Combobox:
+        box = ttk.Combobox(self._grid, values=values, state=state, width=10, font=self._theme.body, takefocus=False)
         box.bind("<<ComboboxSelected>>", lambda event: chosen())
+        if state == "readonly":
+            tame(box, self._done)
         return box
 
     def _place_row(self, text: str, box: ttk.Combobox, beside: ttk.Widget | None = None) -> ttk.Label:
         px = self._theme.px
-        label = ttk.Label(self._grid, text=text, style="Card.TLabel")
+        label = ttk.Label(self._grid, text=fitting(text, self._theme.body, px(_LABEL)), style="Card.TLabel")
         label.grid(row=self._rows, column=0, sticky="w", padx=(0, px(10)), pady=px(2))
         box.grid(row=self._rows, column=1, columnspan=1 if beside else 2, sticky="ew", pady=px(2))
         if beside is not None:

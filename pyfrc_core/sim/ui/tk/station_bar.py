@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tkinter as tk
 from tkinter import ttk
 from typing import TYPE_CHECKING
@@ -43,13 +44,16 @@ class StationBar:
                 variable=self.mode,
                 command=lambda mode=mode: simulation.choose_mode(mode),  # type: ignore[misc]
                 style="Segment.Toolbutton",
+                # In letters: as wide as when it is chosen, and bold.
+                width=math.ceil(theme.bold.measure(text) / theme.body.measure("0")),
                 takefocus=False,
             )
             button.pack(side="left", padx=(0, px(1)))
-        self.enable = ttk.Button(frame, text="Enable", style="Go.TButton", command=simulation.enable, takefocus=False)
+        self.enable = ttk.Button(frame, text="Enable", width=8, style="Go.TButton", takefocus=False)
+        self.enable.configure(command=simulation.enable)
         self.enable.pack(side="left", padx=(px(14), px(4)))
         tooltip.attach(self.enable, "Enable the robot: the keys [ ] \\ together, or Ctrl+E")
-        self.disable = ttk.Button(frame, text="Disable", style="Stop.TButton", takefocus=False)
+        self.disable = ttk.Button(frame, text="Disable", width=8, style="Stop.TButton", takefocus=False)
         self.disable.configure(command=simulation.disable)
         self.disable.pack(side="left")
         tooltip.attach(self.disable, "Disable the robot: Enter")
@@ -60,13 +64,13 @@ class StationBar:
             frame, width=px(14), height=px(14), background=colors.BACKGROUND, highlightthickness=0, takefocus=False
         )
         self._light = self.lamp.create_oval(px(1), px(1), px(12), px(12), outline="", fill=colors.FAINT)
-        self.lamp.pack(side="left", padx=(px(18), px(6)))
+        self.lamp.pack(side="left", padx=(px(14), px(6)))
         self.state = ttk.Label(frame, font=theme.large)
         self.state.pack(side="left")
         self.stop = ttk.Button(
-            frame, text="E-STOP", style="Stop.TButton", command=simulation.emergency_stop, takefocus=False
+            frame, text="E-STOP", width=8, style="Stop.TButton", command=simulation.emergency_stop, takefocus=False
         )
-        self.stop.pack(side="right")
+        self.stop.pack(side="right", before=self.mode_buttons["teleop"], padx=(px(8), 0))  # never pushed out
         tooltip.attach(self.stop, "Emergency stop: the space bar. Only a restart enables the robot again.")
 
     def show(self, snapshot: Snapshot | None, status: Status) -> None:

@@ -105,6 +105,7 @@ def _style(root: tk.Tk, theme: Theme) -> None:
     root.option_add("*TCombobox*Listbox.background", CARD)
     root.option_add("*TCombobox*Listbox.foreground", TEXT)
     root.option_add("*TCombobox*Listbox.selectBackground", ACCENT)
+    root.option_add("*TCombobox*Listbox.selectForeground", CARD)
     root.option_add("*Menu.font", theme.body)
     style.configure(".", background=BACKGROUND, foreground=TEXT, font=theme.body, borderwidth=0, focuscolor=ACCENT)
     style.configure("TFrame", background=BACKGROUND)
@@ -135,6 +136,7 @@ def _style(root: tk.Tk, theme: Theme) -> None:
             lightcolor=[("disabled", "#e6e9ed")],
             darkcolor=[("disabled", "#e6e9ed")],
         )
+    style.configure("Accent.TButton", font=theme.body, padding=(px(10), px(4)))  # a button may turn into it
     # A row of these is one switch: the chosen one stands out.
     style.configure("Segment.Toolbutton", background=CARD, foreground=MUTED, padding=(px(10), px(5)), **flat, **edge)
     style.map(
@@ -167,6 +169,7 @@ def _style(root: tk.Tk, theme: Theme) -> None:
         selectforeground=[("readonly", TEXT)],
         bordercolor=[("focus", ACCENT)],
     )
+    style.configure("Wide.TCombobox", postoffset=(-px(96), 0, px(96), 0))
     style.configure("TEntry", fieldbackground=CARD, bordercolor=BORDER, lightcolor=CARD, padding=px(2))
     for way in ("Vertical", "Horizontal"):
         style.configure(
@@ -189,6 +192,15 @@ def _style(root: tk.Tk, theme: Theme) -> None:
         style.layout(f"{way}.TScrollbar", [trough])  # type: ignore[list-item]
     style.configure("TPanedwindow", background=BACKGROUND)
     style.configure("Sash", sashthickness=px(6), gripcount=0)
+
+
+def fitting(text: str, font: tk_font.Font, room: float) -> str:
+    """As much of a text as there is room for, in pixels."""
+    if font.measure(text) <= room:
+        return text
+    while text and font.measure(f"{text}…") > room:
+        text = text[:-1]
+    return f"{text.rstrip()}…"
 
 
 def card(parent: tk.Misc, theme: Theme) -> tk.Frame:

@@ -45,8 +45,8 @@ class TimeBar:
         self._time.pack(side="left")
         self.timeline = Slider(frame, theme, px(200), self._time_moved)
         self.timeline.pack(side="left", fill="x", expand=True, padx=px(8))
-        tooltip.attach(self.timeline, "Drag to a moment to go back there, and drive on from it")
-        self._length = ttk.Label(frame, style="Muted.TLabel", width=8)
+        tooltip.attach(self.timeline, "Drag it back to a moment, and drive on from there")
+        self._length = ttk.Label(frame, style="Muted.TLabel", width=9)
         self._length.pack(side="left")
         self.restart = ttk.Button(frame, text="Restart", command=simulation.restart, takefocus=False)
         self.restart.pack(side="left", padx=(px(8), px(4)))
@@ -62,15 +62,17 @@ class TimeBar:
         if not self.timeline.held:
             self.timeline.show(time / self._end if self._end else 0.0)
             self._time_shown(time)
-        state = status.state, status.speed, round(self._end, 1)
+        self._write(self._length, clock(self._end))
+        state = status.state, status.speed
         if state == self._shown:
             return
         self._shown = state
         going = status.state == "running"
-        self.run.configure(text="Pause" if going else "Run")
+        self.run.configure(
+            text="Pause" if going else "Run", style="Accent.TButton" if status.state == "paused" else "TButton"
+        )
         self.run.state(["!disabled" if status.state in ("running", "paused") else "disabled"])
         self.step.state(["!disabled" if status.state in ("running", "paused") else "disabled"])
-        self._length.configure(text=clock(self._end)[:-1])
         if not self.speed.held:
             self.speed.show(slider_of_speed(status.speed))
             self._speed_text.configure(text=speed_text(status.speed))
@@ -83,9 +85,17 @@ class TimeBar:
             self._simulation.resume()
 
     def _time_shown(self, time: float) -> None:
-        text = clock(time)
-        if text != self._time.cget("text"):
-            self._time.configure(text=text)
+        self._write(self._time, clock(time))
+
+    @staticmethod
+    def _write(label: ttk.Label, text: str) -> None:
+        if text != label.cget("text"):
+            label.configure(text=text)
+
+    def give_up_saving(self) -> None:
+        """Close the window that asks for a file's name, where Tk draws it itself: the others are the system's."""
+        # What Tk waits for: the same as "Cancel".
+        self.frame.tk.call("set", "::tk::Priv(selectFilePath)", "")
 
     def _speed_moved(self, place: float, let_go: bool) -> None:
         speed = speed_of_slider(place)
@@ -101,7 +111,7 @@ class TimeBar:
 
     def _save(self) -> None:
         name = filedialog.asksaveasfilename(
-            parent=self.frame,
+            parent=self.frame.winfo_toplevel(),  # in its middle
             title="Save the recording",
             initialdir=self._simulation.project.root,
             initialfile="recording.jsonl",

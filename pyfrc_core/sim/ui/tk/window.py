@@ -6,13 +6,16 @@ import contextlib
 import sys
 import time
 import tkinter as tk
+from collections import deque
 from tkinter import ttk
 from types import TracebackType
 from typing import TYPE_CHECKING
 
 from ....errors import UsageError
+from ...interruption import calling_when_ended
 from ...snapshot import Snapshot, Status
 from .center_view import CenterView
+from .column import Column
 from .device_view import DeviceView
 from .drive_view import DriveView
 from .gamepads import GamepadRouter, open_room
@@ -60,7 +63,10 @@ class Window:
         self._snapshot: Snapshot | None = None
         self._status: Status | None = None
         self._due, self._alarm = 0.0, ""
-        self._noted = self._status_note = ""
+        #: What other threads have told the user, and is not shown yet.
+        self._told: deque[str] = deque()
+        #: What the field, the time bar and the simulation have to say; and what is shown of it.
+        self._notes, self._noted = ("", "", ""), ""
         #: What has gone wrong in the window itself, or Ctrl+C.
         self.failure: BaseException | None = None
         self.root = root = _open(screen)
@@ -70,7 +76,7 @@ class Window:
         except BaseException:
             root.destroy()
             raise
-        root.protocol("WM_DELETE_WINDOW", root.quit)
+        root.protocol("WM_DELETE_WINDOW", self._quit)
 
     def _build(self) -> None:
         root, simulation = self.root, self._simulation
@@ -100,9 +106,9 @@ class Window:
         middle.pack(fill="both", expand=True, padx=gap)
         self.devices = DeviceView(middle, theme, tooltip, simulation, self.focus_field)
         self.devices.frame.pack(side="left", fill="y")
-        right = ttk.Frame(middle, width=px(JOYSTICK_WIDTH + 2))
-        right.pack_propagate(False)
-        right.pack(side="right", fill="y")
+        self.column = Column(middle, theme, px(JOYSTICK_WIDTH + 2))
+        self.column.frame.pack(side="right", fill="y")
+        right = self.column.inside
         self.center = CenterView(middle, theme, tooltip, simulation)
         self.center.frame.pack(side="left", fill="both", expand=True, padx=gap)
         self.field, self.console = self.center.field, self.center.console
@@ -125,7 +131,8 @@ class Window:
     def loop(self) -> None:
         """Show the simulation until the window is closed."""
         self.begin()
-        self.root.mainloop()
+        with calling_when_ended(self._interrupt):
+            self.root.mainloop()
         if self.failure is not None:
             raise self.failure
 
@@ -148,6 +155,10 @@ class Window:
             self.root.after_cancel(self._alarm)
             self._alarm = ""
 
+    def tell(self, what: str) -> None:
+        """Tell the user what has happened, among the robot's output. From any thread."""
+        self._told.append(what)
+
     def focus_field(self) -> None:
         """Let the keys drive."""
         self.field.canvas.focus_set()
@@ -166,6 +177,8 @@ class Window:
             if self._status is not None and self._status.state == "starting" != status.state:
                 self.gamepads.tell_all_again()
             self.gamepads.poll()
+        while self._told:
+            self.console.mark(self._told.popleft())
         self.console.show(status.failure)
         if snapshot is not self._snapshot or status is not self._status:
             self._show(snapshot, status)
@@ -192,15 +205,19 @@ class Window:
         changed = self._status is None or self._status.state != status.state
         if changed:
             self.center.make_room_for_a_traceback(status.state == "failed")
+            if status.state == "starting":
+                self.console.mark("the robot program starts again")
         self._snapshot, self._status = snapshot, status
 
     def _show_status(self, snapshot: Snapshot | None, status: Status) -> None:
         self._line.configure(text="   ·   ".join(status_texts(snapshot, status)))
-        if status.note != self._status_note:  # it is newer
-            self._status_note, self.time.note = status.note, ""
-        note = " ".join((self.field.problem or self.time.note or status.note).split())
-        if note != self._noted:
-            self._noted = note
+        if status.note != self._notes[-1]:
+            self.time.note = ""
+        notes = self.field.problem, self.time.note, status.note
+        if notes != self._notes:
+            newer = [now for now, before in zip(notes, self._notes, strict=True) if now != before]
+            self._notes = notes
+            self._noted = note = " ".join(next((each for each in (*newer, *notes) if each), "").split())
             short = note if len(note) <= _MOST_NOTE else f"{note[:_MOST_NOTE]}…"
             self._note.configure(text=short or _HINT, style="Note.TLabel" if note else "Muted.TLabel")
         self.center.show_pose(None if snapshot is None else snapshot.scene.robot)
@@ -208,6 +225,14 @@ class Window:
     def _on_exception(self, kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
         # It is raised where the window was opened.
         self.failure = error.with_traceback(traceback)
+        self._quit()
+
+    def _interrupt(self) -> None:
+        self.failure = KeyboardInterrupt()
+        self._quit()
+
+    def _quit(self) -> None:
+        self.time.give_up_saving()
         self.root.quit()
 
 

@@ -62,9 +62,10 @@ def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
     if snapshot.emergency_stopped:
         return "Emergency stopped", "error"
     mode = _MODES.get(snapshot.chosen_mode, snapshot.chosen_mode)
+    left = "" if snapshot.practice_since is None else f", {snapshot.match_left:.0f} s"
     if snapshot.enabled:
-        return f"{mode} enabled", "enabled"
-    return f"{mode} disabled", "disabled"
+        return f"{mode} enabled{left}", "enabled"
+    return f"{mode} disabled{left}", "disabled"
 
 
 def status_texts(snapshot: Snapshot | None, status: Status) -> list[str]:
@@ -72,14 +73,14 @@ def status_texts(snapshot: Snapshot | None, status: Status) -> list[str]:
     time = 0.0 if snapshot is None else snapshot.time
     going = status.state == "running"
     reached = f"Speed {status.reached:.2f}x of {speed_text(status.speed)}"
+    if status.speed == 0:
+        reached = f"Speed {status.reached:.0f}x, as fast as it goes"
     parts = [
         f"Robot time {time:.2f} s",
         reached if going else status.state.capitalize(),
         f"Loop {status.loop_seconds * 1000:.1f} ms, worst {status.worst_loop_seconds * 1000:.1f} ms",
         f"Overruns {status.overruns}",
     ]
-    if snapshot is not None and snapshot.practice_since is not None:
-        parts.insert(1, f"Match: {snapshot.match_left:.0f} s left")
     if status.network_address:
         parts.append(f"NetworkTables {status.network_address}")
     return parts
