@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import compileall
+import functools
 import os
 import re
 import subprocess
@@ -13,6 +15,7 @@ from textwrap import dedent
 from typing import TYPE_CHECKING
 
 import pytest
+import warm_start
 
 if TYPE_CHECKING:
     from pyfrc_core.config.sim_file import LoadedSimConfig
@@ -28,6 +31,9 @@ _NOT_PASSED_ON_EITHER = {
     "CI",
     "BUILD_NUMBER",
 }
+
+#: Those that a warm start is the same for.
+_WARM = ("pyfrc", "pytest")
 
 _BANNER = re.compile(r"^=+ .+ =+$")
 _BLOCK = re.compile(r"^_{2,} (.+?) _{2,}$")
@@ -70,6 +76,29 @@ class Result:
         return dict(lines)
 
 
+def _environment() -> dict[str, str]:
+    """What commands find in theirs."""
+    passed_on = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in _NOT_PASSED_ON_EITHER and not name.startswith(_NOT_PASSED_ON)
+    }
+    # Files may be changed twice within a second: Python would take what it has kept of the first for the second.
+    return passed_on | {"COLUMNS": "120", "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Compile our packages, as installing them does: commands would do it each time, since they keep nothing."""
+    if not hasattr(config, "workerinput"):
+        for package in ("pyfrc", "pyfrc_cli", "pyfrc_core"):
+            compileall.compile_dir(Path(__file__).parents[1] / package, quiet=2)
+
+
+@functools.cache
+def _warm_starts() -> warm_start.WarmStarts:
+    return warm_start.WarmStarts(_environment())
+
+
 @dataclass(frozen=True)
 class RobotProject:
     """A robot project in a directory of its own."""
@@ -103,18 +132,25 @@ class RobotProject:
         cwd: Path | None = None,
         stdin: str | None = None,
         program: str = "pyfrc",
+        cold: bool = False,
     ) -> Result:
-        """Run ``pyfrc`` with these arguments, as a user would in the project's directory, and wait for its end."""
-        environment = {
-            name: value
-            for name, value in os.environ.items()
-            if name not in _NOT_PASSED_ON_EITHER and not name.startswith(_NOT_PASSED_ON)
-        }
-        environment |= {"COLUMNS": "120", "TMPDIR": str(self.temporary), "TEMP": str(self.temporary)}
+        """Run ``pyfrc`` with these arguments, as a user would in the project's directory, and wait for its end.
+
+        :param cold: in a new interpreter, even where a warm start does the same
+        """
+        environment = _environment() | {"TMPDIR": str(self.temporary), "TEMP": str(self.temporary)} | dict(env or {})
+        arguments = [str(argument) for argument in args]
+        if (
+            warm_start.POSSIBLE
+            and not cold
+            and program in _WARM
+            and (warm := _warm_starts()).fit(self.path, environment)
+        ):
+            return Result(*warm.run(program, arguments, cwd or self.path, environment, stdin))
         done = subprocess.run(
-            [sys.executable, "-m", program, *map(str, args)],
+            [sys.executable, "-m", program, *arguments],
             cwd=cwd or self.path,
-            env=environment | dict(env or {}),
+            env=environment,
             stdin=subprocess.DEVNULL if stdin is None else None,
             input=stdin,
             capture_output=True,

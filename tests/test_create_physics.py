@@ -493,7 +493,7 @@ def test_existing_files_are_left_alone(make_project: MakeProject) -> None:
     # Both there: nothing is run, not even the robot.
     project.write({"robot.py": "raise RuntimeError\n"})
     assert create(project) == "left alone: physics.py (exists)\nleft alone: sim/config.json (exists)\n"
-    assert sorted(path.name for path in project.path.iterdir()) == ["physics.py", "robot.py", "sim"]
+    assert {path.name for path in project.path.iterdir()} - {"__pycache__"} == {"physics.py", "robot.py", "sim"}
     assert sorted(path.name for path in (project.path / "sim").iterdir()) == ["config.json", "config.schema.json"]
 
 

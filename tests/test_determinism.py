@@ -13,12 +13,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from conftest import MakeProject, RobotProject
 
 ROBOTS = Path(__file__).parent / "robots"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
 
-#: Four interpreters started anew, each testing the robot five times, make 20.
-SESSIONS, TESTED_IN_EACH = 4, 5
+#: Interpreters started anew, and how often each tests the robot.
+SESSIONS, TESTED_IN_EACH = 2, 4
 
 #: One more has a busy machine: for a robot that runs in place, and for one with threads and a loop of its own.
 BUSY = 8
@@ -34,27 +35,19 @@ READY_MADE = "from pyfrc.tests import test_operator_control, test_practice\n"
 HASHES_OF_OTHERS = "PYFRC_TRACE_HASHES"
 
 
-def pyfrc_test(project: Path, *args: str) -> str:
-    environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST_", "COVERAGE_"))}
-    environment.pop("PYTHONHASHSEED", None)  # pyfrc is to see to that itself
-    done = subprocess.run(
-        [sys.executable, "-m", "pyfrc", "test", *args],
-        cwd=project,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+def pyfrc_test(project: RobotProject, *args: str, cold: bool) -> str:
+    result = project.run("test", *args, cold=cold)
+    assert result.code == 0, result.output
+    return result.stdout
 
 
 @pytest.fixture
-def project(name: str, tmp_path: Path) -> Path:
+def project(name: str, make_project: MakeProject) -> RobotProject:
     """A copy of the sample robot, since running a robot leaves files in its project."""
-    return Path(
-        shutil.copytree(ROBOTS / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__", ".pytest_cache"))
-    )
+    project = make_project({})
+    left_out = shutil.ignore_patterns("__pycache__", ".pytest_cache")
+    shutil.copytree(ROBOTS / name, project.path, dirs_exist_ok=True, ignore=left_out)
+    return project
 
 
 @contextmanager
@@ -77,28 +70,26 @@ def hashes(directory: Path) -> Iterator[tuple[str, str]]:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_sample_robot_passes_the_ready_made_tests_and_its_own(project: Path) -> None:
-    output = pyfrc_test(project, "--", "-v")
+def test_sample_robot_passes_the_ready_made_tests_and_its_own(project: RobotProject) -> None:
+    output = pyfrc_test(project, "--", "-v", cold=False)
     assert "pyfrc_test.py::test_practice PASSED" in output
     assert "failed" not in output
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_tested_twenty_times_it_does_the_same(name: str, project: Path, tmp_path: Path) -> None:
-    shutil.rmtree(project / "tests")
-    (project / "tests").mkdir()
-    for number in range(TESTED_IN_EACH):
-        (project / "tests" / f"run{number}_test.py").write_text(READY_MADE)
-    with (project / "pyproject.toml").open("a") as pyproject:
+def test_tested_again_and_again_it_does_the_same(name: str, project: RobotProject, tmp_path: Path) -> None:
+    shutil.rmtree(project.path / "tests")
+    project.write({f"tests/run{number}_test.py": READY_MADE for number in range(TESTED_IN_EACH)})
+    with (project.path / "pyproject.toml").open("a") as pyproject:
         pyproject.write(SETTINGS)
 
     seen: dict[str, set[str]] = defaultdict(set)
     tested = 0
     for session in range(SESSIONS):
-        pyfrc_test(project, "--trace", str(tmp_path / f"traces{session}"))
+        pyfrc_test(project, "--trace", str(tmp_path / f"traces{session}"), cold=True)
     if name in TESTED_BUSY:
         with busy_processes(BUSY):
-            pyfrc_test(project, "--trace", str(tmp_path / "traces-busy"), "--", "tests/run0_test.py")
+            pyfrc_test(project, "--trace", str(tmp_path / "traces-busy"), "--", "tests/run0_test.py", cold=False)
     for directory in tmp_path.glob("traces*"):
         for test, digest in hashes(directory):
             seen[test].add(digest)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from textwrap import dedent
 
 import pytest
 from conftest import MakeProject, Result, RobotProject
@@ -344,7 +343,7 @@ def test_nothing_temporary_is_left_behind(report: Result, troubled: RobotProject
     assert [path.name for path in troubled.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
 
 
-# -- robots that do not get as far ----------------------------------------------------------------------------------
+# -- more of that, each with a robot of its own ---------------------------------------------------------------------
 
 ANY_TEST = """
     def test_teleop(control):
@@ -389,276 +388,6 @@ def test_a_robot_whose_own_loop_returns_early_fails(make_project: MakeProject) -
     line = first_line(result.blocks()["test_teleop"])
     assert line.startswith(f"{project.place('tests/test_a.py', 'control.run_test(')}: ")
     assert "the robot program ended by itself: startCompetition() returned at 0.5" in line
-
-
-@pytest.mark.parametrize(
-    ("files", "file", "line", "text"),
-    [
-        ({"robot.py": "import wpilib\n\ndef robot(:\n    pass\n"}, "robot.py", "def robot(:", "SyntaxError: invalid"),
-        (
-            {"robot.py": "import wpilib\nimport arm\n", "arm.py": "x = 1\n\nwhile True\n    pass\n"},
-            "arm.py",
-            "while True",
-            "SyntaxError: expected ':'",
-        ),
-        (
-            {"robot.py": "import wpilib\nimport arm\n", "arm.py": "x = 1\n\nx = y\n"},
-            "arm.py",
-            "x = y",
-            "NameError: name 'y' is not defined",
-        ),
-        ({"robot.py": "import wpilib\nimport amr\n"}, "robot.py", "import amr", "No module named 'amr'"),
-    ],
-    ids=["syntax", "syntax-of-another-module", "exception", "missing-module"],
-)
-def test_a_robot_that_cannot_be_imported_is_told_once_with_its_line(
-    make_project: MakeProject, files: dict[str, str], file: str, line: str, text: str
-) -> None:
-    project = make_project({**files, "tests/test_a.py": ANY_TEST})
-    result = project.run("test")
-    assert result.code == 1, result.output
-    assert result.first_error.startswith(f"{project.place(file, line)}: ")
-    assert text in result.first_error
-    assert result.output.count(text) == 1
-    assert "Traceback" not in result.output
-
-
-@pytest.mark.parametrize("has_requirements", [True, False])
-def test_a_missing_module_is_told_with_how_the_projects_packages_are_installed(
-    make_project: MakeProject, has_requirements: bool
-) -> None:
-    requirements = {"requirements.txt": "amr\n"} if has_requirements else {}
-    project = make_project({"robot.py": "import amr\n", "tests/test_a.py": ANY_TEST, **requirements})
-    result = project.run("test")
-    assert "Is the name right, and its package installed?" in result.stderr
-    assert ("pip install -r requirements.txt" in result.stderr) == has_requirements
-
-
-LOOPS_WHILE_IMPORTED = """
-    import wpilib
-
-    count = 0
-    while True:
-        count += 1  # for ever
-
-    class MyRobot(wpilib.TimedRobot):
-        pass
-"""
-
-
-@pytest.mark.parametrize("command", ["test", "fuzz --runs 1", "sim --ui none", "create-physics", "replay script.jsonl"])
-def test_an_endless_loop_in_a_file_that_is_imported_is_told_with_its_line(
-    make_project: MakeProject, command: str
-) -> None:
-    project = make_project(
-        {
-            "robot.py": "import arm\n",
-            "arm.py": LOOPS_WHILE_IMPORTED,
-            "tests/test_a.py": ANY_TEST,
-            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.4\n",
-            "script.jsonl": '{"format": "pyfrc-input 1", "end": 1.0}\n',
-        }
-    )
-    result = project.run(*command.split())
-    assert result.code == 1, result.output
-    assert re.search(r"\barm\.py:[45]: the robot code hangs here, through 0\.4 s of computing\n", result.output)
-    assert "Is it an endless loop?" in result.output
-    assert "Traceback" not in result.output
-
-
-def test_what_takes_long_in_a_library_while_it_is_imported_is_no_endless_loop(make_project: MakeProject) -> None:
-    busy = "import time\nbegun = time.thread_time()\nwhile time.thread_time() - begun < 1.0: pass\n"
-    project = make_project(
-        {
-            "robot.py": f"import slow\n{dedent(ROBOT)}",
-            "site-packages/slow.py": busy,
-            "tests/test_a.py": ANY_TEST,
-            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.4\n",
-        }
-    )
-    result = project.run("test", env={"PYTHONPATH": str(project.path / "site-packages")})
-    assert result.code == 0, result.output
-
-
-def test_verbose_shows_the_traceback_of_a_robot_that_cannot_be_imported(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": "import wpilib\nx = y\n", "tests/test_a.py": ANY_TEST})
-    result = project.run("-v", "test")
-    assert result.code == 1
-    assert "Traceback (most recent call last)" in result.stderr
-    assert "NameError" in result.stderr
-
-
-def test_a_file_without_a_robot_class_says_what_one_looks_like(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": "import wpilib\n", "tests/test_a.py": ANY_TEST})
-    result = project.run("test")
-    assert result.code == 2, result.output
-    assert result.first_error == "robot.py: there is no robot class in this file"
-    assert "class MyRobot(wpilib.TimedRobot)" in result.stderr
-
-
-TWO_ROBOTS = """
-    import wpilib
-
-
-    class Competition(wpilib.TimedRobot):
-        name = "competition"
-
-
-    class Practice(wpilib.TimedRobot):
-        name = "practice"
-"""
-
-WHICH_ROBOT = """
-    def test_which(control, robot):
-        control.run_test(lambda tm: tm < 1)
-        assert robot.name == "practice"
-"""
-
-
-def test_two_robot_classes_ask_for_a_choice(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": TWO_ROBOTS, "tests/test_which.py": WHICH_ROBOT})
-    undecided = project.run("test")
-    assert undecided.code == 2, undecided.output
-    for name in ("Competition", "Practice"):
-        assert f"{name} ({project.place('robot.py', f'class {name}')})" in undecided.first_error
-    assert "--robot-class" in undecided.stderr
-    assert "robot_class = " in undecided.stderr
-
-    chosen = project.run("test", "--robot-class", "Practice")
-    assert chosen.code == 0, chosen.output
-
-    unknown = project.run("test", "--robot-class", "Practise")
-    assert unknown.code == 2, unknown.output
-    assert "there is no robot class 'Practise'" in unknown.first_error
-    assert "Competition, Practice" in unknown.stderr
-
-    project.write({"pyproject.toml": '[tool.pyfrc]\nrobot_class = "Practice"\n'})
-    settled = project.run("test")
-    assert settled.code == 0, settled.output
-
-
-# -- settings, and the command line ---------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("settings", "line", "message", "remedy"),
-    [
-        ("[tool.pyfrc.match]\ntelop = 1\n", 2, "unknown key 'tool.pyfrc.match.telop'", "did you mean 'teleop'?"),
-        ("[tool.pyfrc]\n\nrobot_clas = 1\n", 3, "unknown key 'tool.pyfrc.robot_clas'", "did you mean 'robot_class'?"),
-        ('[tool.pyfrc.match]\nteleop = "long"\n', 2, "tool.pyfrc.match.teleop = 'long': input should be a valid", ""),
-        ("[tool.pyfrc.match]\n# s\nteleop = -1\n", 3, "tool.pyfrc.match.teleop = -1: ", "greater than 0"),
-        ('[tool.pyfrc.test]\njobs = "many"\n', 2, "tool.pyfrc.test.jobs = 'many': ", "'auto'"),
-        ('[tool.pyfrc.test]\nisolation = "full"\n', 2, "tool.pyfrc.test.isolation = 'full': ", "'spawn'"),
-    ],
-    ids=["unknown-key", "unknown-top-key", "wrong-type", "out-of-range", "neither-of-two", "not-a-choice"],
-)
-def test_a_wrong_setting_is_told_with_its_line(
-    make_project: MakeProject, settings: str, line: int, message: str, remedy: str
-) -> None:
-    project = make_project({"robot.py": ROBOT, "tests/test_a.py": ANY_TEST, "pyproject.toml": settings})
-    result = project.run("test")
-    assert result.code == 2, result.output
-    assert result.first_error.startswith(f"pyproject.toml:{line}: {message}")
-    assert remedy in result.stderr
-    assert "Traceback" not in result.output
-
-
-def test_a_broken_pyproject_toml_is_told_with_its_line(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.pyfrc]\nmain =\n"})
-    result = project.run("test")
-    assert result.code == 2, result.output
-    assert result.first_error.startswith("pyproject.toml")
-    assert "not valid TOML: " in result.first_error
-    assert "line 2" in result.first_error
-    assert "Traceback" not in result.output
-
-
-def test_a_project_without_tests_is_told_where_they_are_looked_for(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT})
-    result = project.run("test")
-    assert result.code == 1, result.output
-    assert "test_*.py" in result.stderr
-    assert str(project.path / "tests") in result.stderr
-    assert str(project.path.parent / "tests") in result.stderr
-    assert "pyfrc test --builtin" in result.stderr
-
-    builtin = project.run("test", "--builtin")
-    assert builtin.code == 0, builtin.output
-    assert "4 passed" in builtin.stdout
-
-
-def test_a_mistyped_command_is_told_the_nearest(make_project: MakeProject) -> None:
-    result = make_project({"robot.py": ROBOT}).run("tset")
-    assert result.code == 2
-    assert "There is no command 'tset'. Did you mean 'test'?" in result.stderr
-
-
-def test_outside_of_a_project_there_is_a_remedy(make_project: MakeProject) -> None:
-    project = make_project({"notes.txt": "No robot here."})
-    result = project.run("test")
-    assert result.code == 2
-    assert f"there is no robot.py in or above {project.path}" in result.first_error
-    for remedy in ("--project", "--main", "pyfrc init"):
-        assert remedy in result.stderr
-
-
-@pytest.mark.parametrize(
-    ("args", "message"),
-    [
-        (["--jobs", "none"], "'none' is neither a number of processes, 1 or more, nor 'auto'"),
-        (["--jobs", "0"], "'0' is neither a number of processes, 1 or more, nor 'auto'"),
-        (["--seed", "-1"], "--seed"),
-        (["--project", "nowhere"], "there is no directory nowhere"),
-        (["--main", "nothing.py"], "there is no file nothing.py"),
-    ],
-)
-def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], message: str) -> None:
-    result = make_project({"robot.py": ROBOT}).run("test", *args)
-    assert result.code == 2
-    assert message in result.stderr
-    assert "Traceback" not in result.stderr
-
-
-# -- chance ---------------------------------------------------------------------------------------------------------
-
-ROBOT_THAT_DRAWS = """
-    import random
-
-    import numpy
-    import wpilib
-
-
-    class MyRobot(wpilib.TimedRobot):
-        def __init__(self):
-            super().__init__()
-            self.drawn = random.random(), float(numpy.random.random())
-"""
-
-TESTS_THAT_DRAW = """
-    import random
-
-    import numpy
-
-
-    def test_robot(robot):
-        print("drew", *robot.drawn, random.random())
-        assert False
-
-
-    def test_without_robot():
-        print("drew", random.random(), numpy.random.random())
-        assert False
-"""
-
-
-def test_a_seed_repeats_what_robot_and_tests_draw(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT_THAT_DRAWS, "tests/test_drawing.py": TESTS_THAT_DRAW})
-    seven, again, eight = (project.run("test", "--seed", seed) for seed in ("7", "7", "8"))
-    assert seven.stdout.count("random seed: 7 (--seed 7 repeats it)") == 2
-    drawn = re.findall(r"^drew .+$", seven.stdout, re.MULTILINE)
-    assert len(drawn) == 2
-    assert re.findall(r"^drew .+$", again.stdout, re.MULTILINE) == drawn
-    assert not set(re.findall(r"^drew .+$", eight.stdout, re.MULTILINE)) & set(drawn)
 
 
 HANGS = """
@@ -737,43 +466,43 @@ def test_two_devices_on_one_channel_are_told_without_other_peoples_code(make_pro
     assert not re.search(r"pyfrc_core[/\\]", block)
 
 
-@pytest.mark.parametrize("name", ["mian", "main"])
-def test_plain_pytest_tells_wrong_settings_in_a_sentence(make_project: MakeProject, name: str) -> None:
-    project = make_project({"robot.py": ROBOT_OF_NOTHING, "pyproject.toml": f'[tool.pyfrc]\n{name} = "nothing.py"\n'})
-    result = project.pytest()
-    assert result.code == 4
-    assert "INTERNALERROR" not in result.output
-    assert name in result.output
+# -- chance ---------------------------------------------------------------------------------------------------------
 
+ROBOT_THAT_DRAWS = """
+    import random
 
-def test_plain_pytest_tells_a_robot_that_cannot_be_imported_in_a_line(make_project: MakeProject) -> None:
-    project = make_project(
-        {"robot.py": "import wpilib\n\nimport not_installed\n", "tests/pyfrc_test.py": "from pyfrc.tests import *\n"}
-    )
-    result = project.pytest()
-    assert result.code == 1
-    for block in result.blocks().values():
-        assert first_line(block).startswith("robot.py:3: ModuleNotFoundError")
-        assert not re.search(r"pyfrc_core[/\\]", block)
-
-
-def test_a_file_that_cannot_be_parsed_does_not_cost_the_coverage_report(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": ROBOT_OF_NOTHING,
-            "old_robot.py": 'print "hello"\n',
-            "tests/pyfrc_test.py": "from pyfrc.tests import *\n",
-        }
-    )
-    result = project.run("test", "--coverage", "--", "-q")
-    assert result.code == 0, result.output
-    assert re.search(r"^robot\.py .* 100%$", result.stdout, re.MULTILINE)
-    assert "Traceback" not in result.output
-
-
-ROBOT_OF_NOTHING = """
+    import numpy
     import wpilib
 
+
     class MyRobot(wpilib.TimedRobot):
-        pass
+        def __init__(self):
+            super().__init__()
+            self.drawn = random.random(), float(numpy.random.random())
 """
+
+TESTS_THAT_DRAW = """
+    import random
+
+    import numpy
+
+
+    def test_robot(robot):
+        print("drew", *robot.drawn, random.random())
+        assert False
+
+
+    def test_without_robot():
+        print("drew", random.random(), numpy.random.random())
+        assert False
+"""
+
+
+def test_a_seed_repeats_what_robot_and_tests_draw(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT_THAT_DRAWS, "tests/test_drawing.py": TESTS_THAT_DRAW})
+    seven, again, eight = (project.run("test", "--seed", seed) for seed in ("7", "7", "8"))
+    assert seven.stdout.count("random seed: 7 (--seed 7 repeats it)") == 2
+    drawn = re.findall(r"^drew .+$", seven.stdout, re.MULTILINE)
+    assert len(drawn) == 2
+    assert re.findall(r"^drew .+$", again.stdout, re.MULTILINE) == drawn
+    assert not set(re.findall(r"^drew .+$", eight.stdout, re.MULTILINE)) & set(drawn)

@@ -60,7 +60,7 @@ def kept(project: Any) -> dict[str, bytes]:
 
 
 def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(make_project) -> None:
-    project = copy_of("buggy/chord", make_project)
+    project = copy_of("buggy/chord", make_project, seconds=4.0)
     result = project.run("fuzz", "--seed", "1", "--runs", "32")
     assert result.code == 1, result.output
     place = project.place("robot.py", "# the bug")
@@ -100,9 +100,9 @@ def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(make_project) -> None:
 def test_the_same_campaign_writes_the_same_files_in_however_many_processes(make_shared_project) -> None:
     found = []
     for jobs in ("1", "2"):
-        project = copy_of("buggy/chord", make_shared_project, seconds=8.0)
+        project = copy_of("buggy/chord", make_shared_project, seconds=4.0)
         # More than one batch: the second goes on from where the first has come to.
-        result = project.run("fuzz", "--seed", "1", "--runs", "40", "-j", jobs)
+        result = project.run("fuzz", "--seed", "1", "--runs", "36", "-j", jobs)
         assert result.code == 1, result.output
         found.append((result.stdout.splitlines()[-1], kept(project)))
     assert found[0] == found[1]
@@ -156,7 +156,7 @@ def test_what_is_a_failure(kind: str, make_project) -> None:
     code, told = FAULTS[kind]
     slow = "hang_seconds = 0.2"
     project = make_project({"robot.py": FAULTY.format(code), "pyproject.toml": SHORT_MATCHES.format(6, slow)})
-    result = project.run("fuzz", "--runs", "4")
+    result = project.run("fuzz", "--runs", "2")
     assert result.code == 1, result.output
     line = project.line("robot.py", "def autonomousPeriodic" if kind == "hangs" else code)
     assert told.format(line) in result.stdout, result.output
@@ -329,11 +329,11 @@ def test_a_robot_that_exits_has_failed(
     settings = SHORT_MATCHES.format(4, f'\n    [tool.pyfrc.test]\n    isolation = "{isolation}"')
     project = make_project({"robot.py": EXITING.format(*lines), "pyproject.toml": settings})
     place = project.place("robot.py", code)
-    result = project.run("fuzz", "--runs", "4", "--seed", "1")
+    result = project.run("fuzz", "--runs", "2", "--seed", "1")
     assert result.code == 1, result.output
     assert f"{place}: {told}\n" in result.stdout, result.output
     assert f"pyfrc replay tests/fuzz/{name}.jsonl\n" in result.stdout, result.output
-    assert "4 matches, " in result.stdout
+    assert "2 matches, " in result.stdout
     replayed = project.run("replay", f"tests/fuzz/{name}.jsonl")
     assert (replayed.code, replayed.stdout.splitlines()[-1]) == (1, f"then {place}: {told}"), replayed.output
 

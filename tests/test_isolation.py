@@ -648,7 +648,7 @@ def test_plain_pytest_elsewhere_is_left_alone(make_project: MakeProject) -> None
         def test_control(control):
             pass
     """
-    result = make_project({"test_elsewhere.py": tests}).pytest("-v")
+    result = make_project({"test_elsewhere.py": tests}).run("-v", program="pytest", cold=True)
     assert result.code == 1
     assert few_outcomes(result) == [("test_nothing_is_imported", "PASSED"), ("test_control", "ERROR")]
     assert "fixture 'control' not found" in result.stdout

@@ -70,5 +70,5 @@ def test_a_run_with_default_settings_does_not_wait_for_pydantic(make_project) ->
             """,
         }
     )
-    result = project.run("test", "--", "-q")
+    result = project.run("test", "--", "-q", cold=True)
     assert result.code == 0, result.output

@@ -36,7 +36,7 @@ def test_both_generations_drive_the_same_square(make_shared_project) -> None:
         project = make_shared_project({})
         shutil.copytree(SQUARE, project.path, dirs_exist_ok=True)
         shutil.copyfile(SQUARE / physics, project.path / "physics.py")
-        result = project.run("test")
+        result = project.run("test", "--", "tests/test_square.py")
         assert result.code == 0, result.output
         paths.append(json.loads((project.path / "path.json").read_text("utf-8")))
     assert len(paths[0]) == len(paths[1]) == 700

@@ -34,6 +34,9 @@ ON_THE_ROBOT = (
     *("commands2", "typing_extensions", "magicbot", "robotpy_ext", "toposort"),
 )
 
+#: The first command of the workflows.
+INSTALLING = ["pip", "install", "-r", "requirements.txt"]
+
 #: A function as long as this is nothing that two robots happen to have both.
 LONG_FUNCTION = 6
 
@@ -56,21 +59,47 @@ def template(request: pytest.FixtureRequest) -> str:
 every_template = pytest.mark.parametrize("project", TEMPLATES, indirect=True)
 
 
+def workflow(project: RobotProject) -> list[list[str]]:
+    """The commands of a project's workflow for tests: each what stands behind ``python -m``."""
+    steps = yaml.safe_load((project.path / ".github/workflows/test.yml").read_text("utf-8"))
+    commands = [shlex.split(step["run"]) for job in steps["jobs"].values() for step in job["steps"] if "run" in step]
+    assert all(command[:2] == ["python", "-m"] for command in commands)
+    return [command[2:] for command in commands]
+
+
 @every_template
-def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject) -> None:
-    """Installing, checking the config, and the tests with more than 80 % of the robot's lines run."""
-    workflow = yaml.safe_load((project.path / ".github/workflows/test.yml").read_text("utf-8"))
-    commands = [step["run"] for job in workflow["jobs"].values() for step in job["steps"] if "run" in step]
-    assert commands[-1] == "python -m pyfrc test --coverage --fail-under 80"
-    for command in commands:
-        python, option, module, *arguments = shlex.split(command)
-        assert (python, option) == ("python", "-m")
-        result = project.run(*arguments, program=module, env={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})
+def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp_path: Path) -> None:
+    """Checking the config, and the tests with more than 80 % of the robot's lines run, when all is installed.
+
+    In less than a whole match, for the sake of the suite's time; the simulator goes through a whole one.
+    """
+    installing, *rest = workflow(project)
+    shorter = shutil.copytree(project.path, tmp_path / "shorter")
+    with (shorter / "pyproject.toml").open("a", encoding="utf-8") as pyproject:
+        pyproject.write("\n[tool.pyfrc.match]\nteleop = 30\n")
+    assert installing == INSTALLING
+    assert rest[-1] == ["pyfrc", "test", "--coverage", "--fail-under", "80"]
+    for program, *arguments in rest:
+        result = project.run(*arguments, program=program, cwd=shorter)
         assert result.code == 0, result.output
-        assert "Downloading" not in result.output  # all of it is installed here
     own_tests = [file for file in project.path.glob("tests/test_*.py") if f"tests/{file.name} ." in result.stdout]
     assert own_tests, result.stdout
     assert "tests/pyfrc_test.py ....." in result.stdout
+
+
+def test_what_the_workflows_install_is_installed_here(make_shared_project: MakeProject) -> None:
+    """pip reads it, and finds all of it; each list once."""
+    lists = set()
+    for template in TEMPLATES:
+        project = make_shared_project({})
+        assert project.run("init", "--template", template).code == 0
+        needed = (project.path / "requirements.txt").read_text("utf-8")
+        if needed not in lists:
+            program, *arguments = INSTALLING
+            result = project.run(*arguments, program=program, env={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})
+            assert result.code == 0, result.output
+            assert "Downloading" not in result.output
+        lists.add(needed)
 
 
 @every_template

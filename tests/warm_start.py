@@ -1,0 +1,209 @@
+"""Commands that start warm: forked from a process that has imported what each would otherwise import anew.
+
+A large part of what a short command costs is imports. A process beside pytest imports all once, and runs no robot: it
+forks, and the fork becomes the command that a new interpreter would have become. ``PYFRC_COLD_STARTS=1`` does without.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import gc
+import importlib
+import json
+import os
+import runpy
+import select
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import types
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+#: Whether commands can start warm here: where Linux tells of the end of a process by a descriptor.
+POSSIBLE = hasattr(os, "pidfd_open") and "PYFRC_COLD_STARTS" not in os.environ
+
+#: What a new interpreter reads, and a fork does not.
+_READ_AT_START = ("PYTHON", "LC_", "LANG", "LD_", "COVERAGE_")
+
+#: What most commands import, sooner or later; but nothing that takes a name that measuring has to replace before
+#: (`exit_now`, in `pyfrc_core.fuzz.forked_work` and `pyfrc_core.test_support.isolation`).
+_IMPORTED = (
+    *("wpilib.drive", "wpilib.simulation", "hal.simulation", "ntcore", "click", "pydantic", "coverage", "paramiko"),
+    *(
+        "pytest",
+        "_pytest.assertion.rewrite",
+        "_pytest.terminal",
+        "_pytest.junitxml",
+        "_pytest.logging",
+        "execnet.multi",
+    ),
+    *("pdb", "unittest", "email.parser", "pyfrc_cli.main", "pyfrc_core.measure.coverage", "pyfrc_core.tests"),
+    *("pyfrc_core.test_support.pytest_plugin", "pyfrc_core.fuzz.masher", "pyfrc_core.fuzz.describe"),
+    *("pyfrc_core.config.sim_file", "pyfrc_core.physics.engine", "pyfrc_core.deploy.session"),
+)
+
+#: Whatever robot code's is made to do.
+_exit_now = os._exit
+
+#: A message is one packet: more bytes than any has.
+_LARGEST = 1 << 17
+
+
+class WarmStarts:
+    """Starts commands, one after the other, from a process that has imported everything.
+
+    :param environment: that of commands with which nothing is special
+    """
+
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        self._environment = environment
+        self._server, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with theirs:
+            process = subprocess.Popen(
+                [sys.executable, __file__, str(theirs.fileno())],
+                env={**environment, "PYTHONHASHSEED": "0"},
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,  # as the commands will have one
+            )
+        atexit.register(process.communicate)
+        atexit.register(self._server.close)  # comes first, and ends the process
+        imported = self._server.recv(_LARGEST)
+        if not imported:
+            raise RuntimeError("what commands import cannot be imported: its traceback is on standard error")
+        self._modules = frozenset(json.loads(imported))
+
+    def fit(self, directory: Path, environment: Mapping[str, str]) -> bool:
+        """Whether in this directory a fork does the same as a new interpreter."""
+        if any(
+            name.startswith(_READ_AT_START) and self._environment.get(name) != environment[name] for name in environment
+        ):
+            return False
+        # The user's modules come before others of their names; here, the others are imported already.
+        return not any(path.stem in self._modules for path in directory.rglob("*") if path.suffix in ("", ".py"))
+
+    def run(
+        self, program: str, arguments: list[str], directory: Path, environment: Mapping[str, str], stdin: str | None
+    ) -> tuple[int, str, str]:
+        """Run ``python -m program arguments``, and wait for its end.
+
+        :param stdin: what fits into a pipe; None is no input at all
+        :return: the exit code (a signal's number, negative), and what was printed, on standard output and of errors
+        """
+        (out, their_out), (err, their_err) = os.pipe(), os.pipe()
+        if stdin is None:
+            their_in = os.open(os.devnull, os.O_RDONLY)
+        else:
+            their_in, told = os.pipe()
+            with os.fdopen(told, "w", encoding="utf-8") as file:
+                file.write(stdin)
+        word, their_word = socket.socketpair()
+        job = json.dumps([program, arguments, str(directory), dict(environment)]).encode()
+        streams = (their_in, their_out, their_err)
+        with their_word:
+            socket.send_fds(self._server, [job], [their_word.fileno(), *streams])
+        for descriptor in streams:
+            os.close(descriptor)
+        with (
+            os.fdopen(out, encoding="utf-8", errors="replace") as stdout,
+            os.fdopen(err, encoding="utf-8", errors="replace") as stderr,
+            ThreadPoolExecutor(1) as beside,
+            word,  # closed first: when this is interrupted, the command ends, and with it the reading
+        ):
+            errors = beside.submit(stderr.read)
+            printed = stdout.read()
+            return int(word.recv(_LARGEST)), printed, errors.result()
+
+
+class _Job(NamedTuple):
+    """A command to become: what `WarmStarts.run` was given, and descriptors of its three streams."""
+
+    given: tuple[str, list[str], str, dict[str, str]]
+    streams: list[int]
+
+
+def _serve(server: socket.socket) -> _Job | None:
+    """Fork for each job.
+
+    :return: in a fork, its job; otherwise None, when there are no more
+    """
+    while True:
+        message, descriptors, _, _ = socket.recv_fds(server, _LARGEST, 4)
+        if not message:
+            return None
+        with socket.socket(fileno=descriptors[0]) as word:
+            process = os.fork()
+            if process == 0:
+                return _Job(json.loads(message), descriptors[1:])
+            for descriptor in descriptors[1:]:
+                os.close(descriptor)
+            end = os.pidfd_open(process)
+            if end not in select.select([end, word.fileno()], [], [])[0]:
+                os.kill(process, signal.SIGKILL)  # nobody waits for it any longer
+            os.close(end)
+            status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+            with contextlib.suppress(BrokenPipeError):
+                word.send(str(status).encode())
+
+
+def _become(job: _Job) -> None:
+    """Be what Python is after ``python -m program arguments``."""
+    for target, descriptor in enumerate(job.streams):
+        os.dup2(descriptor, target)
+        os.close(descriptor)
+    program, arguments, directory, environment = job.given
+    os.chdir(directory)
+    os.environ.clear()
+    os.environ.update(environment)
+    sys.orig_argv[1:] = ["-m", program, *arguments]
+    sys.argv[1:] = arguments
+    sys.path.insert(0, directory)
+    sys.modules["__main__"] = types.ModuleType("__main__")
+    code = 0
+    try:
+        runpy._run_module_as_main(program)  # type: ignore[attr-defined]
+    except SystemExit as end:
+        if not isinstance(end.code, int):
+            raise
+        code = end.code
+    # As Python ends, but for taking apart all that was imported, which would take 30 ms.
+    threading._shutdown()  # type: ignore[attr-defined]
+    atexit._run_exitfuncs()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    _exit_now(code & 0xFF)
+
+
+def _fix_the_seed() -> None:
+    """Where `pyfrc` would start Python again: it has the seed already."""
+    os.environ["PYTHONHASHSEED"] = "0"
+
+
+def main() -> None:
+    """The process that forks."""
+    server = socket.socket(fileno=int(sys.argv[1]))
+    del sys.path[0]
+    interrupted = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in _IMPORTED:
+        importlib.import_module(name)
+    from pyfrc_cli import start
+
+    start._start_again = _fix_the_seed
+    server.send(json.dumps(list(sys.modules)).encode())
+    gc.collect()
+    gc.freeze()
+    with server:
+        job = _serve(server)
+    if job is not None:
+        signal.signal(signal.SIGINT, interrupted)
+        _become(job)
+
+
+if __name__ == "__main__":
+    main()
