@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["PhysicsEngine", "PhysicsInitException", "PhysicsInterface"]
 
+_NO_MOVE = Transform2d()
+
 
 class PhysicsInitException(RobotCodeError):
     """The project's ``physics.py`` is not what it must be: a class `PhysicsEngine` with a method `update_sim`."""
@@ -201,11 +203,14 @@ class PhysicsInterface:
     def move_robot(self, transform: Transform2d) -> Pose2d:
         """Move the robot, as seen from where it is; also while it is disabled, as a robot that rolls on does.
 
-        Analog gyros are left to you.
+        Analog gyros are left to you. Less than a nanometre, and a billionth of a radian, is no move.
 
         :param transform: in metres, counter-clockwise, as `TankModel.calculate` answers it
         :returns: where the robot is then
         """
+        if transform == _NO_MOVE:  # as WPILib compares them, to a nanometre; most robots rest most of the time
+            self._current()
+            return self._shown
         if not isinstance(transform, Transform2d):
             raise TypeError(f"move_robot(transform) takes a Transform2d, not a {type(transform).__name__}")
         turn = transform.rotation().radians()
@@ -245,10 +250,9 @@ class PhysicsInterface:
             for key in self._device_gyros:
                 angles[key] = angles.get(key, 0.0) + math.degrees(turn)
         pose = self._current()
-        moved = pose.moved(forward, right, turn)
-        if moved == pose:  # at rest, or all but: dashboards need not be told
+        if not (forward or right or turn):  # at rest, dashboards need not be told
             return self._shown
-        return self._place(moved)
+        return self._place(pose.moved(forward, right, turn))
 
     def _turn_analog_gyros(self, turn: float) -> None:
         if turn and self._hal_data is not None:

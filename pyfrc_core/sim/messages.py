@@ -91,6 +91,7 @@ class Update:
     paused: bool
     speed: float
     reached: float
+    average: float
     loop_seconds: float
     worst_loop_seconds: float
     overruns: int

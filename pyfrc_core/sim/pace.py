@@ -28,12 +28,15 @@ class Pace:
         self.loop_seconds = 0.0
         self.overruns = 0
         self._began_wall, self._began_us = wall(), 0
+        self._at_wall, self._at_us = self._began_wall, 0
+        self._run_wall, self._run_us = 0.0, 0
         self._recent: deque[tuple[float, int]] = deque()
         self._loops: deque[float] = deque(maxlen=_PACKETS_A_SECOND)
 
     def begin(self, now_us: int) -> None:
         """Begin a new schedule: the speed has changed, or time goes on after a pause."""
         self._began_wall, self._began_us = wall(), now_us
+        self._at_wall, self._at_us = self._began_wall, now_us
         self._recent.clear()
 
     def wait_for(self, due_us: int) -> float:
@@ -49,6 +52,9 @@ class Pace:
     def ran(self, now_us: int) -> None:
         """Robot time has come to `now_us`."""
         now = wall()
+        self._run_wall += now - self._at_wall
+        self._run_us += now_us - self._at_us
+        self._at_wall, self._at_us = now, now_us
         self._recent.append((now, now_us))
         while now - self._recent[0][0] > _RECENT and len(self._recent) > 2:
             self._recent.popleft()
@@ -67,6 +73,11 @@ class Pace:
             return 0.0
         (first_wall, first_us), (last_wall, last_us) = self._recent[0], self._recent[-1]
         return (last_us - first_us) / 1_000_000 / max(1e-9, last_wall - first_wall)
+
+    @property
+    def average(self) -> float:
+        """Robot seconds a second, since it first ran; pauses do not count."""
+        return self._run_us / 1_000_000 / max(1e-9, self._run_wall)
 
     @property
     def worst_loop_seconds(self) -> float:

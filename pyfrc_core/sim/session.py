@@ -244,6 +244,7 @@ class Session:
             paused=pace.paused,
             speed=pace.speed,
             reached=pace.reached,
+            average=pace.average,
             loop_seconds=pace.loop_seconds,
             worst_loop_seconds=pace.worst_loop_seconds,
             overruns=pace.overruns,

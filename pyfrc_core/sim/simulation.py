@@ -326,6 +326,7 @@ class Simulation(Controls):
             state="paused" if update.paused else "running",
             speed=update.speed,
             reached=update.reached,
+            average=update.average,
             loop_seconds=update.loop_seconds,
             worst_loop_seconds=update.worst_loop_seconds,
             overruns=update.overruns,

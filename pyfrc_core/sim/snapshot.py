@@ -90,6 +90,7 @@ class Status:
 
     :param speed: robot seconds a second, as asked for; 0 is as fast as it goes
     :param reached: robot seconds a second, over the last half second or so
+    :param average: the same since the robot was there, without pauses
     :param loop_seconds: how long the robot took for its last packet, on the wall
     :param worst_loop_seconds: the longest of the last second or so
     :param overruns: how many packets have taken longer than 20 ms on the wall
@@ -104,6 +105,7 @@ class Status:
     state: State = "starting"
     speed: float = 1.0
     reached: float = 0.0
+    average: float = 0.0
     loop_seconds: float = 0.0
     worst_loop_seconds: float = 0.0
     overruns: int = 0

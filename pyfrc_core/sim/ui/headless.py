@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
@@ -32,7 +31,7 @@ class Summary:
     """What came of a simulation.
 
     :param snapshot: the robot at the end; None when it was never seen
-    :param speed: robot seconds a wall second, from when the robot was there
+    :param speed: robot seconds a wall second, from when the robot was there; 0: it never ran
     """
 
     snapshot: Snapshot | None
@@ -99,13 +98,13 @@ class Headless(FrontEnd):
         interrupted = False
         try:
             simulation.start()
-            speed = self._drive(simulation, end)
+            self._drive(simulation, end)
         except KeyboardInterrupt:
-            interrupted, speed = True, 0.0
+            interrupted = True
         finally:
             status = simulation.status
             simulation.close()
-        self.summary = Summary(simulation.snapshot, status.failure, speed, status.overruns)
+        self.summary = Summary(simulation.snapshot, status.failure, status.average, status.overruns)
         self._print(simulation)
         if not self._quiet:
             for line in self.summary.lines():
@@ -128,8 +127,8 @@ class Headless(FrontEnd):
         verb = "was" if len(files) == 1 else "were"
         self._say(f"{', '.join(files)} {verb} saved: going on with the new code at {seconds:.2f} s\n")
 
-    def _drive(self, simulation: Simulation, end: float | None) -> float:
-        """Let the robot run until it is over; answers the speed that was reached."""
+    def _drive(self, simulation: Simulation, end: float | None) -> None:
+        """Let the robot run until it is over."""
         if self._mode == "practice":
             simulation.practice()
         elif self._mode is not None and self._mode != "disabled":
@@ -139,8 +138,6 @@ class Headless(FrontEnd):
             simulation.resume()
         else:
             simulation.run_until(end)
-        self._wait(simulation, lambda: simulation.status.state != "starting")
-        began, from_us = time.monotonic(), self._time_us(simulation)
 
         def over() -> bool:
             state = simulation.status.state
@@ -149,7 +146,6 @@ class Headless(FrontEnd):
             )
 
         self._wait(simulation, over)
-        return (self._time_us(simulation) - from_us) / 1_000_000 / (time.monotonic() - began)
 
     def _wait(self, simulation: Simulation, condition: Callable[[], bool]) -> None:
         while not simulation.wait_for(condition, timeout=_PRINT_SECONDS):
