@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV ?= .venv
 RUN := $(VENV)/bin/python -m
+# One more than there are processors, since some tests wait for what others' programs do.
+WORKERS ?= $(shell expr 1 + $$(getconf _NPROCESSORS_ONLN))
 
 .PHONY: demo test check docs clean
 
@@ -11,7 +13,7 @@ demo: $(VENV)/installed  ## make a robot project in demo/, run its tests, deploy
 	$(RUN) tests.roborio -- $(VENV)/bin/pyfrc deploy --project demo --robot
 
 test: $(VENV)/installed-dev  ## run this project's own tests; ARGS go to pytest
-	$(RUN) pytest -n auto --dist worksteal $(ARGS)
+	$(RUN) pytest -n $(WORKERS) --dist worksteal $(ARGS)
 
 check: $(VENV)/installed-dev  ## the style and the types
 	$(RUN) ruff check .
