@@ -67,8 +67,8 @@ NUMBERS = [path for path in PATHS if type(_at(path)) in (int, float)]
 
 
 #: For each of two tests. Ten thousand in all were run once; since then it is these.
-THOUSANDS = settings(
-    max_examples=1500, derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck)
+HUNDREDS = settings(
+    max_examples=500, derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck)
 )
 
 
@@ -232,7 +232,7 @@ def test_the_undamaged_file_loads(root: Path) -> None:
             assert loaded.warnings == ()
 
 
-@THOUSANDS
+@HUNDREDS
 @given(
     case=st.one_of(
         truncated(),
@@ -249,7 +249,7 @@ def test_a_malformed_file_is_refused_with_its_place_and_left_as_it_is(root: Path
         assert str(result).startswith(f"sim/config.json:{case.line}: {case.path or ''}")
 
 
-@THOUSANDS
+@HUNDREDS
 @given(raw=st.one_of(damaged(), anything))
 def test_whatever_the_file_holds_it_is_loaded_or_refused_with_its_place(root: Path, raw: bytes) -> None:
     outcome(root, raw)

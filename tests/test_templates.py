@@ -140,7 +140,7 @@ def _install_real_packages(there: Path) -> None:
         spec = importlib.util.find_spec(name)
         assert spec is not None, name
         for directory in spec.submodule_search_locations or ():
-            shutil.copytree(directory, there / name, ignore=shutil.ignore_patterns("__pycache__", "tests"))
+            shutil.copytree(directory, there / name, ignore=shutil.ignore_patterns("tests"))
         if not spec.submodule_search_locations:
             assert spec.origin is not None
             shutil.copy(spec.origin, there)
