@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import importlib
 import os
+import re
 import sys
 import traceback
 from typing import TYPE_CHECKING, Any
@@ -107,8 +108,8 @@ def run() -> None:
             nearest = difflib.get_close_matches(error.option_name, error.possibilities or (), n=1)
             error = click.NoSuchOption(error.option_name, possibilities=nearest, ctx=error.ctx)
         error.show()
-        if isinstance(error, click.NoSuchOption) and error.ctx is not None and error.ctx.info_name == "test":
-            click.echo("Options of pytest stand behind --, as in: pyfrc test -- -k drive", err=True)
+        if remedy := _remedy(error):
+            click.echo(remedy, err=True)
         sys.exit(error.exit_code)
     except (PyfrcError, OSError) as error:
         if told.verbose:
@@ -116,6 +117,16 @@ def run() -> None:
         else:
             click.secho(f"error: {_told(error)}", fg="red", err=True, color=color)
         sys.exit(getattr(error, "exit_code", 1))
+
+
+def _remedy(error: click.ClickException) -> str:
+    """What somebody meant who is used to another tool."""
+    command = error.ctx.info_name if isinstance(error, click.UsageError) and error.ctx is not None else None
+    if isinstance(error, click.NoSuchOption) and command == "test":
+        return "Options of pytest stand behind --, as in: pyfrc test -- -k drive"
+    if command is not None and re.search(r"unexpected extra arguments? \(.*\.py\b", error.message):
+        return "pyfrc finds the robot's file; another than robot.py is named with --main FILE."
+    return ""
 
 
 def _told(error: Exception) -> str:

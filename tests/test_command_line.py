@@ -78,6 +78,13 @@ def test_a_mistyped_word_is_answered_with_the_right_one(wrong: list[str], meant:
     assert "Traceback" not in result.stderr
 
 
+@pytest.mark.parametrize("command", ["sim", "deploy", "fuzz"])
+def test_a_robots_file_given_as_to_another_tool_is_answered_with_the_option_for_it(command: str, make_project) -> None:
+    result = make_project({}).run(command, "robot.py")
+    assert result.code == 2
+    assert result.stderr.endswith("pyfrc finds the robot's file; another than robot.py is named with --main FILE.\n")
+
+
 @pytest.mark.parametrize("args", [["-v", "config", "check"], ["config", "check", "--verbose"]], ids=" ".join)
 def test_verbose_shows_the_traceback_and_changes_no_exit_code(args: list[str], make_project) -> None:
     result = make_project({}).run(*args)

@@ -117,6 +117,21 @@ def test_ctrl_c_tells_what_is_so_on_the_robot(
     assert remedy in str(caught.value.remedy)
 
 
+@pytest.mark.parametrize("restarted", [False, True])
+def test_of_a_first_release_there_is_no_way_back(
+    restarted: bool, robot: LocalRobot, agents: Agents, project: Manifest
+) -> None:
+    def do(agent: Robot, project: Manifest) -> None:
+        agent.deploy(project, REQUEST)
+        if restarted:
+            agent.restart()
+
+    with contextlib.closing(robot.start(agents)) as agent, pytest.raises(StoppedError) as caught:
+        interrupt_after(do, agent, project)
+    assert "release 1" in caught.value.message
+    assert "--rollback" not in str(caught.value.remedy)
+
+
 @pytest.mark.parametrize(
     "do",
     [

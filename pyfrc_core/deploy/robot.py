@@ -100,6 +100,7 @@ class Robot:
         self._where = where
         self._planned: Manifest | None = None
         self._current: int | None = None
+        self._previous: int | None = None
         #: What is so while the robot's program is being changed.
         self.standing: Standing | None = None
         #: What there was on the robot when the conversation began.
@@ -161,8 +162,8 @@ class Robot:
             on_progress(said["phase"], 0, 0)
 
         told = self._answer(_WORK_SECONDS, heard)
-        self._current = told["release"]
-        self.standing = None if request.in_place else standing.deployed(told["release"])
+        self._current, self._previous = told["release"], told["previous"]
+        self.standing = None if request.in_place else standing.deployed(told["release"], told["previous"])
         return Deployed(
             release=told["release"],
             previous=told["previous"],
@@ -175,7 +176,7 @@ class Robot:
     def restart(self) -> None:
         """Stop the program and start what is current; the robot listens to its console from before on."""
         self._ask("restart")
-        self.standing = standing.started(self._current)
+        self.standing = standing.started(self._current, self._previous)
 
     def watch(self, seconds: float, on_output: Callable[[str], None] | None = None) -> Watched:
         """See how the program that was just started does: until it has started, has ended, or `seconds` are over.
@@ -197,7 +198,7 @@ class Robot:
     def rollback(self, release: int | None = None) -> RolledBack:
         """Make an earlier release current again: the one with this number, or that before. It is not restarted."""
         told = self._change(standing.GOES_BACK, "rollback", release=release)
-        self._current = told["release"]
+        self._current, self._previous = told["release"], told["previous"]
         self.standing = standing.went_back(told["release"])
         return RolledBack(Release.of(told["about"]), told["previous"], tuple(told["changed"]))
 

@@ -36,12 +36,13 @@ GOES_AWAY = Standing(
 )
 
 
-def deployed(release: int) -> Standing:
+def deployed(release: int, previous: int | None) -> Standing:
     """It is on the robot, and has not been started there yet."""
+    back = "" if previous is None else " Or go back to the one before: pyfrc deploy --rollback."
     return Standing(
         f"release {release} is on the robot, which starts it when it is switched on, but may still run the program "
         "from before",
-        "Deploy again to have it started now: pyfrc deploy. Or go back to the one before: pyfrc deploy --rollback.",
+        f"Deploy again to have it started now: pyfrc deploy.{back}",
     )
 
 
@@ -53,11 +54,12 @@ def went_back(release: int) -> Standing:
     )
 
 
-def started(release: int | None) -> Standing:
+def started(release: int | None, previous: int | None) -> Standing:
     """It was started a moment ago."""
+    back = "" if previous is None else " To go back to the one before: pyfrc deploy --rollback."
     return Standing(
         f"{f'release {release}' if release else 'the program'} was started, but not seen to run",
-        "To see whether it does: pyfrc deploy-info. To go back to the one before: pyfrc deploy --rollback.",
+        f"To see whether it does: pyfrc deploy-info.{back}",
     )
 
 
