@@ -18,6 +18,8 @@ import pytest
 import warm_start
 
 if TYPE_CHECKING:
+    from roborio.local import Agents
+
     from pyfrc_core.config.sim_file import LoadedSimConfig
 
 # What would make a run here differ from the user's: the outer pytest's settings, measurements, colours.
@@ -186,6 +188,15 @@ def make_project(tmp_path: Path) -> MakeProject:
 def make_shared_project(tmp_path_factory: pytest.TempPathFactory) -> MakeProject:
     """Makes a robot project of files, for a fixture that several tests share."""
     return lambda files: _new_project(tmp_path_factory.mktemp("shared"), files)
+
+
+@pytest.fixture(scope="module")
+def agents() -> Generator[Agents]:
+    """Starts what runs on a robot, here."""
+    from roborio.local import Agents
+
+    with Agents() as agents:
+        yield agents
 
 
 LoadConfig = Callable[[str], "LoadedSimConfig"]

@@ -127,12 +127,6 @@ def test_a_frame_that_unpacks_to_too_much() -> None:
         wire.said_in(*wire.read_frame(io.BytesIO(bomb).read))
 
 
-@pytest.fixture(scope="module")
-def agents() -> Generator[Agents]:
-    with Agents() as agents:
-        yield agents
-
-
 @settings(max_examples=30, deadline=None)
 @given(noise=st.binary(min_size=1, max_size=200))
 def test_noise_changes_nothing_on_the_robot(noise: bytes, agents: Agents) -> None:

@@ -30,12 +30,6 @@ from pyfrc_core.project import find_project
 REQUEST = DeployRequest("robot.py", {})
 
 
-@pytest.fixture(scope="module")
-def agents() -> Generator[Agents]:
-    with Agents() as agents:
-        yield agents
-
-
 @pytest.fixture
 def robot() -> Generator[LocalRobot]:
     with directory_in_memory() as directory:

@@ -88,12 +88,6 @@ class Scenario:
         return started == self.new
 
 
-@pytest.fixture(scope="module")
-def agents() -> Generator[Agents]:
-    with Agents() as agents:
-        yield agents
-
-
 @pytest.fixture
 def directory() -> Generator[Path]:
     with directory_in_memory() as directory:

@@ -22,12 +22,6 @@ START = "env LD_LIBRARY_PATH=/usr/local/frc/lib/ /usr/local/bin/python3 -u"
 OTHER_COMMAND = "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
 
 
-@pytest.fixture(scope="module")
-def agents() -> Generator[Agents]:
-    with Agents() as agents:
-        yield agents
-
-
 @pytest.fixture
 def robot() -> Generator[LocalRobot]:
     with directory_in_memory() as directory:
