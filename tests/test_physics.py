@@ -248,6 +248,13 @@ def test_registered_gyros_turn_however_the_robot_moves(hal_data: HalData) -> Non
     assert hal_data["robot"][key] == pytest.approx(math.degrees(3))
 
 
+def test_a_registered_gyro_is_there_while_the_robot_rests(hal_data: HalData) -> None:
+    robot = controller(hal_data=hal_data)
+    robot.add_device_gyro_channel("resting_spi_4_angle")
+    robot.move_robot(Transform2d())
+    assert hal_data["robot"].pop("resting_spi_4_angle") == 0
+
+
 def test_what_is_no_longer_needed_can_still_be_called(hal_data: HalData) -> None:
     robot = controller(hal_data=hal_data)
     robot.add_analog_gyro_channel(1)

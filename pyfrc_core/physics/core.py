@@ -209,8 +209,7 @@ class PhysicsInterface:
         :returns: where the robot is then
         """
         if transform == _NO_MOVE:  # as WPILib compares them, to a nanometre; most robots rest most of the time
-            self._current()
-            return self._shown
+            return self._move(0.0, 0.0, 0.0)
         if not isinstance(transform, Transform2d):
             raise TypeError(f"move_robot(transform) takes a Transform2d, not a {type(transform).__name__}")
         turn = transform.rotation().radians()
