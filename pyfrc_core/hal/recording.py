@@ -39,10 +39,10 @@ class Recording:
         slots += [*tree.modules.initialized(), tree["accelerometer"]._slot("active")]
         self._made = _Made(slots)
         self._state: Any = None
-        self._leaves: list[Leaf] = []
+        self._here: list[str] = []
         self._reads: list[Callable[[], Any]] = []
-        self._paths: list[str] = []
         self._free: list[str] = []
+        self._paths: list[str] = []
 
     def anything_made(self) -> bool:
         """Whether any device exists, or any thread of WPILib's that waits for an alarm."""
@@ -58,8 +58,8 @@ class Recording:
         others = state != self._state
         if others:
             self._state = state
-            self._leaves = [*self._always, *self._present()]
-            self._reads = [get for _, get in self._leaves]
+            leaves = [*self._always, *self._present()]
+            self._here, self._reads = [path for path, _ in leaves], [read for _, read in leaves]
         values = [read() for read in self._reads]
         for part in self._at_rest:
             others |= part.look()
@@ -71,8 +71,7 @@ class Recording:
                 values += [plain(value) for value in room.values()]
         if others or free != self._free:
             self._free = free
-            here = [path for path, _ in self._leaves]
-            self._paths = [*here, *(path for part in self._at_rest for path in part.paths), *free]
+            self._paths = [*self._here, *(path for part in self._at_rest for path in part.paths), *free]
         return self._paths, values
 
     def _fixed(self) -> Iterator[Leaf]:

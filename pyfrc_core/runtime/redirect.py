@@ -53,7 +53,6 @@ class Redirection:
     def install(self, files: RobotFiles) -> None:
         """Replace the names, for the robot project with these files. Doing it again only changes the project."""
         self._files = files
-        robot_stack.show_lines_of(files)
         cooperative.scope.is_robot_code = files.is_robot_code
         if self.installed:
             return
@@ -62,6 +61,7 @@ class Redirection:
         for owner, name, replacement in self._replacements():
             self._originals.append((owner, name, vars(owner).get(name, getattr(owner, name))))
             setattr(owner, name, replacement)
+        robot_stack.show_robots_lines(lambda: self._files)
 
     def uninstall(self) -> None:
         while self._originals:

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 _hook_of_wpilib: Callable[[Any], None] | None = getattr(wpiutil._wpiutil, "_setup_stack_trace_hook", None)
 
 
-def show_lines_of(files: RobotFiles) -> None:
-    """From now on, what is reported from C++ comes with the lines of this project that led there."""
+def show_robots_lines(files: Callable[[], RobotFiles]) -> None:
+    """From now on, what is reported from C++ comes with the lines of the project that led there."""
     if _hook_of_wpilib is not None:
-        _hook_of_wpilib(lambda offset: _lines(files, sys._getframe(1)))
+        _hook_of_wpilib(lambda offset: _lines(files(), sys._getframe(1)))
 
 
 def show_all_lines() -> None:

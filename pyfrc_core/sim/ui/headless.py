@@ -145,10 +145,7 @@ class Headless(FrontEnd):
                 state == "paused" and end is not None and self._time_us(simulation) >= to_us(end)
             )
 
-        self._wait(simulation, over)
-
-    def _wait(self, simulation: Simulation, condition: Callable[[], bool]) -> None:
-        while not simulation.wait_for(condition, timeout=_PRINT_SECONDS):
+        while not simulation.wait_for(over, timeout=_PRINT_SECONDS):
             self._print(simulation)
 
     @staticmethod
