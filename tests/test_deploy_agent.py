@@ -8,12 +8,12 @@ import os
 import socket
 import sys
 import zlib
-from collections.abc import Generator
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
 
 from pyfrc_core.deploy import agent
@@ -30,12 +30,6 @@ def pythons() -> dict[str, str]:
     oldest = [str(each) for each in versions.glob("3.9.*/bin/python3.9")] + ["/usr/bin/python3.9"]
     there = [each for each in oldest if Path(each).exists()]
     return {"this": sys.executable, **dict.fromkeys(["3.9"] if there else [], there[0] if there else "")}
-
-
-@pytest.fixture
-def robot() -> Generator[LocalRobot]:
-    with directory_in_memory() as directory:
-        yield LocalRobot.new(directory / "robot")
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda source: source.stem)

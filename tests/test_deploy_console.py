@@ -10,7 +10,8 @@ import threading
 from collections.abc import Iterator
 
 import pytest
-from roborio import Roborio, require_roborio
+from roborio import Roborio
+from roborio.fixtures import roborio  # noqa: F401 - `robot`
 
 import pyfrc_core.deploy.console
 
@@ -21,15 +22,6 @@ class MyRobot(wpilib.TimedRobot):
     def robotInit(self):
         print("the words of our robot")
 """
-
-
-@pytest.fixture
-def robot() -> Iterator[Roborio]:
-    require_roborio()
-    from importlib.metadata import version
-
-    with Roborio(wpilib=version("wpilib")) as robot:
-        yield robot
 
 
 @contextlib.contextmanager

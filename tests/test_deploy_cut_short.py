@@ -7,13 +7,14 @@ import fcntl
 import io
 import socket
 import zlib
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Iterator
 from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 from roborio import Proxy, Roborio, require_roborio
-from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+from roborio.fixtures import local_robot  # noqa: F401 - `robot`
+from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
 from pyfrc_core.deploy import session
 from pyfrc_core.deploy.agent import serve, wire
@@ -28,12 +29,6 @@ from pyfrc_core.deploy.standing import told_what_is_so
 from pyfrc_core.project import find_project
 
 REQUEST = DeployRequest("robot.py", {})
-
-
-@pytest.fixture
-def robot() -> Generator[LocalRobot]:
-    with directory_in_memory() as directory:
-        yield LocalRobot.new(directory / "robot")
 
 
 @pytest.fixture

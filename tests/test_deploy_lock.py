@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import fcntl
 import io
-from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from roborio.local import LocalRobot, directory_in_memory
+from roborio.fixtures import local_robot  # noqa: F401 - `robot`
+from roborio.local import LocalRobot
 
 from pyfrc_core.deploy.agent import places, serve, wire
 from pyfrc_core.deploy.agent.places import Lock, Places, Refusal
-
-
-@pytest.fixture
-def robot() -> Generator[LocalRobot]:
-    with directory_in_memory() as directory:
-        yield LocalRobot.new(directory / "robot")
 
 
 def is_held(lock: Path) -> bool:

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from importlib.metadata import version
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from conftest import MakeProject, Result
-from roborio import Roborio, require_roborio
+from roborio import Roborio
+from roborio.fixtures import roborio  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY
 from test_deploy_console import running, wait_for
 
 ROBOT_COMMANDS = [["deploy-info"], ["console"], ["undeploy", "--yes"], ["deploy", "--rollback"]]
 
 Run = Callable[..., Result]
-
-
-@pytest.fixture
-def robot() -> Iterator[Roborio]:
-    require_roborio()
-    with Roborio(wpilib=version("wpilib")) as robot:
-        yield robot
 
 
 @pytest.fixture

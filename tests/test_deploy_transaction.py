@@ -6,12 +6,12 @@ import dataclasses
 import hashlib
 import json
 import os
-from collections.abc import Generator
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
 
 from pyfrc_core.deploy.errors import RefusedError
@@ -20,12 +20,6 @@ from pyfrc_core.deploy.robot import DeployRequest
 
 START = "env LD_LIBRARY_PATH=/usr/local/frc/lib/ /usr/local/bin/python3 -u"
 OTHER_COMMAND = "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
-
-
-@pytest.fixture
-def robot() -> Generator[LocalRobot]:
-    with directory_in_memory() as directory:
-        yield LocalRobot.new(directory / "robot")
 
 
 class Project:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import re
-from collections.abc import Iterator
-from importlib.metadata import version
 
 import pytest
 from conftest import MakeProject, RobotProject
-from roborio import Roborio, require_roborio
+from roborio import Roborio
+from roborio.fixtures import roborio  # noqa: F401 - `robot`
 from test_command_line import EVERY
 
 ROBOT = """
@@ -158,13 +156,6 @@ def test_failures_are_told(project: RobotProject) -> None:
 
 
 # -- on a robot --------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def robot() -> Iterator[Roborio]:
-    require_roborio()
-    with contextlib.ExitStack() as stack:
-        yield stack.enter_context(Roborio(wpilib=version("wpilib")))
 
 
 def test_a_deploy_and_its_kin(robot: Roborio, make_project: MakeProject) -> None:
