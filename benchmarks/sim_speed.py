@@ -54,7 +54,7 @@ def real_time(project: Project, seconds: float) -> None:
         print(f"  drift at the end {drifts[-1]:+.2f} ms, at most {max(map(abs, drifts)):.2f} ms")
         print(f"  between packets: median {statistics.median(gaps):.2f} ms, longest {max(gaps):.2f} ms")
         status = simulation.status
-        print(f"  the robot took {status.loop_seconds * 1000:.2f} ms for a packet; overruns: {status.overruns}")
+        print(f"  the robot took {status.packet_seconds * 1000:.2f} ms for a packet; late: {status.late_packets}")
 
 
 def as_fast_as_it_goes(project: Project) -> None:

@@ -19,6 +19,7 @@ from .physics.construct import construct
 from .project import Project
 from .runtime.clock import to_us
 from .runtime.failures import as_robot_code_error
+from .runtime.loop_limit import LoopLimit
 from .runtime.redirect import redirection
 from .runtime.robot import RobotRun
 from .runtime.scripts.files import trace_beside, traced
@@ -84,6 +85,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
         hang_seconds = settings.fuzz.hang_seconds if script.story else settings.test.hang_seconds
         with Watchdog(run, project.files, hang_seconds).watching():
             run.open()
+            LoopLimit(run, project.files, settings)
             try:
                 seed_generators(script.seed)
                 with judged_if_kept(run, project, script), traced(run, written) as recorder:

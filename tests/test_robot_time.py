@@ -228,7 +228,11 @@ def test_python_time_is_robot_time_in_robot_code_only(make_project) -> None:
                 before = time.monotonic()
                 sleep(seconds)
                 return time.monotonic() - before
-            """
+            """,
+            "pyproject.toml": """
+            [tool.pyfrc.test]
+            loop_seconds = 3600
+            """,
         },
     )
 

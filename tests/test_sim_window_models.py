@@ -479,11 +479,11 @@ def test_what_the_robot_is_doing(shown: Snapshot | None, status: Status, words: 
 
 
 def test_the_status_line() -> None:
-    running = Status("running", reached=0.987, loop_seconds=0.0015, worst_loop_seconds=0.012, overruns=3)
+    running = Status("running", reached=0.987, packet_seconds=0.0015, worst_packet_seconds=0.012, overruns=3)
     assert status_texts(snapshot(), running) == [
         "Robot time 1.50 s",
         "Speed 0.99x of 1x",
-        "Loop 1.5 ms, worst 12.0 ms",
+        "Computing 1.5 ms, worst 12.0 ms",
         "Overruns 3",
     ]
     served = status_texts(snapshot(), Status("paused", network_address="127.0.0.1:5810"))

@@ -70,6 +70,9 @@ class TestSettings:
     isolation: Literal["auto", "fork", "spawn", "none"] = "auto"
     #: Processor seconds without progress in robot time, after which robot code counts as hanging.
     hang_seconds: Seconds = 10.0
+    #: How long a periodic function may wait, in robot time, until it counts as one that never returns. What begins in
+    #: autonomous or test mode has the length of the autonomous period, where that is longer.
+    loop_seconds: Seconds = 2.0
 
     __test__ = False  # pytest: not a test class, for all its name
 

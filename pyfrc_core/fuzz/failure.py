@@ -10,9 +10,12 @@ from ..errors import text_of
 from ..robot_files import RobotFiles
 from ..runtime.endings import TestFroze
 from ..runtime.failures import NamesItsPlace, headline
+from ..runtime.loop_limit import LoopWaitsError
 
 #: The kind of code that never ends.
 HANGS = "hangs"
+#: The kind of a periodic function that does not return.
+WAITS = "loop_waits"
 #: The kind of a process that ended.
 PROCESS_ENDED = "process_ended"
 
@@ -57,6 +60,8 @@ def failure_of(error: BaseException, files: RobotFiles) -> Failure:
     """What an error says that a run has ended with."""
     if isinstance(error, Misbehaved):
         return Failure(error.kind, error.place, error.function, str(error))
+    if isinstance(error, LoopWaitsError):  # which of its lines waits is chance
+        return Failure(WAITS, error.begins_at, error.function, str(error))
     code, line = _innermost(error.__traceback__, files)
     text = _ADDRESS.sub("", headline(error, files) or text_of(error))
     if isinstance(error, TestFroze):

@@ -13,6 +13,7 @@ from ..physics.construct import construct
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.endings import TestEnded, TestRanTooLong
+from ..runtime.loop_limit import LoopLimit
 from ..runtime.redirect import redirection
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.player import Player
@@ -174,6 +175,7 @@ def _robot(project: Project, words: LastWords, seed: int, is_judged: bool = True
     watchdog = Watchdog(run, project.files, settings.hang_seconds, words.write, words.descriptor)
     with watchdog.watching():
         run.open()
+        LoopLimit(run, project.files, project.settings)
         with judged(run, project.files, settings) if is_judged else nullcontext():
             seed_generators(seed)
             yield run

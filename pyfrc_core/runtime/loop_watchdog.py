@@ -107,15 +107,24 @@ class Watchdog(_WPILibs):
 
 
 class LoopOverruns:
-    """Tells of turns of one robot's loop that took longer than its period, in robot time."""
+    """Reports and counts turns of one robot's loop that took longer than its period, in robot time."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
+        #: How many there were, and the longest, in microseconds; one that still goes on is not among them.
+        self.number = self.longest_us = 0
         self._told_us = -_BETWEEN_REPORTS_US
+
+    def count(self, took_us: int) -> None:
+        """Count a turn that took this long, which is longer than its period."""
+        self.number += 1
+        self.longest_us = max(self.longest_us, took_us)
 
     def look(self, robot: wpilib.IterativeRobotBase, began_us: int) -> None:
         """Called when time has passed in a turn of the loop: say so if it was time that the robot did not have."""
         took_us = self._clock.now_us - began_us
+        if took_us > to_us(robot.getPeriod()) and not isinstance(robot, wpilib.TimedRobot):
+            self.count(took_us)  # of a `TimedRobot`, its loop counts them
         if took_us < to_us(robot.getPeriod()) or began_us - self._told_us < _BETWEEN_REPORTS_US:
             return
         self._told_us = began_us

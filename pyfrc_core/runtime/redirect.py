@@ -25,6 +25,7 @@ import wpilib.simulation
 
 from . import cooperative, robot_stack
 from .clock import to_us
+from .endings import TestEnded
 from .loop_watchdog import Watchdog
 from .notifier import Notifier
 
@@ -206,8 +207,13 @@ class Redirection:
                 run = self.run
                 if run is None:
                     real(delta)
-                else:
+                    return
+                try:
                     run.clock.run_until(run.clock.now_us + in_us(delta))
+                except TestEnded:
+                    if run.threads.failure is None:
+                        raise
+                    raise run.threads.failure from None  # to the test, which has called this
 
             return owner, name, step
 

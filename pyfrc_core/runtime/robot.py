@@ -43,8 +43,8 @@ class RobotRun:
         self.clock = Clock()
         self.threads = RobotThreads(self.clock)
         self.alarms = Alarms(self.threads)
-        self.timed_loop = TimedLoop(self.clock, self.clock.now_us, self._on_initialized)
         self.overruns = LoopOverruns(self.clock)
+        self.timed_loop = TimedLoop(self.clock, self.clock.now_us, self._on_initialized, self.overruns.count)
         self.robot: Any = None
         #: Called when the robot has been constructed, and when its `robotInit` is over (see `initializes`).
         self.when_constructed: list[Callable[[], object]] = []
@@ -174,6 +174,18 @@ class RobotRun:
         """Have `look` called after every packet, when the robot has done its part: ``look(now_in_seconds)``."""
         self.clock.every(PACKET_US, OBSERVE, lambda: look(self.clock.now))
 
+    def overruns_until_now(self) -> tuple[int, int]:
+        """Return how many turns of the loop took longer than its period, and the longest, in microseconds.
+
+        A turn that still goes on counts as one as soon as it is late.
+        """
+        number, longest_us = self.overruns.number, self.overruns.longest_us
+        if self.timed_loop.in_turn:
+            took_us = self.clock.now_us - self.timed_loop.loop_start_us
+            if took_us > PACKET_US:
+                return number + 1, max(longest_us, took_us)
+        return number, longest_us
+
     def end(self) -> None:
         """End the robot program and its threads; time stands still from here on."""
         __tracebackhide__ = True
@@ -210,7 +222,7 @@ class RobotRun:
             self.clock.forget()
             self.when_constructed.clear()
             self.when_initialized.clear()
-            self.timed_loop = TimedLoop(self.clock, 0, self._on_initialized)
+            self.timed_loop = TimedLoop(self.clock, 0, self._on_initialized, self.overruns.count)
             self.robot = self.physics = None
             timing.run_freely()
 

@@ -97,6 +97,12 @@ class RobotThreads:
         self._over = False
         #: What went wrong while robot code on the driver waited; for whoever runs the robot to raise.
         self.failure: BaseException | None = None
+        #: Called when robot code on the driver's own thread is about to wait.
+        self.before_driver_waits: list[Callable[[], object]] = []
+        #: Called when the thread of a robot with a loop of its own is about to wait.
+        self.before_loop_waits: Callable[[], object] | None = None
+        #: How many waits of robot code the driver is in the middle of, one within the other.
+        self.driver_waits = 0
 
     # -- what threads ask for ----------------------------------------------------------------------------------
 
@@ -197,11 +203,16 @@ class RobotThreads:
         __tracebackhide__ = True
         if self.ending or self.clock.halted:
             raise TestEnded
+        for listener in self.before_driver_waits:
+            listener()
+        self.driver_waits += 1
         try:
             yield
         except Exception as failure:
             self.fail(failure)
             raise TestEnded from None
+        finally:
+            self.driver_waits -= 1
 
     def fail(self, failure: BaseException) -> None:
         """Keep what went wrong first, and let nobody wait any longer."""
@@ -223,6 +234,8 @@ class RobotThreads:
     def _park(self, me: RobotThread) -> None:
         """Hand the turn back and wait for the next one."""
         __tracebackhide__ = True
+        if me.is_the_robot and self.before_loop_waits is not None:
+            self.before_loop_waits()
         me.done.release()
         me.go.acquire()
         me.waits += 1

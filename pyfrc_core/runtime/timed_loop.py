@@ -45,14 +45,23 @@ class TimedLoop:
 
     :param created_us: when the robot was constructed; its periods count from there
     :param on_initialized: called when the robot's own initialisation is over
+    :param when_overrun: called with the microseconds that a callback took, when these are more than its period
     """
 
-    def __init__(self, clock: Clock, created_us: int, on_initialized: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        clock: Clock,
+        created_us: int,
+        on_initialized: Callable[[], None],
+        when_overrun: Callable[[int], object],
+    ) -> None:
         self._clock = clock
+        self._when_overrun = when_overrun
         self._on_initialized = on_initialized
         self._created_us = created_us
         self._callbacks: list[Periodic] = []
         self._in_place = False
+        self._turns_on_own_thread = False
         self._alarm_us = _NEVER
         self.stopped = False
         #: Called after each callback, for whoever wants to know how long it took: it began at `loop_start_us`.
@@ -87,6 +96,11 @@ class TimedLoop:
         self._in_place = True
         self._set_alarm(self._next())
 
+    @property
+    def in_turn(self) -> bool:
+        """Whether a turn of the loop is going on."""
+        return self._alarm_us == _NEVER if self._in_place else self._turns_on_own_thread
+
     def _set_alarm(self, callback: Periodic) -> None:
         """Have the next turn begin when this callback is due, instead of whenever that was before."""
         self._alarm_us = callback.due_us
@@ -104,7 +118,9 @@ class TimedLoop:
         callback = self._next()
         while not self.stopped:
             threads.sleep_until(callback.due_us)
+            self._turns_on_own_thread = True
             callback = self._turn()
+            self._turns_on_own_thread = False
 
     def _turn(self) -> Periodic:
         """Call everything that is due, one after the other, whatever time each takes; answers what is due next."""
@@ -115,11 +131,18 @@ class TimedLoop:
         while callback.due_us <= woken_us and not self.stopped:
             self.loop_start_us = clock.now_us
             callback.call()
+            if clock.now_us != self.loop_start_us:
+                self._look_for_overrun(callback)
             if self.after_call is not None:
                 self.after_call(callback)
             callback.move_on(woken_us)
             callback = self._next()
         return callback
+
+    def _look_for_overrun(self, callback: Periodic) -> None:
+        took_us = self._clock.now_us - self.loop_start_us
+        if took_us > callback.period_us:
+            self._when_overrun(took_us)
 
     def _next(self) -> Periodic:
         callbacks = self._callbacks

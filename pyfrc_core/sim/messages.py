@@ -92,9 +92,11 @@ class Update:
     speed: float
     reached: float
     average: float
-    loop_seconds: float
-    worst_loop_seconds: float
+    packet_seconds: float
+    worst_packet_seconds: float
+    late_packets: int
     overruns: int
+    worst_loop_seconds: float
     robot: Pose | None
     base: Mapping[str, Any] | None
     lines: tuple[str, ...]

@@ -25,13 +25,13 @@ class Pace:
     def __init__(self, speed: float, paused: bool) -> None:
         self.speed = speed
         self.paused = paused
-        self.loop_seconds = 0.0
-        self.overruns = 0
+        self.packet_seconds = 0.0
+        self.late_packets = 0
         self._began_wall, self._began_us = wall(), 0
         self._at_wall, self._at_us = self._began_wall, 0
         self._run_wall, self._run_us = 0.0, 0
         self._recent: deque[tuple[float, int]] = deque()
-        self._loops: deque[float] = deque(maxlen=_PACKETS_A_SECOND)
+        self._packets: deque[float] = deque(maxlen=_PACKETS_A_SECOND)
 
     def begin(self, now_us: int) -> None:
         """Begin a new schedule: the speed has changed, or time goes on after a pause."""
@@ -61,10 +61,10 @@ class Pace:
 
     def took(self, seconds: float, packets: int = 1) -> None:
         """The robot has taken so long on the wall for each of these packets."""
-        self.loop_seconds = seconds
+        self.packet_seconds = seconds
         if seconds > PACKET_US / 1_000_000:
-            self.overruns += packets
-        self._loops.append(seconds)
+            self.late_packets += packets
+        self._packets.append(seconds)
 
     @property
     def reached(self) -> float:
@@ -80,6 +80,6 @@ class Pace:
         return self._run_us / 1_000_000 / max(1e-9, self._run_wall)
 
     @property
-    def worst_loop_seconds(self) -> float:
+    def worst_packet_seconds(self) -> float:
         """The longest time that the robot has lately taken for a packet, in wall seconds."""
-        return max(self._loops, default=0.0)
+        return max(self._packets, default=0.0)

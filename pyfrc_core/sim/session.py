@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any
 
 from ..errors import PyfrcError
 from ..hal import modes
 from ..physics.core import PhysicsInterface
-from ..runtime.clock import OBSERVE, PACKET_US
+from ..runtime.clock import INPUT, OBSERVE, PACKET_US
+from ..runtime.endings import TestEnded
+from ..runtime.loop_limit import LoopLimit, LoopWaitsError
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.player import Player
 from ..runtime.scripts.recorder import Recorder
@@ -83,6 +86,16 @@ class Session:
         self._told_at = 0.0
         self._update_seconds = _UPDATE_SECONDS if job.recording else _UNRECORDED_UPDATE_SECONDS
         self._packets_at_once = 1
+        #: How far the robot is let go on at a time; None while it starts.
+        self._target_us: int | None = None
+        #: The wall time and the robot time at which that began.
+        self._advance_began = wall(), 0
+        #: The last target at which a look at commands is due, should the robot wait beyond it.
+        self._awaited_us: int | None = None
+        self._taken_over = self._left = False
+        #: 1 in the microsecond after the target, where the robot waits beyond it; what is shown is the target.
+        self._beyond_us = 0
+        run.threads.before_driver_waits.append(self._on_wait)
         run.renderer = self._renderer
         run.clock.limit_us = 1 << 62
         project = job.project
@@ -99,24 +112,39 @@ class Session:
         if job.recording:
             run.clock.before_packet.append(self._packet_begins)
             run.observe(self._packet_is_over)
+        LoopLimit(run, job.project.files, job.project.settings, self._on_waiting_loop)
         construct()
         run.clock.every(_FOLLOW_PACKETS * PACKET_US, OBSERVE, self._follow)
         Player(job.script, run).start()
         self._mark_position()
-        if run.clock.now_us < job.forward_to_us:
-            run.run_until(job.forward_to_us)
+        self._ready = ready
+        try:
+            if run.clock.now_us < job.forward_to_us:
+                self._target_us = job.forward_to_us
+                run.run_until(job.forward_to_us)
+            if not self._taken_over:
+                self._take_over()
+            self._loop()
+        except TestEnded:
+            if not self._left:
+                raise
+
+    def _take_over(self) -> None:
+        """Begin to take part: the robot is where it is to go on from."""
+        run, job = self._run, self._job
+        self._taken_over = True
         self._station.take_over()
         if job.nt_port is not None:
             self._served = Served(job.nt_port, self._write)
             if self._served.problem:
                 self._notes.append(self._served.problem)
-        self._connection.send(ready())
+        self._connection.send(self._ready())
         self.tell(dict(run.hal_data.leaves()))
         if not self._tracing:
             self._trace.look(run.clock.now)
             self._lines.clear()
             self._tracing = job.recording
-        self._loop()
+        self._pace.begin(run.clock.now_us)
 
     @property
     def network_address(self) -> str | None:
@@ -126,8 +154,17 @@ class Session:
     # -- time -----------------------------------------------------------------------------------------------------
 
     def _loop(self) -> None:
+        while (target_us := self._next_target()) is not None:
+            self._begin_advance(target_us)
+            self._run.run_until(target_us)
+            self._end_advance()
+
+    def _next_target(self) -> int | None:
+        """Carry out commands, pause and keep the pace until robot time may go on.
+
+        :returns: how far it may; None when there is no other end any more
+        """
         pace, clock = self._pace, self._run.clock
-        pace.begin(clock.now_us)
         while self._hear_commands():
             if not pace.paused and self._stop_us() <= clock.now_us:
                 self._pause()
@@ -142,23 +179,66 @@ class Session:
             if wait > 0 and self._connection.poll(wait):
                 continue
             self._exchange()
-            self._advance(target_us)
-            if 0 < pace.speed <= 1 or wall() - self._told_at >= self._update_seconds:
-                self.tell()
+            return target_us
+        return None
 
-    def _advance(self, target_us: int) -> None:
-        clock = self._run.clock
-        began, from_us = wall(), clock.now_us
-        self._run.run_until(target_us)
+    def _begin_advance(self, target_us: int) -> None:
+        self._target_us = target_us
+        self._advance_began = wall(), self._run.clock.now_us
+
+    def _end_advance(self) -> None:
+        """Measure how long the robot took to its target, and send an update where one is due."""
+        pace, now_us = self._pace, self._run.clock.now_us
+        began, from_us = self._advance_began
         took = wall() - began
-        self._pace.ran(clock.now_us)
+        pace.ran(now_us)
         if not self._job.recording:
-            packets = max(1, (clock.now_us - from_us) // PACKET_US)
-            self._pace.took(took / packets, packets)
+            packets = max(1, (now_us - from_us) // PACKET_US)
+            pace.took(took / packets, packets)
         if took > _CHUNK_SECONDS:
             self._packets_at_once = max(1, self._packets_at_once // 2)
         else:
             self._packets_at_once = min(_MOST_PACKETS, self._packets_at_once * 2)
+        if 0 < pace.speed <= 1 or wall() - self._told_at >= self._update_seconds:
+            self.tell()
+
+    # -- a loop that waits ----------------------------------------------------------------------------------------
+
+    def _on_wait(self) -> None:
+        """Robot code on this thread is about to wait, perhaps for longer than it is let go on."""
+        if self._target_us is not None and self._awaited_us != self._target_us:
+            self._awaited_us = self._target_us
+            # Right after everything that is due at the target.
+            self._run.clock.at(self._target_us + 1, INPUT, partial(self._on_beyond, self._target_us))
+
+    def _on_beyond(self, target_us: int) -> None:
+        """Do within the robot's wait what is otherwise done between two targets: `run_until` does not return."""
+        run = self._run
+        if target_us != self._target_us or not run.threads.driver_waits:
+            return
+        recorder = run.recorder
+        run.in_motion, self._beyond_us = False, 1
+        if recorder is not None:
+            recorder.begin_outside(stepping=True)
+        try:
+            if self._taken_over:
+                self._end_advance()
+            else:
+                self._take_over()
+            next_us = self._next_target()
+        finally:
+            if recorder is not None:
+                recorder.end_outside(stepping=True)
+            run.in_motion, self._beyond_us = True, 0
+        if next_us is None:
+            self._left = True
+            run.clock.halted = True
+            raise TestEnded
+        self._begin_advance(next_us)
+        self._on_wait()
+
+    def _on_waiting_loop(self, error: LoopWaitsError) -> None:
+        self._notes.append(" ".join(str(error).splitlines()))
 
     def _stop_us(self) -> int:
         return 1 << 62 if self._run_until_us is None else self._run_until_us
@@ -236,18 +316,21 @@ class Session:
         if not self._job.recording and base is None:
             self._trace.look(run.clock.now)
         steps = () if self._recorder is None else self._recorder.steps_from(max(0, self._steps_told - 2))
+        overruns, worst_us = run.overruns_until_now()
         drawings, vision = self._renderer.drawings(), self._targets_seen()
         update = Update(
-            time_us=run.clock.now_us,
+            time_us=run.clock.now_us - self._beyond_us,
             mode=modes.mode_name(),
             station=self._station.state,
             paused=pace.paused,
             speed=pace.speed,
             reached=pace.reached,
             average=pace.average,
-            loop_seconds=pace.loop_seconds,
-            worst_loop_seconds=pace.worst_loop_seconds,
-            overruns=pace.overruns,
+            packet_seconds=pace.packet_seconds,
+            worst_packet_seconds=pace.worst_packet_seconds,
+            late_packets=pace.late_packets,
+            overruns=overruns,
+            worst_loop_seconds=worst_us / 1_000_000,
             robot=self._robot_pose(),
             base=base,
             lines=tuple(self._lines),

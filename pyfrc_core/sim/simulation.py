@@ -327,9 +327,11 @@ class Simulation(Controls):
             speed=update.speed,
             reached=update.reached,
             average=update.average,
-            loop_seconds=update.loop_seconds,
-            worst_loop_seconds=update.worst_loop_seconds,
+            packet_seconds=update.packet_seconds,
+            worst_packet_seconds=update.worst_packet_seconds,
+            late_packets=update.late_packets,
             overruns=update.overruns,
+            worst_loop_seconds=update.worst_loop_seconds,
             length=self._recording.length_us / 1_000_000,
             note=" ".join(update.notes) or self._status.note,
         )

@@ -91,9 +91,11 @@ class Status:
     :param speed: robot seconds a second, as asked for; 0 is as fast as it goes
     :param reached: robot seconds a second, over the last half second or so
     :param average: the same since the robot was there, without pauses
-    :param loop_seconds: how long the robot took for its last packet, on the wall
-    :param worst_loop_seconds: the longest of the last second or so
-    :param overruns: how many packets have taken longer than 20 ms on the wall
+    :param packet_seconds: how long this machine took to compute the last packet, in wall seconds
+    :param worst_packet_seconds: the longest of the last second or so
+    :param late_packets: how many packets have taken longer than 20 ms to compute
+    :param overruns: how many turns of the robot's loop took longer than its period, in robot time
+    :param worst_loop_seconds: the longest of those turns, in seconds of robot time
     :param length: how far the recording goes, in seconds of robot time: one can go back to any moment until then
     :param failure: what has happened, while `state` is ``failed``
     :param note: something that the user should know, such as why a command was not carried out
@@ -106,9 +108,11 @@ class Status:
     speed: float = 1.0
     reached: float = 0.0
     average: float = 0.0
-    loop_seconds: float = 0.0
-    worst_loop_seconds: float = 0.0
+    packet_seconds: float = 0.0
+    worst_packet_seconds: float = 0.0
+    late_packets: int = 0
     overruns: int = 0
+    worst_loop_seconds: float = 0.0
     length: float = 0.0
     failure: Failure | None = None
     note: str = ""

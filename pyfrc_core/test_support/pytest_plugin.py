@@ -19,6 +19,7 @@ from ..errors import ProjectError, PyfrcError
 from ..hal import HalData
 from ..project import Project
 from ..runtime.failures import NamesItsPlace, headline, leave_out_pyfrc, names_its_place
+from ..runtime.loop_limit import LoopLimit
 from ..runtime.redirect import redirection
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.files import recorded, traced
@@ -161,6 +162,7 @@ class PyFrcPlugin:
         )
         with watchdog.watching(), ExitStack() as closing:
             run.open()
+            LoopLimit(run, self.project.files, self.project.settings)
             if not self.own_process:
                 closing.callback(_forget, run, request.node)
             closing.enter_context(self._written_down(run, request.node))

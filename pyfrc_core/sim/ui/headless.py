@@ -38,6 +38,8 @@ class Summary:
     failure: Failure | None
     speed: float
     overruns: int
+    worst_loop: float
+    late_packets: int
 
     def lines(self) -> list[str]:
         """For people to read."""
@@ -53,7 +55,9 @@ class Summary:
             else:
                 metres = snapshot.distance * METRES_PER_FOOT
                 found.append(f"distance driven: {snapshot.distance:.1f} ft ({metres:.1f} m)")
-            found.append(f"packets that took longer than 20 ms: {self.overruns}")
+            longest = f", the longest turn {self.worst_loop:.3f} s of robot time" if self.overruns else ""
+            found.append(f"loop overruns: {self.overruns}{longest}")
+            found.append(f"packets that took this machine longer than 20 ms: {self.late_packets}")
         if self.failure is not None:
             found.append(_text_of(self.failure))
         return found
@@ -104,7 +108,14 @@ class Headless(FrontEnd):
         finally:
             status = simulation.status
             simulation.close()
-        self.summary = Summary(simulation.snapshot, status.failure, status.average, status.overruns)
+        self.summary = Summary(
+            simulation.snapshot,
+            status.failure,
+            status.average,
+            status.overruns,
+            status.worst_loop_seconds,
+            status.late_packets,
+        )
         self._print(simulation)
         if not self._quiet:
             for line in self.summary.lines():

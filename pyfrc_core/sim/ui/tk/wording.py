@@ -78,7 +78,7 @@ def status_texts(snapshot: Snapshot | None, status: Status) -> list[str]:
     parts = [
         f"Robot time {time:.2f} s",
         reached if going else status.state.capitalize(),
-        f"Loop {status.loop_seconds * 1000:.1f} ms, worst {status.worst_loop_seconds * 1000:.1f} ms",
+        f"Computing {status.packet_seconds * 1000:.1f} ms, worst {status.worst_packet_seconds * 1000:.1f} ms",
         f"Overruns {status.overruns}",
     ]
     if status.network_address:
