@@ -18,6 +18,7 @@ from .errors import PyfrcError, RobotCodeError
 from .physics.construct import construct
 from .project import Project
 from .runtime.clock import to_us
+from .runtime.data_logs import LogPlace
 from .runtime.failures import as_robot_code_error
 from .runtime.loop_limit import LoopLimit
 from .runtime.redirect import redirection
@@ -79,7 +80,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     until_us = None if until is None else to_us(until)
     with TemporaryDirectory() as temporary:
         written = trace or Path(temporary, "trace.jsonl")
-        run = RobotRun()
+        run = RobotRun(LogPlace.of_run(project.root))
         failures: list[PyfrcError] = []
         settings = project.settings
         hang_seconds = settings.fuzz.hang_seconds if script.story else settings.test.hang_seconds

@@ -21,6 +21,9 @@ PACKET_US = 20_000
 
 DEFAULT_TIME_LIMIT = 500.0
 
+#: The time of day in robot code at robot time 0: noon, Eastern time, of the 2026 season's kickoff, in seconds.
+KICKOFF = 1_768_064_400
+
 # What is due at the same microsecond happens in this order: scripts write, the driver station speaks, then threads and
 # notifiers wake, then the robot's loop runs, then physics moves what it drives, then whoever watches looks at what came
 # of it.

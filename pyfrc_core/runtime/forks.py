@@ -8,6 +8,7 @@ import selectors
 import signal
 import sys
 import threading
+import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 
@@ -90,6 +91,17 @@ class Fork:
             self._reap(0)
             self.finished = True
             os.close(self._pipe)
+
+    def terminate(self, seconds: float) -> None:
+        """End the process by SIGTERM; when it has not ended after some wall seconds, `kill` it."""
+        if not self.finished:
+            os.kill(self._pid, signal.SIGTERM)
+            deadline = time.monotonic() + seconds
+            while not self.finished and time.monotonic() < deadline:
+                # The pipe, if nothing else holds it open, is closed when the process ends.
+                wait_for_any([self._pipe])
+                self.poll()
+        self.kill()
 
     def _reap(self, how: int) -> bool:
         pid, status = os.waitpid(self._pid, how)

@@ -8,6 +8,7 @@ import re
 import signal
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import takewhile
 
@@ -16,6 +17,9 @@ from .watchdog import EXIT_HANGS
 
 #: Ends the process at once, whatever robot code's `os._exit` is made to do.
 exit_now = os._exit
+
+#: Called before this process ends without unwinding its stack; by name.
+before_sudden_end: dict[str, Callable[[], object]] = {}
 
 _FAULT_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 
@@ -51,9 +55,17 @@ class LastWords:
                 f" in {frame.f_code.co_name}\n"
             )
             before_exit()
+            call_before_sudden_end()
             exit_now(status)
 
         os._exit = telling_exit  # type: ignore[assignment]
+
+
+def call_before_sudden_end() -> None:
+    """Call each of `before_sudden_end`, whatever the others raise."""
+    for call in list(before_sudden_end.values()):
+        with suppress(Exception):
+            call()
 
 
 def explain_end(words: str, status: int, files: RobotFiles, meanwhile: str) -> str:

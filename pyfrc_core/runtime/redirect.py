@@ -23,7 +23,8 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
-from . import cooperative, robot_stack
+from . import cooperative, data_logs, robot_stack
+from .clock import KICKOFF as KICKOFF
 from .clock import to_us
 from .endings import TestEnded
 from .loop_watchdog import Watchdog
@@ -32,9 +33,6 @@ from .notifier import Notifier
 if TYPE_CHECKING:
     from ..robot_files import RobotFiles
     from .robot import RobotRun
-
-#: What `time.time()` answers in robot code at robot time 0: noon, Eastern time, of the 2026 season's kickoff.
-KICKOFF = 1_768_064_400
 
 _real_sleep = time.sleep
 
@@ -60,14 +58,17 @@ class Redirection:
         if hasattr(os, "register_at_fork"):
             os.register_at_fork(after_in_child=self._leave)
         for owner, name, replacement in self._replacements():
-            self._originals.append((owner, name, vars(owner).get(name, getattr(owner, name))))
+            self._originals.append((owner, name, vars(owner).get(name, getattr(owner, name, None))))
             setattr(owner, name, replacement)
         robot_stack.show_robots_lines(lambda: self._files)
 
     def uninstall(self) -> None:
         while self._originals:
             owner, name, original = self._originals.pop()
-            setattr(owner, name, original)
+            if original is None:  # it was not there
+                delattr(owner, name)
+            else:
+                setattr(owner, name, original)
         cooperative.scope.is_robot_code = lambda filename: False
         robot_stack.show_all_lines()
 
@@ -100,6 +101,7 @@ class Redirection:
             *self._timed_robot(),
             *self._directories(),
             *robot_stack.reports(lambda: self._files),
+            *data_logs.replacements(lambda: None if self.run is None else self.run.data_logs),
         ]
 
     def _time_functions(self) -> list[tuple[Any, str, Any]]:

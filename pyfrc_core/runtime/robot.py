@@ -21,6 +21,7 @@ from ..errors import RobotCodeError
 from ..hal import HalData, devices_exist, modes, timing
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
+from .data_logs import DataLogs, LogPlace
 from .endings import TestEnded, TestFroze
 from .loop_watchdog import LoopOverruns, end_wpilibs_thread
 from .motor_safety import MotorSafetyCheck
@@ -37,10 +38,14 @@ class RobotRun:
     """A robot from its construction to its end, in robot time.
 
     The thread that creates this drives the clock. The HAL is one per process, so only one run at a time can be.
+
+    :param logs: where the data logs that robot code starts are written; None: they are not kept
     """
 
-    def __init__(self) -> None:
+    def __init__(self, logs: LogPlace | None = None) -> None:
         self.clock = Clock()
+        #: What robot code starts of data logs.
+        self.data_logs = DataLogs(self.clock, logs)
         self.threads = RobotThreads(self.clock)
         self.alarms = Alarms(self.threads)
         self.overruns = LoopOverruns(self.clock)
@@ -198,7 +203,10 @@ class RobotRun:
                 with contextlib.suppress(TestEnded), self._failing():
                     self.robot.endCompetition()
         finally:
-            self._end_threads()
+            try:
+                self._end_threads()
+            finally:
+                self.data_logs.close()
 
     def _end_threads(self) -> None:
         __tracebackhide__ = True

@@ -210,5 +210,8 @@ class Watchdog:
         """The code swallowed the interruption, or never came to see it."""
         if self._last_words is None:
             return
+        from .own_process import call_before_sudden_end
+
         self._last_words(self._explain(ident, busy=True))
+        call_before_sudden_end()
         _exit(EXIT_HANGS)

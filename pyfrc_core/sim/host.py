@@ -23,6 +23,8 @@ from typing import Any
 from .commands import Quit
 
 _LOOK_SECONDS = 0.2
+#: How long a robot's process may take to complete its data logs, in wall seconds.
+_CLOSING_SECONDS = 0.5
 
 #: Libraries that are known to start no threads when they are imported.
 _HARMLESS = {
@@ -148,7 +150,7 @@ class _Forks:
 
     def _kill(self) -> None:
         if self._fork is not None:
-            self._fork.kill()
+            self._fork.terminate(_CLOSING_SECONDS)
             self._gone()
 
     def _gone(self) -> None:
@@ -168,6 +170,15 @@ def _preload(modules: Sequence[str]) -> None:
                 importlib.import_module(name)
 
 
+def _end_robot(signum: int, frame: object) -> None:
+    """Complete the robot's data logs and end its process, wherever its code is."""
+    from ..runtime import own_process
+
+    own_process.call_before_sudden_end()
+    own_process.end_processes_of_the_robot()
+    own_process.exit_now(128 + signum)
+
+
 def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
     """Never returns."""
     from ..runtime.own_process import LastWords, end_processes_of_the_robot, exit_now
@@ -177,6 +188,7 @@ def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
     with launch.words.open("wb", buffering=0) as file:
         words = LastWords(file.fileno())
         words.leave_on_crash()
+        signal.signal(signal.SIGTERM, _end_robot)
         try:
             connection = Client(hosting.address, authkey=hosting.key)
             connection.send(launch.number)

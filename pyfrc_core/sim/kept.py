@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 from tempfile import TemporaryFile
 
+from ..disk_space import lack_of_room
 from ..errors import UsageError
-from .room import lack_of_room
 from .simulation import Simulation
 
 

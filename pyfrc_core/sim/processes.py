@@ -75,10 +75,10 @@ class RobotProcesses:
             if self._closed:
                 return self._number
             self._number += 1
-            self._robot, self._for_robot = None, []
-            self._ended = threading.Event()
             if self._host is not None and not self._forks:
                 self._end_host()
+            self._robot, self._for_robot = None, []
+            self._ended = threading.Event()
             if self._host is None or self._host.poll() is not None:
                 self._begin_host()
             self._tell_host(Launch(self._number, pickle.dumps(job), self._words(self._number)))
@@ -160,6 +160,13 @@ class RobotProcesses:
                 if self._forks:
                     host.wait(_PATIENCE)
             self._host_connection = None
+        if not self._forks:  # it is the robot's process, and may complete the robot's data logs
+            with suppress(OSError, subprocess.TimeoutExpired):
+                if os.name == "posix":
+                    host.terminate()
+                elif self._robot is not None:
+                    self._robot.send(Quit())
+                host.wait(_PATIENCE)
         if os.name == "posix":  # with whatever the robot has started
             with suppress(ProcessLookupError, PermissionError):
                 os.killpg(host.pid, signal.SIGKILL)

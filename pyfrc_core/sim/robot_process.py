@@ -20,6 +20,8 @@ from ..errors import PyfrcError
 from ..physics.engine import load_physics
 from ..project import Project
 from ..robot_files import is_pyfrc
+from ..runtime import own_process
+from ..runtime.data_logs import LogPlace
 from ..runtime.failures import as_robot_code_error, leave_out_pyfrc
 from ..runtime.own_process import LastWords
 from ..runtime.redirect import redirection
@@ -55,7 +57,7 @@ def run_robot(job: Job, connection: Connection, words: LastWords) -> None:
 
 def _run(job: Job, connection: Connection, words: LastWords) -> None:
     project, files = job.project, job.project.files
-    run = RobotRun()
+    run = RobotRun(LogPlace.of_run(project.root))
     loaded = False
     try:
         redirection.install(files)
@@ -65,6 +67,7 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
         watchdog = Watchdog(run, files, project.settings.test.hang_seconds, words.write, words.descriptor)
         with watchdog.watching(), ExitStack() as closing:
             run.open()
+            closing.callback(run.data_logs.close)
             seed_generators(job.script.seed)
             session = Session(run, job, connection)
 
@@ -114,6 +117,7 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
 @contextmanager
 def _logged(run: RobotRun, file: Path) -> Iterator[None]:
     log = WpiLog(file)
+    own_process.before_sudden_end["--wpilog"] = log.close
     before: dict[str, Any] = {}
 
     def look(now: float) -> None:
@@ -127,6 +131,7 @@ def _logged(run: RobotRun, file: Path) -> Iterator[None]:
     try:
         yield
     finally:
+        del own_process.before_sudden_end["--wpilog"]
         log.close()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from collections.abc import Callable, Generator, Iterator
@@ -18,6 +19,7 @@ from .. import tests as ready_made
 from ..errors import ProjectError, PyfrcError
 from ..hal import HalData
 from ..project import Project
+from ..runtime.data_logs import TEST_LOGS, LogPlace
 from ..runtime.failures import NamesItsPlace, headline, leave_out_pyfrc, names_its_place
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.redirect import redirection
@@ -75,6 +77,7 @@ class PyFrcPlugin:
         self.last_words: Callable[[str], None] | None = None
         #: Whether each test's own process imports the robot's modules, since they cannot be forked.
         self.imports_late = imports_late
+        self._former_logs: set[tuple[str, int]] = set()
         self._robot_class = robot_class
         self._robot_file = str(Path(robot_file).resolve())
         self._robot_path = str(Path(robot_path).resolve())
@@ -156,7 +159,8 @@ class PyFrcPlugin:
         """One run of the robot: its time, its threads; ended when the test is."""
         __tracebackhide__ = True
         self.robot_class()  # the robot's modules are imported before robot time begins
-        run = RobotRun()
+        name = _file_name(request.node.nodeid).removesuffix(".jsonl")
+        run = RobotRun(LogPlace.of_test(self.project.root, name))
         watchdog = Watchdog(
             run, self.project.files, self.options.hang_seconds, self.last_words, self.when_python_is_stuck
         )
@@ -206,6 +210,22 @@ class PyFrcPlugin:
                 self.project.sim_config  # noqa: B018
         except PyfrcError as wrong:
             raise pytest.Collector.CollectError(str(wrong)) from None
+
+    def pytest_sessionstart(self) -> None:
+        self._former_logs = self._data_logs()
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Name the directory of the data logs that robots have written there."""
+        if self._data_logs() - self._former_logs:
+            terminalreporter.write_line(f"data logs: {os.path.relpath(self.project.root / TEST_LOGS)}")
+
+    def _data_logs(self) -> set[tuple[str, int]]:
+        """The data logs of tests, as they are now."""
+        try:
+            with os.scandir(self.project.root / TEST_LOGS) as files:
+                return {(file.name, file.stat().st_mtime_ns) for file in files}
+        except OSError:
+            return set()
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:

@@ -1,0 +1,210 @@
+"""Data logs that robot code starts: complete and readable however a run ends, in a place that the run names."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from sim_robots import run, settle
+from wpiutil.log import DataLogReader
+
+from pyfrc_core.project import find_project
+from pyfrc_core.sim.options import SimOptions
+from pyfrc_core.sim.simulation import Simulation
+
+ROBOT = """
+    import os
+
+    import wpilib
+    import wpiutil
+    from wpiutil.log import DoubleLogEntry
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            wpilib.DataLogManager.start()
+            wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog())
+            self.motor = wpilib.PWMSparkMax(0)
+            self.count, self.turns = 0, DoubleLogEntry(wpilib.DataLogManager.getLog(), "/turns")
+
+        def robotPeriodic(self):
+            self.count += 1
+            self.turns.append(self.count)
+            wpilib.SmartDashboard.putNumber("turns", self.count)
+            self.turn(self.count)
+
+        def turn(self, count):
+            {turn}
+"""
+
+
+def robot(turn: str = "pass") -> dict[str, str]:
+    """A robot that logs the number of each turn of its loop, then does this."""
+    return {"robot.py": ROBOT.replace("{turn}", turn)}
+
+
+def records(file: Path) -> dict[str, list[tuple[int, object]]]:
+    """What is in a log: time and value of each record, by entry."""
+    reader = DataLogReader(str(file))
+    assert reader.isValid(), file
+    names, found = {}, {}
+    for record in reader:
+        if record.isStart():
+            start = record.getStartData()
+            names[start.entry] = (start.name, start.type)
+            found.setdefault(start.name, [])
+        elif not record.isControl():
+            name, kind = names[record.getEntry()]
+            value = {"double": record.getDouble, "string": record.getString}.get(kind, lambda: None)()
+            found[name].append((record.getTimestamp(), value))
+    return found
+
+
+def turns(file: Path) -> list[object]:
+    """The numbers of the turns that a log has."""
+    return [value for _, value in records(file)["/turns"]]
+
+
+def named(text: str, made) -> Path:
+    """The log that a run names."""
+    names = re.findall(r"data log: (.+)", text)
+    assert len(names) == 1, text
+    return made.path / names[0].strip()
+
+
+def test_the_log_of_a_headless_match(make_project) -> None:
+    made = make_project(robot('wpilib.DataLogManager.log("hello") if count == 5 else None'))
+    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20")
+    log = records(named(result.output, made))
+    assert [value for _, value in log["/turns"]] == list(range(1, 1001))
+    assert log["/turns"][-1][0] == 20_000_000, "stamps are robot time"
+    assert log["NT:/SmartDashboard/turns"][-1] == (20_000_000, 1000)
+    assert "DS:enabled" in log
+    assert [value for _, value in log["messages"]] == ["hello"]
+    assert "hello" in result.stdout
+    assert (made.path / ".pyfrc" / ".gitignore").read_text() == "*\n"
+
+
+@pytest.mark.parametrize("end", ["1 / 0", "os._exit(3)", "exit()"])
+def test_the_log_of_a_robot_that_fails(end: str, make_project) -> None:
+    made = make_project(robot(f"{end} if count == 333 else None"))
+    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20")
+    assert result.code == 1, result.output
+    assert turns(named(result.output, made)) == list(range(1, 334))
+
+
+def test_the_log_of_a_robot_that_is_killed(make_project) -> None:
+    """Some kilobytes of what it logged last are lost."""
+    made = make_project(robot("os.kill(os.getpid(), 9) if count == 333 else None"))
+    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20")
+    assert result.code == 1, result.output
+    assert 100 <= len(turns(named(result.output, made))) <= 333
+
+
+@pytest.mark.parametrize("fork", [None, False])
+def test_time_that_is_turned_back(fork: bool | None, make_project) -> None:
+    """Each run has a log of its own, which has all that was seen of it when its process is killed."""
+    made = make_project(robot())
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True, fork=fork)) as simulation:
+        run(simulation, 3.02)
+        simulation.rewind(1)
+        settle(simulation)
+        simulation.restart()
+        settle(simulation)
+        run(simulation, 0.5)
+    logs = sorted((made.path / ".pyfrc" / "logs").iterdir(), key=lambda file: file.stat().st_size)
+    assert sorted(len(turns(log)) for log in logs) == [25, 50, 151]
+
+
+def test_the_simulators_own_log_of_a_robot_that_ends_its_process(make_project) -> None:
+    made = make_project(robot("os._exit(3) if count == 333 else self.motor.set(count % 100 / 100)"))
+    made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "20", "--wpilog", "run.wpilog")
+    motor = records(made.path / "run.wpilog")["/hal_data/pwm[0].value"]
+    assert motor[-1] == (332 * 20_000, pytest.approx(0.32, abs=0.01))
+
+
+TESTS = """
+    import pytest
+
+    @pytest.mark.parametrize("seconds", [1, 2])
+    def test_ends(control, seconds):
+        with control.run_robot():
+            control.step_timing(seconds=seconds, autonomous=False, enabled=True)
+        assert seconds == 1
+
+    def test_hangs(control, robot):
+        def hang(count):
+            while count == 33:
+                pass
+
+        robot.turn = hang
+        with control.run_robot():
+            control.step_timing(seconds=1, autonomous=False, enabled=True)
+"""
+
+
+@pytest.mark.parametrize("isolation", [[], ["--no-isolation"]])
+def test_each_test_has_a_log(isolation: list[str], make_project) -> None:
+    settings = "[tool.pyfrc.test]\nhang_seconds = 0.2\n"
+    files = robot() | {"tests/match_test.py": TESTS, "pyproject.toml": settings}
+    made = make_project(files)
+    made.run("test", *isolation, "-k", "ends")
+    result = made.run("test", *isolation)  # whose logs replace the first one's
+    assert "data logs: .pyfrc/logs/test\n" in result.stdout.replace("\\", "/")
+    found = {file.name: len(turns(file)) for file in (made.path / ".pyfrc" / "logs" / "test").iterdir()}
+    expected = {"test_ends[1]": 50, "test_ends[2]": 100, "test_hangs": 33}
+    assert found == {f"tests_match_test.py.{test}.wpilog": count for test, count in expected.items()}
+    assert not (made.path / "logs").exists()
+    if isolation == []:
+        assert "data log" not in made.run("test", "-k", "nothing").stdout
+
+
+def test_replays_and_campaigns(make_project) -> None:
+    """A replay has a log; thousands of matches have none."""
+    script = [{"format": "pyfrc-input 1", "robot": "robot.py", "end": 4.0}, {"t": 1.0, "set": {"mode": "teleop"}}]
+    made = make_project(robot() | {"script.jsonl": "\n".join(map(json.dumps, script)) + "\n"})
+    assert len(turns(named(made.run("replay", "script.jsonl").output, made))) == 199
+    before = set(made.path.rglob("*.wpilog"))
+    assert made.run("fuzz", "--runs", "2").code == 0
+    assert set(made.path.rglob("*.wpilog")) == before
+
+
+OWN = """
+    import wpilib
+    import wpiutil
+    from wpiutil.log import DoubleLogEntry
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            wpilib.DataLogManager.start("my_logs", "match")
+            self.logs = [
+                wpilib.DataLogManager.getLog(),
+                wpiutil.DataLogBackgroundWriter("my_logs", "second.wpilog"),
+                wpiutil.DataLogWriter("my_logs/third.wpilog"),
+            ]
+            assert isinstance(self.logs[1], wpiutil.DataLogBackgroundWriter)
+            assert isinstance(self.logs[2], wpiutil.DataLogWriter)
+            self.logs[1].setFilename("renamed.wpilog")
+            self.entries = [DoubleLogEntry(log, "/turns") for log in self.logs]
+
+        def robotPeriodic(self):
+            for entry in self.entries:
+                entry.append(1)
+"""
+
+
+def test_the_robot_chooses_the_files(make_project) -> None:
+    made = make_project({"robot.py": OWN})
+    result = made.run("sim", "--ui", "none", "--mode", "disabled", "--seconds", "2")
+    assert result.code == 0, result.output
+    found = {file.name: len(turns(file)) for file in (made.path / "my_logs").iterdir()}
+    assert found == {"match.wpilog": 100, "renamed.wpilog": 100, "third.wpilog": 100}
+    assert not (made.path / ".pyfrc").exists()
+
+
+def test_a_directory_that_there_cannot_be(make_project) -> None:
+    made = make_project(robot() | {".pyfrc": "a file"})
+    result = made.run("sim", "--ui", "none", "--mode", "disabled", "--seconds", "2")
+    assert result.code == 0, result.output
+    assert "cannot be written" in result.output
