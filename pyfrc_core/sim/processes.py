@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import threading
-from codecs import getincrementaldecoder
 from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection, Listener
@@ -19,7 +18,9 @@ from typing import Any
 from ..runtime.forks import FORK_IS_SAFE
 from .commands import Quit
 from .host import Exited, Hosting, Kill, Launch, Preload
-from .messages import Job, Message
+from .messages import Failed, Job, Message
+from .output_pipe import OutputPipe
+from .robot_channel import RobotChannel
 
 #: Where no module of the user's is in Python's way.
 _BESIDE_OUR_PACKAGE = Path(__file__).resolve().parents[2]
@@ -60,10 +61,15 @@ class RobotProcesses:
         self._number = 0
         self._host: subprocess.Popen[bytes] | None = None
         self._host_connection: Connection | None = None
+        self._host_reader: threading.Thread | None = None
         self._robot: Connection | None = None
+        #: What the host, and so the robot, prints into.
+        self._output: OutputPipe | None = None
         #: Set when the robot's process has ended.
         self._ended = threading.Event()
-        self._hearing: dict[int, threading.Thread] = {}
+        self._channels: dict[int, RobotChannel] = {}
+        #: Set when the connection with this number has been accepted, and so all that were made before it.
+        self._barriers: dict[str, threading.Event] = {}
         #: What is to be sent to the host as soon as it is there; likewise to the robot.
         self._for_host: list[object] = []
         self._for_robot: list[object] = []
@@ -75,6 +81,7 @@ class RobotProcesses:
             if self._closed:
                 return self._number
             self._number += 1
+            self._channels[self._number] = RobotChannel(self._number, self._heard, self._gone)
             if self._host is not None and not self._forks:
                 self._end_host()
             self._robot, self._for_robot = None, []
@@ -120,8 +127,11 @@ class RobotProcesses:
             if self._closed:
                 return
             self._closed = True
+            output, self._output = self._output, None
             if self._host is not None:
                 self._end_host()
+        if output is not None:  # what was printed until now is not lost
+            output.close()
         # In a thread: where the listener's has left its loop already, nobody answers, until the listener is closed.
         _thread(self._wake_the_listener, "pyfrc sim: wake").join(_PATIENCE)
         self._listener.close()
@@ -130,11 +140,14 @@ class RobotProcesses:
     # -- the host -----------------------------------------------------------------------------------------------
 
     def _begin_host(self) -> None:
-        self._host_connection, self._for_host = None, []
+        self._host_connection, self._host_reader, self._for_host = None, None, []
+        if self._output is not None:
+            _thread(self._output.close, "pyfrc sim: end of output")
+        self._output = output = OutputPipe(self._on_output)
         host = subprocess.Popen(
             [sys.executable, "-c", f"from {__package__}.host import main; main()"],
             stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
+            stdout=output.writing_end,
             stderr=subprocess.STDOUT,
             cwd=_BESIDE_OUR_PACKAGE,
             env=os.environ | {"PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"},
@@ -147,9 +160,7 @@ class RobotProcesses:
         )
         with suppress(OSError), host.stdin as stdin:
             stdin.write(pickle.dumps(hosting))
-        _thread(self._read_output, "pyfrc sim: output", host)
-        if not self._forks:
-            _thread(self._wait_for, "pyfrc sim: end", host, self._number)
+        _thread(self._wait_for, "pyfrc sim: end", host, self._number)
 
     def _end_host(self) -> None:
         host, self._host = self._host, None
@@ -167,11 +178,7 @@ class RobotProcesses:
                 elif self._robot is not None:
                     self._robot.send(Quit())
                 host.wait(_PATIENCE)
-        if os.name == "posix":  # with whatever the robot has started
-            with suppress(ProcessLookupError, PermissionError):
-                os.killpg(host.pid, signal.SIGKILL)
-        else:
-            host.kill()
+        _end_group(host)
         host.wait()
 
     def _tell_host(self, message: object) -> None:
@@ -187,8 +194,8 @@ class RobotProcesses:
         while not self._closed:
             try:
                 connection = self._listener.accept()
-                who = connection.recv()
-            except (OSError, EOFError):  # closed, or nobody of ours
+                who = introduced(connection)
+            except (OSError, EOFError):  # closed, or not one of ours
                 continue
             except Exception:  # a stranger without the key
                 continue
@@ -199,21 +206,17 @@ class RobotProcesses:
                         self._tell_host(message)
                     self._for_host.clear()
                     if self._forks:
-                        _thread(self._hear_host, "pyfrc sim: host", connection)
+                        self._host_reader = _thread(self._hear_host, "pyfrc sim: host", connection)
                 elif who == self._number and not self._closed:
                     self._robot = connection
                     for message in self._for_robot:
                         self.send(message)
                     self._for_robot.clear()
-                    self._hearing[who] = _thread(self._hear_robot, "pyfrc sim: robot", connection, who)
+                    self._channels[who].connected(connection)
                 else:
+                    if who in self._barriers:
+                        self._barriers.pop(who).set()
                     connection.close()
-
-    def _hear_robot(self, connection: Connection, number: int) -> None:
-        with suppress(OSError, EOFError):
-            while number == self._number:
-                self._on_message(number, connection.recv())
-        connection.close()
 
     def _hear_host(self, connection: Connection) -> None:
         with suppress(OSError, EOFError):
@@ -223,22 +226,56 @@ class RobotProcesses:
                     self._exited(message.number, message.status)
 
     def _wait_for(self, host: subprocess.Popen[bytes], number: int) -> None:
-        self._exited(number, host.wait())
+        """Report the robot's exit where it comes with the host's: always where nothing is forked."""
+        status = host.wait()
+        self._all_accepted()
+        with self._lock:
+            unexpected, reader = host is self._host, self._host_reader
+            if self._forks:
+                if not unexpected:
+                    return
+                number = self._number
+        if reader is not None:
+            reader.join()  # what the host has reported itself comes first
+        if unexpected:
+            _end_group(host)
+        self._exited(number, status)
 
     def _exited(self, number: int, status: int) -> None:
-        hearing = self._hearing.pop(number, None)
-        if hearing is not None:
-            hearing.join(_PATIENCE)  # what it has said before comes first
+        self._all_accepted()
+        with self._lock:
+            channel = self._channels.pop(number, None)
+        if channel is not None:
+            channel.ended(status)
+
+    def _all_accepted(self) -> None:
+        """Wait until every connection that was made before now has been accepted: they are, in their order."""
+        name = os.urandom(8).hex()
+        accepted = self._barriers[name] = threading.Event()
+        from multiprocessing.connection import Client
+
+        with suppress(Exception):  # the listener is closed
+            with Client(self._listener.address, authkey=self._key) as barrier:
+                barrier.send(name)
+                accepted.wait()
+
+    def _heard(self, number: int, message: Message) -> None:
+        if isinstance(message, Failed):
+            self._flush_output()
+        self._on_message(number, message)
+
+    def _gone(self, number: int, status: int) -> None:
+        self._flush_output()
         if number == self._number:
             self._ended.set()
         self._on_exit(number, status, self._last_words(number))
 
-    def _read_output(self, host: subprocess.Popen[bytes]) -> None:
-        assert host.stdout is not None
-        decoder = getincrementaldecoder("utf-8")(errors="replace")
-        with host.stdout as output, suppress(OSError, ValueError):
-            while data := os.read(output.fileno(), 1 << 16):
-                self._on_output(decoder.decode(data))
+    def _flush_output(self) -> None:
+        """What a robot has printed comes before its end."""
+        with self._lock:
+            output = self._output
+        if output is not None:
+            output.flush()
 
     def _wake_the_listener(self) -> None:
         from multiprocessing.connection import Client
@@ -253,6 +290,20 @@ class RobotProcesses:
         with suppress(OSError):
             return self._words(number).read_text("utf-8", errors="replace")
         return ""
+
+
+def introduced(connection: Connection) -> object:
+    """Return who has connected; a function, for tests that need this to be late."""
+    return connection.recv()
+
+
+def _end_group(host: subprocess.Popen[bytes]) -> None:
+    """End a host, with whatever the robot has started."""
+    if os.name == "posix":
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(host.pid, signal.SIGKILL)
+    else:
+        host.kill()
 
 
 def _thread(target: Callable[..., object], name: str, *arguments: Any) -> threading.Thread:
