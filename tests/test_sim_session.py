@@ -341,8 +341,23 @@ def test_new_code_is_brought_to_the_same_moment(simulation: Simulation, project:
     wait(simulation, lambda: simulation.status.state == "failed")
     robot.write_text(text.replace("SPEED = 0.5", "SPEED = 1.00"))
     simulation.reload()
-    wait(simulation, lambda: simulation.status.state in ("paused", "running"))
+    wait(simulation, lambda: simulation.status.state == "paused")
     assert simulation.snapshot.scene.robot == pytest.approx(before.scene.robot)
+
+
+def test_new_code_gets_what_was_commanded_in_a_pause(simulation: Simulation) -> None:
+    run(simulation, 0.1)
+    drive_forward(simulation)
+    wait(simulation, lambda: simulation.snapshot.enabled)
+    simulation.reload()
+    simulation.write({"dio[3].value": False})
+    simulation.step(50)
+    simulation.reload()
+    wait(simulation, lambda: simulation.status.state == "paused" and simulation.snapshot.time > 1)
+    assert simulation.snapshot.time == 1.1
+    assert simulation.snapshot.mode == "teleop"
+    assert simulation.snapshot.values["dio[3].value"] is False
+    assert simulation.snapshot.scene.robot.x == pytest.approx(15, abs=0.3)
 
 
 def test_real_time_goes_on_by_itself(project: Project) -> None:

@@ -9,8 +9,10 @@ from typing import Any
 
 from ..project import Project
 from ..runtime.scripts.script import InputScript, Step
+from .commands import Command
 from .scene import Line, Point, Pose, Tag, Target, Text
 from .snapshot import Chooser, Failure
+from .time_state import TimeState
 
 
 @dataclass(frozen=True)
@@ -31,9 +33,8 @@ class Job:
 
     :param script: what the robot is told from outside, from its start on
     :param forward_to_us: how far to go at once, as fast as it goes
-    :param run_until_us: pause when robot time gets there; None: never
-    :param paused: whether to pause at `forward_to_us`
-    :param speed: robot seconds a second; 0 is as fast as it goes
+    :param time_state: how time is to go on from there
+    :param commands: to be carried out there, before time goes on
     :param recording: whether what comes from outside is to be told, and what the robot does packet by packet
     :param station: how the driver station is at `forward_to_us`
     :param nt_port: where to serve NetworkTables to dashboards; None: nowhere
@@ -45,9 +46,8 @@ class Job:
     project: Project
     script: InputScript
     forward_to_us: int = 0
-    run_until_us: int | None = None
-    paused: bool = False
-    speed: float = 1.0
+    time_state: TimeState = field(default_factory=TimeState)
+    commands: tuple[Command, ...] = ()
     recording: bool = True
     station: StationState = StationState()
     nt_port: int | None = None
@@ -76,6 +76,9 @@ class Update:
     """What has changed since the last one.
 
     :param time_us: robot time
+    :param time_state: how robot time goes on
+    :param carried_out: how many commands have been carried out, those of the `Job` among them
+    :param recorded: how many of them are part of the recorded steps: what comes in a pause is when time goes on
     :param base: all values of `hal_data`, where `lines` do not go on from those told before
     :param lines: of the trace (see `pyfrc_core.runtime.trace`), the lines since then
     :param trail: where the robot has been since then
@@ -88,8 +91,9 @@ class Update:
     time_us: int
     mode: str
     station: StationState
-    paused: bool
-    speed: float
+    time_state: TimeState
+    carried_out: int
+    recorded: int
     reached: float
     average: float
     packet_seconds: float

@@ -212,7 +212,8 @@ class RobotProcesses:
                     for message in self._for_robot:
                         self.send(message)
                     self._for_robot.clear()
-                    self._channels[who].connected(connection)
+                    if (channel := self._channels.get(who)) is not None:
+                        channel.connected(connection)
                 else:
                     if who in self._barriers:
                         self._barriers.pop(who).set()
@@ -254,10 +255,10 @@ class RobotProcesses:
         accepted = self._barriers[name] = threading.Event()
         from multiprocessing.connection import Client
 
-        with suppress(Exception):  # the listener is closed
-            with Client(self._listener.address, authkey=self._key) as barrier:
-                barrier.send(name)
-                accepted.wait()
+        # An error: the listener is closed.
+        with suppress(Exception), Client(self._listener.address, authkey=self._key) as barrier:
+            barrier.send(name)
+            accepted.wait()
 
     def _heard(self, number: int, message: Message) -> None:
         if isinstance(message, Failed):

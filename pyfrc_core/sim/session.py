@@ -26,6 +26,7 @@ from .network import Choosers, Served
 from .pace import Pace, wall
 from .scene import Point, Pose, Target
 from .station import Station
+from .time_state import TimeState
 from .user_renderer import UserRenderer
 
 #: Faster than real time, updates are told no oftener than this, in wall seconds; else one for each packet. What is not
@@ -62,8 +63,9 @@ class Session:
         self._targets = Targets(run.hal_data)
         self._choosers = Choosers()
         self._served: Served | None = None
-        self._pace = Pace(job.speed, job.paused)
-        self._run_until_us = job.run_until_us
+        self._time = job.time_state
+        self._carried_out = self._recorded = 0
+        self._pace = Pace(self._time.speed, self._time.paused)
         if job.extensions:  # which have changed what every run begins with: that, too, comes from outside
             modes.reset_driver_station()
             run.hal_data.apply_defaults()
@@ -134,6 +136,8 @@ class Session:
         run, job = self._run, self._job
         self._taken_over = True
         self._station.take_over()
+        for command in job.commands:
+            self._carry_out(command)
         if job.nt_port is not None:
             self._served = Served(job.nt_port, self._write)
             if self._served.problem:
@@ -167,7 +171,8 @@ class Session:
         pace, clock = self._pace, self._run.clock
         while self._hear_commands():
             if not pace.paused and self._stop_us() <= clock.now_us:
-                self._pause()
+                self._set_time(self._time.stopped())
+                self.tell()
             if pace.paused:
                 if self._connection.poll(_LOOK_SECONDS if self._served is not None else None):
                     continue
@@ -184,6 +189,7 @@ class Session:
 
     def _begin_advance(self, target_us: int) -> None:
         self._target_us = target_us
+        self._recorded = self._carried_out
         self._advance_began = wall(), self._run.clock.now_us
 
     def _end_advance(self) -> None:
@@ -241,11 +247,12 @@ class Session:
         self._notes.append(" ".join(str(error).splitlines()))
 
     def _stop_us(self) -> int:
-        return 1 << 62 if self._run_until_us is None else self._run_until_us
+        return 1 << 62 if self._time.until_us is None else self._time.until_us
 
-    def _pause(self) -> None:
-        self._pace.paused, self._run_until_us = True, None
-        self.tell()
+    def _set_time(self, time: TimeState) -> None:
+        self._time = time
+        self._pace.paused, self._pace.speed = time.paused, time.speed
+        self._pace.begin(self._run.clock.now_us)
 
     # -- what comes from outside ----------------------------------------------------------------------------------
 
@@ -266,19 +273,10 @@ class Session:
         return True
 
     def _carry_out(self, command: object) -> None:
+        self._carried_out += 1
         match command:
-            case Run():
-                clock = self._run.clock
-                self._run_until_us = command.until_us
-                if command.packets is not None:
-                    self._run_until_us = clock.next_packet_us + (command.packets - 1) * PACKET_US
-                self._pace.paused = False
-                self._pace.begin(clock.now_us)
-            case Pause():
-                self._pause()
-            case Speed():
-                self._pace.speed = command.factor
-                self._pace.begin(self._run.clock.now_us)
+            case Run() | Pause() | Speed():
+                self._set_time(self._time.after(command, self._run.clock.next_packet_us))
             case ChooseMode():
                 self._station.choose(command)
             case Enable():
@@ -322,8 +320,9 @@ class Session:
             time_us=run.clock.now_us - self._beyond_us,
             mode=modes.mode_name(),
             station=self._station.state,
-            paused=pace.paused,
-            speed=pace.speed,
+            time_state=self._time,
+            carried_out=self._carried_out,
+            recorded=self._carried_out if self._recorder is None else self._recorded,
             reached=pace.reached,
             average=pace.average,
             packet_seconds=pace.packet_seconds,

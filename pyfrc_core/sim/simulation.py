@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 import threading
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from time import monotonic
 from types import TracebackType
 from typing import Any
 
@@ -22,10 +22,12 @@ from .controls import Controls
 from .field import field_of, robot_at, start_named
 from .messages import Failed, Job, Message, Ready, Update
 from .options import SimOptions, check_speed
+from .pending import PendingCommands
 from .processes import RobotProcesses
 from .recording import Recording
 from .scene import Pose, Tag
 from .snapshot import Failure, Snapshot, Status
+from .time_state import TimeState
 
 #: So much of what a robot has printed is kept for whoever asks for it, in characters.
 _MOST_OUTPUT = 200_000
@@ -53,12 +55,19 @@ class Simulation(Controls):
         self._snapshot: Snapshot | None = None
         self._recording = Recording(self._first_script())
         self._older: list[Recording] = []
-        self._heard = time.monotonic()
+        self._heard = monotonic()
         self._launch = 0
         self._tags: tuple[Tag, ...] | None = None
         self._assembly = Assembly()
-        #: Where time is to stand still, as long as nobody says otherwise.
-        self._until_us = None if self.options.run_until is None else to_us(self.options.run_until)
+        # What the user wants is what the robot's process was last known to go by, and after that the commands that are
+        # pending. What is, is `Status.state`.
+        until_us = None if self.options.run_until is None else to_us(self.options.run_until)
+        self._time = TimeState(self.options.paused, until_us, speed=self.options.speed)
+        self._pending = PendingCommands()
+        #: Held while a command is sent or a process is launched, so that all threads' come in one order.
+        self._sending = threading.RLock()
+        #: Where the robot's process is to be brought to before it goes on.
+        self._forward_us = 0
         self._output = ""
         self._processes: RobotProcesses | None = None
 
@@ -73,9 +82,15 @@ class Simulation(Controls):
     def status(self) -> Status:
         """How the simulation goes."""
         status = self._status
-        if status.state == "running" and time.monotonic() - self._heard > _SILENCE:
+        if status.state == "running" and monotonic() - self._heard > _SILENCE:
             return replace(status, responding=False)
         return status
+
+    @property
+    def wants_to_run(self) -> bool:
+        """Whether robot time is to go on, by the commands so far: also while the robot starts, or has failed."""
+        with self._changed:
+            return not self._time_wanted.paused
 
     @property
     def recordings(self) -> tuple[InputScript, ...]:
@@ -104,7 +119,7 @@ class Simulation(Controls):
         if self._processes is None:
             self._processes = RobotProcesses(self._on_message, self._on_exit, self._on_output, self.options.fork)
             options = self.options
-            self._begin(self._recording, to_us(options.start_at), options.paused, self._until_us)
+            self._begin(self._recording, to_us(options.start_at), self._time)
             image = self.project.sim_config.field.image
             if image is not None and self.field.image is None:
                 self._note(f"sim/config.json: pyfrc.field.image: there is no file {image!r} in sim/. Correct the path.")
@@ -130,7 +145,6 @@ class Simulation(Controls):
 
     def resume(self) -> None:
         """Let time go on."""
-        self._until_us = None
         self._send(Run())
 
     def pause(self) -> None:
@@ -138,8 +152,7 @@ class Simulation(Controls):
         self._send(Pause())
 
     def step(self, packets: int = 1) -> None:
-        """Let so many packets' time pass, 0.02 s each, then pause."""
-        self._until_us = None
+        """Let so many packets' time pass, 0.02 s each, then pause. What is left of another step is added."""
         self._send(Run(packets=max(1, packets)))
 
     def run_for(self, seconds: float) -> None:
@@ -148,7 +161,6 @@ class Simulation(Controls):
 
     def run_until(self, seconds: float) -> None:
         """Pause when robot time gets there."""
-        self._until_us = to_us(seconds)
         self._send(Run(until_us=to_us(seconds)))
 
     def set_speed(self, factor: float) -> None:
@@ -164,22 +176,22 @@ class Simulation(Controls):
         if not self.options.recording:
             self._note("There is no way back: this simulation is not recorded.")
             return
-        with self._changed:
-            to = max(0, min(to_us(seconds), self._recording.length_us)) // PACKET_US * PACKET_US
-            self._keep_and_begin(self._recording.until(to), to, paused=self._status.state != "running")
+        with self._sending, self._changed:
+            to = max(0, min(to_us(seconds), self._moment_us)) // PACKET_US * PACKET_US
+            self._keep_and_begin(self._recording.until(to), to, self._time_wanted.continued_at(to))
 
     def restart(self) -> None:
         """Start the robot anew, at time 0. What was recorded is kept among `recordings`."""
-        with self._changed:
-            paused = self._status.state == "paused"
-            self._keep_and_begin(Recording(self._first_script()), to_us(self.options.start_at), paused)
+        with self._sending, self._changed:
+            to = to_us(self.options.start_at)
+            self._keep_and_begin(Recording(self._first_script()), to, self._time_wanted.continued_at(to))
 
     def reload(self) -> None:
         """Bring the robot, with its code as it is now, to this moment through the same inputs, and go on from there."""
         if not self.options.recording:
             self.restart()
             return
-        with self._changed:
+        with self._sending, self._changed:
             project = replace(self.project)
             try:
                 self.field = field_of(project)
@@ -188,9 +200,9 @@ class Simulation(Controls):
                 return
             self.project = project
             again = self._recording.again()
-            to = max([self._recording.length_us, *(step.at_us for step in again.past.steps[-1:])])
+            to = max([self._moment_us, *(step.at_us for step in again.past.steps[-1:])])
             former = self._assembly.trail
-            self._keep_and_begin(again, to, paused=self._status.state == "paused", keep=False)
+            self._keep_and_begin(again, to, self._time, self._pending.commands, keep=False)
             self._status = replace(self._status, former_trail=former)
 
     # -- where the robot is ---------------------------------------------------------------------------------------
@@ -235,26 +247,27 @@ class Simulation(Controls):
 
     # -- the robot's process --------------------------------------------------------------------------------------
 
-    def _keep_and_begin(self, recording: Recording, to_us: int, paused: bool, keep: bool = True) -> None:
+    def _keep_and_begin(
+        self, recording: Recording, to_us: int, time: TimeState, commands: tuple[Command, ...] = (), keep: bool = True
+    ) -> None:
         if self._processes is None or self._status.state == "closed":
             return
         if keep and self._recording.length_us > to_us:
             self._older.insert(0, self._recording)
         self._status = replace(self._status, former_trail=self._assembly.trail if keep else ())
-        if keep:  # else new code is to get as far as the old one was to
-            self._until_us = None
-        self._begin(recording, to_us, paused, self._until_us)
+        self._begin(recording, to_us, time, commands)
 
-    def _begin(self, recording: Recording, forward_to_us: int, paused: bool, until_us: int | None) -> None:
+    def _begin(
+        self, recording: Recording, forward_to_us: int, time: TimeState, commands: tuple[Command, ...] = ()
+    ) -> None:
         assert self._processes is not None
         options = self.options
         job = Job(
             project=replace(self.project),
             script=recording.past,
             forward_to_us=forward_to_us,
-            run_until_us=until_us,
-            paused=paused,
-            speed=self._status.speed,
+            time_state=time,
+            commands=commands,
             recording=options.recording,
             station=recording.station,
             nt_port=options.nt_port,
@@ -262,23 +275,41 @@ class Simulation(Controls):
             extensions=options.extensions,
             tags=self._tags,
         )
-        with self._changed:
+        with self._sending, self._changed:
             self._recording = recording
+            self._forward_us = forward_to_us
+            self._time, self._pending = time, PendingCommands(commands)
             self._assembly = Assembly()
-            self._heard = time.monotonic()
-            self._status = replace(self._status, state="starting", failure=None, note="")
+            self._heard = monotonic()
+            starts = self._status.starts + 1
+            self._status = replace(self._status, state="starting", failure=None, note="", starts=starts)
             self._launch = self._processes.launch(job)
             self._changed.notify_all()
 
     def _send(self, command: Command) -> None:
-        if self._processes is not None:
-            self._processes.send(command)
+        with self._sending:
+            with self._changed:
+                if self._processes is None or self._status.state == "closed":
+                    return
+                failed = self._status.state == "failed"
+                self._pending.add(command, sent=not failed)
+            if not failed:  # else the next process gets it
+                self._processes.send(command)
+
+    @property
+    def _time_wanted(self) -> TimeState:
+        return self._pending.time_after(self._time, self._moment_us + PACKET_US)
+
+    @property
+    def _moment_us(self) -> int:
+        """The moment that the robot is at, or is being brought to."""
+        return max(self._recording.length_us, self._forward_us)
 
     def _on_message(self, launch: int, message: Message) -> None:
         with self._changed:
             if launch != self._launch or self._status.state == "closed":
                 return
-            self._heard = time.monotonic()
+            self._heard = monotonic()
             if isinstance(message, Update):
                 self._take_in(message)
             elif isinstance(message, Ready):
@@ -320,11 +351,13 @@ class Simulation(Controls):
             self._recording.hear(update)
         else:
             self._recording.length_us = update.time_us
+        self._time = update.time_state
+        self._pending.settle(update.carried_out, update.recorded)
         self._snapshot = self._assembly.snapshot_after(update, self.field)
         self._status = replace(
             self._status,
-            state="paused" if update.paused else "running",
-            speed=update.speed,
+            state="paused" if update.time_state.paused else "running",
+            speed=update.time_state.speed,
             reached=update.reached,
             average=update.average,
             packet_seconds=update.packet_seconds,

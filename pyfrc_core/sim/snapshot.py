@@ -101,6 +101,7 @@ class Status:
     :param note: something that the user should know, such as why a command was not carried out
     :param responding: whether the robot's process has been heard of in the last second, while it should run
     :param former_trail: where the robot drove before the code was changed, or time turned back
+    :param starts: how many robot processes have been started until now
     :param network_address: where dashboards find NetworkTables, if they are served
     """
 
@@ -119,3 +120,4 @@ class Status:
     responding: bool = True
     former_trail: tuple[Point, ...] = ()
     network_address: str | None = None
+    starts: int = 0

@@ -79,7 +79,7 @@ class TimeBar:
 
     def toggle(self) -> None:
         """Pause, or go on."""
-        if self._simulation.status.state == "running":
+        if self._simulation.wants_to_run:
             self._simulation.pause()
         else:
             self._simulation.resume()

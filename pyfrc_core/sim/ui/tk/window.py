@@ -63,6 +63,8 @@ class Window:
         self._snapshot: Snapshot | None = None
         self._status: Status | None = None
         self._due, self._alarm = 0.0, ""
+        #: The robot process that the gamepads' states were sent to.
+        self._starts = 0
         #: What other threads have told the user, and is not shown yet.
         self._told: deque[str] = deque()
         #: What the field, the time bar and the simulation have to say; and what is shown of it.
@@ -174,7 +176,8 @@ class Window:
         simulation = self._simulation
         snapshot, status = simulation.snapshot, simulation.status
         if self.gamepads is not None:
-            if self._status is not None and self._status.state == "starting" != status.state:
+            if status.state != "starting" and status.starts != self._starts:
+                self._starts = status.starts
                 self.gamepads.tell_all_again()
             self.gamepads.poll()
         while self._told:

@@ -1,0 +1,174 @@
+"""A simulated robot's messages, what it printed, and its exit come in this order, whichever is late."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from multiprocessing.connection import Connection
+from typing import Any
+
+import pytest
+from conftest import MakeProject
+from sim_robots import PATIENCE, wait
+
+from pyfrc_core.project import Project
+from pyfrc_core.runtime.forks import FORK_IS_SAFE
+from pyfrc_core.sim import SimOptions, Simulation, output_pipe, processes, robot_channel
+from pyfrc_core.sim.messages import Failed
+from pyfrc_core.sim.robot_channel import RobotChannel
+
+FAILS = """
+    import ctypes
+    import os
+    import sys
+
+    import wpilib
+
+    LEAVES_A_CHILD = False
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            # As a C library forks: Python hears nothing of it.
+            if LEAVES_A_CHILD and ctypes.CDLL(None).fork() == 0:
+                ctypes.CDLL(None).pause()
+
+        def robotPeriodic(self):
+            print("the last words")
+            raise LookupError("the user's error")
+"""
+LEAVES_A_CHILD = FAILS.replace("LEAVES_A_CHILD = False", "LEAVES_A_CHILD = True")
+DIES = FAILS.replace('raise LookupError("the user\'s error")', "os._exit(3)")
+
+BOTH_WAYS = [False, pytest.param(True, marks=pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork"))]
+only_forked = pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork")
+
+
+@contextmanager
+def failed(make_project: MakeProject, robot: str, fork: bool | None = None) -> Iterator[Simulation]:
+    """A simulation whose robot has failed."""
+    project = Project(make_project({"robot.py": robot}).path / "robot.py")
+    with Simulation(project, SimOptions(speed=0, fork=fork)) as simulation:
+        wait(simulation, lambda: simulation.status.state == "failed")
+        yield simulation
+
+
+def see_the_users_error(simulation: Simulation) -> None:
+    failure = simulation.status.failure
+    assert failure is not None
+    assert failure.headline == "robot.py:18: LookupError: the user's error"
+    assert "the last words" in simulation.take_output()
+
+
+class Gate(threading.Event):
+    """What is late waits here."""
+
+    def hold(self) -> None:
+        assert self.wait(PATIENCE), "it was to come first, and waits itself"
+
+
+@pytest.fixture
+def exit_reported(monkeypatch: pytest.MonkeyPatch) -> Gate:
+    """Opened when the exit of a robot's process is reported."""
+    gate = Gate()
+    report = processes.RobotProcesses._exited
+
+    def exited(self: processes.RobotProcesses, number: int, status: int) -> None:
+        gate.set()
+        report(self, number, status)
+
+    monkeypatch.setattr(processes.RobotProcesses, "_exited", exited)
+    return gate
+
+
+def late(function: Callable[..., Any], gate: Gate) -> Callable[..., Any]:
+    def called_late(*arguments: Any) -> Any:
+        gate.hold()
+        return function(*arguments)
+
+    return called_late
+
+
+@pytest.mark.parametrize("fork", BOTH_WAYS)
+def test_the_exit_is_reported_before_a_message_is_read(
+    fork: bool, make_project: MakeProject, exit_reported: Gate, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(robot_channel, "receive", late(robot_channel.receive, exit_reported))
+    with failed(make_project, FAILS, fork) as simulation:
+        see_the_users_error(simulation)
+
+
+@pytest.mark.parametrize("fork", BOTH_WAYS)
+def test_the_exit_is_reported_before_the_connection_is_known(
+    fork: bool, make_project: MakeProject, exit_reported: Gate, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    introduced = processes.introduced
+
+    def introduced_late(connection: Connection) -> object:
+        who = introduced(connection)
+        if isinstance(who, int):
+            exit_reported.hold()
+        return who
+
+    monkeypatch.setattr(processes, "introduced", introduced_late)
+    with failed(make_project, FAILS, fork) as simulation:
+        see_the_users_error(simulation)
+
+
+def test_the_messages_are_read_before_the_exit_is_reported(
+    make_project: MakeProject, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gate = Gate()
+    fail = Simulation._fail
+
+    def failing(self: Simulation, failure: Any) -> None:
+        fail(self, failure)
+        gate.set()
+
+    monkeypatch.setattr(Simulation, "_fail", failing)
+    monkeypatch.setattr(RobotChannel, "ended", late(RobotChannel.ended, gate))
+    with failed(make_project, FAILS) as simulation:
+        see_the_users_error(simulation)
+
+
+@pytest.mark.parametrize("robot", [FAILS, DIES], ids=["fails", "dies"])
+def test_what_was_printed_is_read_late(
+    robot: str, make_project: MakeProject, exit_reported: Gate, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gate = Gate()
+
+    receive = robot_channel.receive
+
+    def receiving(connection: Connection) -> Any:
+        message = receive(connection)
+        if isinstance(message, Failed):
+            gate.set()
+        return message
+
+    monkeypatch.setattr(robot_channel, "receive", receiving)
+    monkeypatch.setattr(output_pipe, "read", late(output_pipe.read, gate if robot is FAILS else exit_reported))
+    with failed(make_project, robot) as simulation:
+        assert "the last words" in simulation.take_output()
+
+
+@only_forked
+def test_a_child_holds_the_connection_open(make_project: MakeProject) -> None:
+    with failed(make_project, LEAVES_A_CHILD) as simulation:
+        see_the_users_error(simulation)
+
+
+@only_forked
+def test_a_child_holds_the_connection_of_a_robot_that_dies_open(make_project: MakeProject) -> None:
+    with failed(make_project, LEAVES_A_CHILD.replace('raise LookupError("the user\'s error")', "os._exit(3)")) as dead:
+        assert dead.status.failure is not None
+        assert dead.status.failure.headline.startswith("robot.py:18: the robot's process ended itself with exit code 3")
+        assert "the last words" in dead.take_output()
+
+
+@only_forked
+def test_the_host_is_killed(make_project: MakeProject) -> None:
+    robot = FAILS.replace('raise LookupError("the user\'s error")', "os.kill(os.getppid(), 9)")
+    with failed(make_project, robot) as simulation:
+        assert simulation.status.failure is not None
+        assert "signal 9" in simulation.status.failure.headline
