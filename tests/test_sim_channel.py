@@ -70,15 +70,15 @@ class Gate(threading.Event):
 
 @pytest.fixture
 def exit_reported(monkeypatch: pytest.MonkeyPatch) -> Gate:
-    """Opened when the exit of a robot's process is reported."""
+    """Opened when the exit of a robot's process is known, and before anything is made of it."""
     gate = Gate()
-    report = processes.RobotProcesses._exited
+    wait_for_connections = processes.RobotProcesses._all_accepted
 
-    def exited(self: processes.RobotProcesses, number: int, status: int) -> None:
+    def known(self: processes.RobotProcesses) -> None:
         gate.set()
-        report(self, number, status)
+        wait_for_connections(self)
 
-    monkeypatch.setattr(processes.RobotProcesses, "_exited", exited)
+    monkeypatch.setattr(processes.RobotProcesses, "_all_accepted", known)
     return gate
 
 
