@@ -66,13 +66,17 @@ class FakeRobot:
             self.waiting.update(command.writes)
 
     def _tell(self) -> None:
-        nothing = dict.fromkeys(("drawings", "targets", "choosers", "robot"))
-        times = dict.fromkeys(("reached", "average", "loop_seconds", "worst_loop_seconds", "distance"), 0.0)
+        nothing: dict[str, object] = dict.fromkeys(("drawings", "targets", "choosers", "robot"))
+        times = dict.fromkeys(
+            ("reached", "average", "packet_seconds", "worst_packet_seconds", "worst_loop_seconds", "distance"), 0.0
+        )
+        nothing["base"], nothing["lines"] = dict(self.inputs), ()
         self.outbox.append(
             Update(
                 time_us=self.now_us, mode="disabled", station=StationState(), time_state=self.time,
-                carried_out=self.carried_out, recorded=self.recorded, overruns=0, base=dict(self.inputs), lines=(),
-                trail=(), mode_seconds={}, steps_from=0, steps=tuple(self.steps), notes=(), **nothing, **times,
+                carried_out=self.carried_out, recorded=self.recorded, overruns=0, late_packets=0,
+                trail=(), mode_seconds={}, steps_from=0, steps=tuple(self.steps), notes=(),
+                **nothing, **times,
             )  # type: ignore[arg-type]
         )  # fmt: skip
 
