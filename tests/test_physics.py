@@ -162,7 +162,7 @@ def test_the_offset_is_seen_from_the_robot() -> None:
     assert controller(0, 0, 90).get_offset(0, 2) == pytest.approx((2, 0))
 
 
-# -- only while enabled --------------------------------------------------------------------------------------------
+# -- while the robot is not enabled --------------------------------------------------------------------------------
 
 
 def stop_in_an_emergency() -> None:
@@ -174,22 +174,16 @@ def stop_in_an_emergency() -> None:
     [lambda: modes.set_mode(enabled=False), lambda: hs.setDriverStationDsAttached(False), stop_in_an_emergency],
     ids=["disabled", "no driver station", "emergency stop"],
 )
-def test_a_robot_that_is_not_enabled_does_not_drive(stop: Callable[[], None]) -> None:
+def test_a_robot_that_is_not_enabled_rolls_on(stop: Callable[[], None]) -> None:
+    """In all ways to move it: physics that set encoders by the wheels' speed move the pose with them."""
     stop()
+    for drive in drives(5, 0, 0):
+        robot = controller(10, 10)
+        drive(robot, 2)
+        assert robot.get_position() == pytest.approx((20, 10, 0))
     robot = controller(10, 10)
-    robot.drive(5, 1, 1)
-    robot.vector_drive(1, 2, 3, 1)
     robot.distance_drive(1, 2, 3)
-    robot.drive(drivetrains.DriveVector(1, 1, 1), 1)
-    assert robot.get_position() == (10, 10, 0)
-
-
-def test_in_metres_a_disabled_robot_rolls_on() -> None:
-    """As today's does."""
-    modes.set_mode(enabled=False)
-    robot = controller(10, 10)
-    robot.drive(ChassisSpeeds(FOOT, 0, 0), 2)
-    assert robot.get_position() == pytest.approx((12, 10, 0))
+    assert robot.get_position() == pytest.approx((11, 12, 3))
 
 
 def test_an_engine_may_place_a_disabled_robot() -> None:

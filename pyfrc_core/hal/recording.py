@@ -37,7 +37,7 @@ class Recording:
         self._kinds = [(kind, [slot.get for slot in kind.initialized()]) for kind in KINDS]
         slots = [slot for kind in KINDS for slot in kind.initialized()]
         slots += [*tree.modules.initialized(), tree["accelerometer"]._slot("active")]
-        self._made = _Made(slots)
+        self._made = MadeDevices(slots)
         self._state: Any = None
         self._here: list[str] = []
         self._reads: list[Callable[[], Any]] = []
@@ -123,7 +123,7 @@ class _AtRest:
         return self.paths != before
 
 
-class _Made:
+class MadeDevices:
     """Which devices there are, without asking for each of the hundreds that may be.
 
     The HAL notes when one is made; it forgets to, once a device's data have been reset, so those that are there are

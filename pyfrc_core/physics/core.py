@@ -14,7 +14,7 @@ from wpimath.kinematics import ChassisSpeeds
 from ..config.in_effect import config_of
 from ..config.sim import SimConfig
 from ..errors import RobotCodeError
-from ..hal import HalData, modes
+from ..hal import HalData
 from .drivetrains import DriveVector
 from .parameters import ParameterError
 from .pose import METRES_PER_FOOT, Pose, along_arc
@@ -54,6 +54,8 @@ class PhysicsEngine:
 
     def update_sim(self, hal_data: HalData, now: float, tm_diff: float) -> None:
         """Called every 20 ms of robot time, when the robot's loop has run (every 10 ms for robots with faster loops).
+
+        While the robot is disabled, outputs read as off, whatever its code sets.
 
         :param hal_data: the robot's inputs and outputs
         :param now: the robot's time, in seconds
@@ -118,11 +120,10 @@ class PhysicsInterface:
         rotation_speed: float | None = None,
         tm_diff: float | None = None,
     ) -> Pose2d:
-        """Move the robot with constant velocities; only while it is enabled.
+        """Move the robot with constant velocities; also while it is disabled, as a robot that rolls on does.
 
         Also ``drive(answer, tm_diff)`` with what the drivetrain functions for mecanum and swerve answer. And
-        ``drive(ChassisSpeeds, tm_diff)``, as since 2020: in metres and counter-clockwise, also while the robot is
-        disabled, as one that rolls on is; gyros are left to you.
+        ``drive(ChassisSpeeds, tm_diff)``, as since 2020: in metres and counter-clockwise; gyros are left to you.
 
         :param speed: the robot's speed forward, in ft/s
         :param rotation_speed: clockwise, in radians/s
@@ -146,7 +147,7 @@ class PhysicsInterface:
         return self._drive(speed, 0.0, rotation_speed, tm_diff)
 
     def vector_drive(self, vx: float, vy: float, vw: float, tm_diff: float) -> None:
-        """Move the robot with a constant velocity vector relative to it; only while it is enabled.
+        """Move the robot with a constant velocity vector relative to it.
 
         :param vx: speed to the robot's right, in ft/s
         :param vy: speed forward, in ft/s
@@ -156,15 +157,14 @@ class PhysicsInterface:
         self._drive(vy, vx, vw, tm_diff)
 
     def distance_drive(self, x: float, y: float, angle: float) -> None:
-        """Move the robot some distance, as seen from where it is, then turn it; only while it is enabled.
+        """Move the robot some distance, as seen from where it is, then turn it.
 
         :param x: feet forward
         :param y: feet to the right
         :param angle: radians, clockwise
         """
-        if modes.is_enabled():
-            self._move(x, y, angle)
-            self._turn_analog_gyros(angle)
+        self._move(x, y, angle)
+        self._turn_analog_gyros(angle)
 
     def get_position(self) -> tuple[float, float, float]:
         """Where the robot is: (x, y, angle) in feet and radians; the angle goes on counting beyond a full turn."""
@@ -230,8 +230,6 @@ class PhysicsInterface:
     # -- the pose ------------------------------------------------------------------------------------------------
 
     def _drive(self, forward: float, right: float, turning: float, time: float) -> Pose2d:
-        if not modes.is_enabled():
-            return self.get_pose()
         turn = turning * time
         pose = self._move_along(forward * time, right * time, turn)
         self._turn_analog_gyros(turn)

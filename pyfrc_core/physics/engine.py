@@ -11,6 +11,7 @@ from typing import Any
 import wpilib
 from wpimath.geometry import Pose2d
 
+from ..hal import modes
 from ..project import Project
 from ..runtime.clock import PACKET_US, PHYSICS, to_us
 from ..runtime.robot import RobotRun
@@ -148,12 +149,14 @@ class Physics:
         if last_us >= now_us:  # a test has set the time back
             last_us = now_us - self._period_us
         now, tm_diff = now_us / 1_000_000, (now_us - last_us) / 1_000_000
+        arguments = (run.hal_data, now, tm_diff) if self._module.takes_hal_data else (now, tm_diff)
         self._updating = True
         try:
-            if self._module.takes_hal_data:
-                self.engine.update_sim(run.hal_data, now, tm_diff)
+            if modes.is_enabled():
+                self.engine.update_sim(*arguments)
             else:
-                self.engine.update_sim(now, tm_diff)
+                with run.output_gate.closed_while_disabled():
+                    self.engine.update_sim(*arguments)
         finally:
             self._updating = False
         self.controller.update_rates(tm_diff)

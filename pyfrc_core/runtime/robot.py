@@ -19,6 +19,7 @@ import wpilib
 
 from ..errors import RobotCodeError
 from ..hal import HalData, devices_exist, modes, timing
+from ..hal.output_gate import OutputGate
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .data_logs import DataLogs, LogPlace
@@ -27,6 +28,7 @@ from .loop_watchdog import LoopOverruns, end_wpilibs_thread
 from .motor_safety import MotorSafetyCheck
 from .notifier import Alarms
 from .redirect import redirection
+from .simulation_periodic import gate_robot, gate_subsystems
 from .threads import RobotThread, RobotThreads
 from .timed_loop import TimedLoop
 
@@ -96,6 +98,7 @@ class RobotRun:
             endCompetition(self.robot)
         elif self.initializes and self.when_initialized:
             self._listen_for_initialization()
+        gate_robot(self)
         for listener in self.when_constructed:
             listener()
         return self.robot
@@ -109,6 +112,7 @@ class RobotRun:
 
     def _on_initialized(self) -> None:
         __tracebackhide__ = True
+        gate_subsystems(self)
         for listener in self.when_initialized:
             listener()
 
@@ -131,6 +135,11 @@ class RobotRun:
         # What was written for a gyro before the robot made it, reaches it then.
         self.clock.before_packet.append(lambda now: tree.sync())
         return tree
+
+    @cached_property
+    def output_gate(self) -> OutputGate:
+        """What turns outputs off while physics look at a robot that is disabled."""
+        return OutputGate()
 
     @property
     def alive(self) -> bool:

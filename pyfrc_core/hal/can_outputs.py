@@ -1,0 +1,149 @@
+"""The outputs of CAN motor controllers, which their vendors' libraries show as values of SimDevices.
+
+A SimDevice has no mark for "this drives the motor", so names decide. Seen with REV's library (``SPARK MAX [5]``:
+``Setpoint``, ``Applied Output``) and CTRE's (``CANMotor:Talon FX (v6)[3]``: ``dutyCycle``, ``motorVoltage``).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any, NamedTuple
+
+import hal
+from hal import simulation as hs
+from wpilib.simulation import SimDeviceSim
+
+#: A motor controller by its device's name, and what is beside one on the bus.
+_MOTOR = re.compile(r"motor|talon|victor|spark|venom|nova|titan|jaguar", re.IGNORECASE)
+_NO_MOTOR = re.compile(r"encoder|sensor|switch|limit|gyro|imu|candio|canain", re.IGNORECASE)
+
+# Names in small letters, without spaces.
+#: What can only be what a motor gets.
+_OUTPUTS = {
+    "appliedoutput",
+    "appliedvoltage",
+    "motoroutput",
+    "motoroutputleadvoltage",
+    "motorvoltage",
+    "outputpercent",
+    "outputvoltage",
+    "percentoutput",
+    "throttle",
+}
+#: What is an output in a motor controller, when only the robot's code writes it.
+_COMMANDS = {
+    "arbitraryfeedforward",
+    "command",
+    "demand",
+    "dutycycle",
+    "output",
+    "percent",
+    "power",
+    "set",
+    "speed",
+    "value",
+    "velocity",
+    "voltage",
+}
+_SETPOINT, _MODE = "setpoint", "controlmode"
+#: REV's control modes in which a setpoint is a position: a motor that is off does not go to 0.
+_POSITION_MODES = (3, 5)
+
+
+class _Output(NamedTuple):
+    raw: hal.SimValue
+    get: Callable[[], Any]
+    put: Callable[[Any], None]
+    #: Whether the value is a position to go to.
+    is_position: Callable[[], bool] | None
+
+
+class CanOutputs:
+    """The outputs of all CAN motor controllers there are."""
+
+    def __init__(self) -> None:
+        self._names: list[str] = []
+        self._handles: list[tuple[str, int]] = []
+        self._outputs: list[_Output] = []
+
+    def turn_off(self) -> Iterator[Callable[[], None]]:
+        """Turn off what is on.
+
+        :returns: what restores it, each
+        """
+        names = SimDeviceSim.enumerateDevices("")
+        if names != self._names or any(hs.getSimDeviceHandle(name) != handle for name, handle in self._handles):
+            self._names = names
+            self._find()
+        for output in self._outputs:
+            value = output.get()
+            if value and (output.is_position is None or not output.is_position()):
+                output.put(type(value)(0))
+                yield _Written(output, value).restore
+
+    def _find(self) -> None:
+        self._handles, self._outputs = [], []
+        for name in self._names:
+            found = list(_outputs_of(name))
+            if found:
+                self._outputs += found
+                self._handles.append((name, hs.getSimDeviceHandle(name)))
+
+
+class _Written:
+    """An output that is turned off, and whether something writes it meanwhile: as a vendor's model does."""
+
+    def __init__(self, output: _Output, before: Any) -> None:
+        self._output, self._before = output, before
+        self._written = False
+        # Called for every write, also for one of the same value.
+        self._watch: object = hs.registerSimValueChangedCallback(output.raw, self._note, False)
+
+    def _note(self, *_: object) -> None:
+        self._written = True
+
+    def restore(self) -> None:
+        self._watch = None
+        if not self._written:
+            self._output.put(self._before)
+
+
+def _outputs_of(name: str) -> Iterator[_Output]:
+    device = SimDeviceSim(name)
+    is_motor = bool(_MOTOR.search(name)) and not _NO_MOTOR.search(name)
+    values = [value for value, _ in device.enumerateValues()]
+    mode = next((value for value in values if _plain(value) == _MODE), None)
+    for value in values:
+        raw, what = device.getValue(value), _plain(value)
+        if raw.type == hal.Type.DOUBLE:
+            access: Any = device.getDouble(value)
+        elif raw.type == hal.Type.INT:
+            access = device.getInt(value)
+        else:
+            continue
+        if what in _OUTPUTS or (what in _COMMANDS and is_motor and _only_robot_writes(raw)):
+            yield _Output(raw, access.get, access.set, None)
+        elif what == _SETPOINT and (is_motor or _only_robot_writes(raw)):
+            yield _Output(raw, access.get, access.set, None if mode is None else partial(_is_position, device, mode))
+
+
+def _only_robot_writes(raw: hal.SimValue) -> bool:
+    """`enumerateValues` says so of values for both directions, too; a callback is given which direction it is."""
+    directions: list[int] = []
+    hs.registerSimValueChangedCallback(raw, lambda _n, _h, direction, _v: directions.append(int(direction)), True)
+    return directions == [hal.SimDevice.Direction.kOutput.value]
+
+
+def _is_position(device: SimDeviceSim, mode: str) -> bool:
+    raw = device.getValue(mode)
+    if raw.type == hal.Type.ENUM:
+        value = device.getEnum(mode)
+        options = SimDeviceSim.getEnumOptions(value)
+        return re.search("position|motion", options[value.get()], re.IGNORECASE) is not None
+    return raw.type == hal.Type.INT and device.getInt(mode).get() in _POSITION_MODES
+
+
+def _plain(name: str) -> str:
+    return name.replace(" ", "").lower()

@@ -1,0 +1,53 @@
+"""Robot code's own physics: `_simulationPeriodic` of a robot, and `simulationPeriodic` of its subsystems.
+
+They see outputs as ``physics.py`` does: those of a robot that is disabled are off.
+"""
+
+from __future__ import annotations
+
+import sys
+import weakref
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import wpilib
+
+from ..hal import modes
+
+if TYPE_CHECKING:
+    from ..hal.output_gate import OutputGate
+    from .robot import RobotRun
+
+
+def gate_robot(run: RobotRun) -> None:
+    """Have the robot's `_simulationPeriodic` see the outputs of a disabled robot as off."""
+    robot = run.robot
+    own = getattr(type(robot), "_simulationPeriodic", None)
+    if own is not None and own is not wpilib.IterativeRobotBase._simulationPeriodic:
+        robot._simulationPeriodic = _gated(robot, "_simulationPeriodic", lambda: run.output_gate)
+
+
+def gate_subsystems(run: RobotRun) -> None:
+    """The same for the subsystems that are there when `robotInit` is over."""
+    commands2 = sys.modules.get("commands2")
+    if commands2 is None:
+        return
+    # There is no public way to ask for them.
+    for subsystem in commands2.CommandScheduler.getInstance()._subsystems:
+        if type(subsystem).simulationPeriodic is not commands2.Subsystem.simulationPeriodic:
+            subsystem.simulationPeriodic = _gated(subsystem, "simulationPeriodic", lambda: run.output_gate)
+
+
+def _gated(owner: Any, name: str, gate: Callable[[], OutputGate]) -> Callable[[], None]:
+    reference = weakref.ref(owner)  # or it would hold on to itself
+
+    def simulate() -> None:
+        __tracebackhide__ = True
+        owner = reference()
+        if modes.is_enabled():
+            getattr(type(owner), name)(owner)
+        else:
+            with gate().closed_while_disabled():
+                getattr(type(owner), name)(owner)
+
+    return simulate
