@@ -42,10 +42,16 @@ def project_options(command: Function) -> Function:
 
 
 def chosen_project(directory: Path | None, main: Path | None, robot_class: str | None) -> Project:
-    """The project that the options choose."""
+    """The project that the options choose.
+
+    :raises ProjectError: also when one of its files hides a library
+    """
+    from pyfrc_core.hidden_libraries import refuse_hidden_libraries
     from pyfrc_core.project import find_project
 
-    return find_project(directory, main, robot_class)
+    project = find_project(directory, main, robot_class)
+    refuse_hidden_libraries(project.root, project.main_file)
+    return project
 
 
 def from_here(file: Path) -> str:

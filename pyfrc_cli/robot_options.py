@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from .loudness import loudness
-from .project_options import chosen_project
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,9 +58,10 @@ def project_if_any(
 ) -> Project | None:
     """The project; none where nothing names one, there is none here, and the options name the robot."""
     from pyfrc_core.errors import ProjectError
+    from pyfrc_core.project import find_project
 
     try:
-        return chosen_project(directory, main, robot_class)
+        return find_project(directory, main, robot_class)
     except ProjectError as error:
         if directory is not None or main is not None:
             raise

@@ -15,6 +15,7 @@ _RUN_ROBOTS = {"create-physics", "fuzz", "replay", "test"}
 
 def main() -> None:
     """The entry point."""
+    _leave_out_the_users_modules()
     if "PYTHONHASHSEED" not in os.environ and _RUN_ROBOTS.intersection(sys.argv[1:]):
         _start_again()
     try:
@@ -24,6 +25,19 @@ def main() -> None:
     except KeyboardInterrupt:  # while it was still being imported: after that, `run` says it
         print("interrupted", file=sys.stderr)
         sys.exit(2)
+
+
+def _leave_out_the_users_modules() -> None:
+    """Take the current directory off Python's path, where ``python -m pyfrc`` has put it.
+
+    A `random.py` beside robot.py would otherwise be imported by our own libraries, before it can be found and named.
+    """
+    if getattr(sys.flags, "safe_path", False) or not sys.path:
+        return
+    # Without pathlib, which imports modules that the user's may hide.
+    here = os.getcwd()  # noqa: PTH109
+    if sys.path[0] in ("", here) and not __file__.startswith(os.path.join(here, "pyfrc_cli", "")):  # noqa: PTH118
+        del sys.path[0]
 
 
 def _start_again() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import sys
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +15,9 @@ from warnings import warn_explicit
 
 from .config.findings import SettingsWarning, settings_error
 from .config.settings import Settings, load_settings
+from .encoding import find_wrong_encoding
 from .errors import ProjectError, RobotCodeError, text_of
+from .keyboard_input import refuse_keyboard_input
 from .robot_files import RobotFiles
 
 if TYPE_CHECKING:
@@ -23,8 +26,14 @@ if TYPE_CHECKING:
 
 MAIN_FILE = "robot.py"
 
+#: So many projects are named of those in a directory that is none itself.
+MOST_NAMED = 5
+
 #: The modules whose robot classes are there to be derived from.
 _LIBRARIES = ("wpilib", "commands2", "magicbot")
+
+#: In what Python says of a file that it cannot decode.
+_OF_ENCODING = re.compile(r"null bytes|Non-UTF-8|codec can't decode")
 
 
 @dataclass(frozen=True)
@@ -128,32 +137,62 @@ class Project:
             raise ProjectError("this is not a Python file", where=where)
         module = importlib.util.module_from_spec(specification)
         sys.modules[name] = module
-        from .runtime.endings import TestFroze
         from .runtime.watchdog import importing
 
+        refuse_keyboard_input(self.files)
         try:
             with importing(self.files, self.settings.test.hang_seconds):
                 specification.loader.exec_module(module)
-        except SyntaxError as error:
+        except (SyntaxError, UnicodeDecodeError, ValueError) as error:
             del sys.modules[name]
-            place = f"{self.files.relative(error.filename or where)}:{error.lineno}"
+            self._explain_encoding(file, error)
+            if not isinstance(error, SyntaxError):
+                raise self._failed_import(file, error) from error
+            place = self.files.relative(error.filename or where) + (f":{error.lineno}" if error.lineno else "")
             text = f"\n    {error.text.strip()}" if error.text else ""
             raise RobotCodeError(f"SyntaxError: {error.msg}{text}", where=place) from error
+        except RobotCodeError:  # it names its place
+            del sys.modules[name]
+            raise
         except BaseException as error:
             del sys.modules[name]
-            place = self.files.innermost_line(error.__traceback__) or where
-            remedy = "This happens while the file is imported."
-            if isinstance(error, TestFroze):
-                remedy += " Is it an endless loop? If it only takes long: hang_seconds under [tool.pyfrc.test]."
-                raise RobotCodeError(str(error), where=place, remedy=remedy) from error
-            if isinstance(error, SystemExit):
-                remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
-            elif isinstance(error, ModuleNotFoundError):
-                remedy += " Is the name right, and its package installed?"
-                if (self.root / "requirements.txt").is_file():
-                    remedy += " Your project's packages: python -m pip install -r requirements.txt"
-            raise RobotCodeError(text_of(error), where=place, remedy=remedy) from error
+            raise self._failed_import(file, error) from error
         return module
+
+    def _failed_import(self, file: Path, error: BaseException) -> RobotCodeError:
+        """What the program raised while it was imported, with its line and what to do."""
+        from .hidden_libraries import find_hidden_by_any_name
+        from .runtime.endings import TestFroze
+
+        place = self.files.innermost_line(error.__traceback__) or file.name
+        remedy = "This happens while the file is imported."
+        if isinstance(error, TestFroze):
+            remedy += " Is it an endless loop? If it only takes long: hang_seconds under [tool.pyfrc.test]."
+            return RobotCodeError(str(error), where=place, remedy=remedy)
+        if isinstance(error, SystemExit):
+            remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
+        elif isinstance(error, ModuleNotFoundError):
+            remedy += " Is the name right, and its package installed?"
+            if (self.root / "requirements.txt").is_file():
+                remedy += " Your project's packages: python -m pip install -r requirements.txt"
+        if isinstance(error, (ImportError, AttributeError)):
+            for hidden in find_hidden_by_any_name(self.root, self.main_file):
+                remedy += f" {hidden.text}. {hidden.remedy}"
+        return RobotCodeError(text_of(error), where=place, remedy=remedy)
+
+    def _explain_encoding(self, file: Path, error: Exception) -> None:
+        """:raises RobotCodeError: when the import failed because a file of the program is not in UTF-8"""
+        if _OF_ENCODING.search(str(error)) is None:
+            return
+        named = Path(getattr(error, "filename", None) or "")
+        # Python does not always name the file.
+        for suspect in [named] if named.is_file() else [file, *sorted(self.root.rglob("*.py"))]:
+            if not self.files.is_robot_code(str(suspect)):
+                continue
+            wrong = find_wrong_encoding(suspect)
+            if wrong is not None:
+                place = self.files.relative(str(suspect)) + (f":{wrong.line}" if wrong.line else "")
+                raise RobotCodeError(wrong.message, where=place, remedy=wrong.remedy) from error
 
     def _choose_class(self, module: ModuleType) -> type[Any]:
         import wpilib
@@ -249,6 +288,14 @@ def _project_in(directory: Path, class_name: str | None) -> Project | None:
 
 
 def _nothing_found(directory: Path, how: str) -> ProjectError:
+    below = _projects_below(directory)
+    if below:
+        first = below[0].as_posix()
+        also = f" (or {', '.join(f'./{each.as_posix()}' for each in below[1:])})" if len(below) > 1 else ""
+        return ProjectError(
+            f"there is no {MAIN_FILE} {how} {directory}, but there is one in ./{first}{also}",
+            remedy=f"Go there with: cd {first}. Or name it with: --project {first}",
+        )
     nearly = next((file.name for file in directory.glob("*.py") if file.name.lower() == MAIN_FILE), None)
     return ProjectError(
         f"no robot project found: there is no {MAIN_FILE} {how} {directory}"
@@ -256,3 +303,12 @@ def _nothing_found(directory: Path, how: str) -> ProjectError:
         remedy="Go to your project's directory, name it with --project DIR, name the file with --main FILE, "
         "or make a new project with: pyfrc init",
     )
+
+
+def _projects_below(directory: Path) -> list[Path]:
+    """The directories in this one that hold a robot project, as in a repository with several of them."""
+    try:
+        found = sorted(file.parent for file in directory.glob(f"*/{MAIN_FILE}") if file.is_file())
+    except OSError:
+        return []
+    return [each.relative_to(directory) for each in found if not each.name.startswith(".")][:MOST_NAMED]

@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import sys
+from codecs import BOM_UTF8
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from packaging.requirements import InvalidRequirement, Requirement
 
-from ..errors import PyfrcError
+from ..config.settings import parse_toml, read_toml
+from ..errors import PyfrcError, SettingsError
+from ..hidden_libraries import find_hidden_libraries
 from ..project import Project
 from ..runtime.apart import run_apart
 from .findings import Finding, hint, ok, problem
-from .imports import MODULES
 from .installed import Installed, fits
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 if TYPE_CHECKING:
     from ..runtime.own_process import LastWords
-
-_LIBRARIES = {*MODULES.values(), "hal", "ntcore", "wpimath", "wpiutil", "wpinet", "cscore", "pyfrc", "pytest", "numpy"}
 
 
 def examine_project(project: Project, installed: Installed) -> Iterator[Finding]:
@@ -56,30 +50,27 @@ def problem_of(topic: str, error: PyfrcError | OSError, otherwise: str) -> Findi
 
 def _hidden_libraries(project: Project) -> Iterator[Finding]:
     """Files of the project by whose names Python would miss a library."""
-    for library in sorted(_LIBRARIES | sys.stdlib_module_names):
-        for file in (project.root / f"{library}.py", project.root / library / "__init__.py"):
-            if file.is_file():
-                name = file.relative_to(project.root).as_posix()
-                yield problem(
-                    "project",
-                    f"{name} hides a library: import {library} finds it instead",
-                    f"Give {name} another name.",
-                )
+    for hidden in find_hidden_libraries(project.root, project.main_file):
+        yield problem("project", hidden.text, hidden.remedy)
 
 
 def _asked_for(project: Project, installed: Installed) -> Iterator[Finding]:
     """What ``[tool.robotpy]`` asks for, and is not here."""
     if not project.pyproject.is_file():
         return
+    name = project.pyproject.name
     try:
-        tools: Any = tomllib.loads(project.pyproject.read_text("utf-8-sig")).get("tool", {})
-    except ValueError as malformed:
-        yield problem("project", f"{project.pyproject.name}: {malformed}", "Correct it there.")
+        tools: Any = parse_toml(project.pyproject, read_toml(project.pyproject)).get("tool", {})
+    except SettingsError as malformed:
+        yield problem_of("project", malformed, "Correct it there.")
         return
+    if project.pyproject.read_bytes().startswith(BOM_UTF8):
+        text = f"{name} begins with a byte-order mark, which robotpy and plain pytest do not read"
+        yield hint("project", text, "Save it as UTF-8 without a byte-order mark (VS Code: UTF-8, not UTF-8 with BOM).")
     robotpy = tools.get("robotpy") if isinstance(tools, dict) else None
     if not isinstance(robotpy, dict):
         return
-    name, wpilib, version = project.pyproject.name, installed.get("wpilib"), robotpy.get("robotpy_version")
+    wpilib, version = installed.get("wpilib"), robotpy.get("robotpy_version")
     if isinstance(version, str) and wpilib is not None and version != wpilib.version:
         yield hint(
             "project",

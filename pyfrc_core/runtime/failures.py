@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from types import ModuleType
+from types import CodeType, ModuleType
 
 from ..errors import PyfrcError, RobotCodeError, UsageError, text_of
 from ..robot_files import RobotFiles, is_pyfrc
@@ -35,9 +35,14 @@ def headline(error: BaseException, files: RobotFiles) -> str | None:
     """``robot.py:12: ZeroDivisionError: division by zero``, if the user's code took part in it."""
     if names_its_place(error) or (isinstance(error, TestFroze) and str(error)):
         return str(error)
+    method = _method_of(error, files)
+    if method is not None and _lacks_self(method, error):
+        return f"{_line_of(method, files)}: {_without_self(method)}"
     traceback = error.__traceback__
     line = (
-        files.innermost_line(traceback, tests=False) or _line_of_method(error, files) or files.innermost_line(traceback)
+        files.innermost_line(traceback, tests=False)
+        or (method and _line_of(method, files))
+        or files.innermost_line(traceback)
     )
     return f"{line}: {text_of(error)}" if line else None
 
@@ -61,14 +66,34 @@ def _ours(entry: re.Match[str], files: RobotFiles) -> str:
     return entry[0] if files.is_project_file(entry[1]) else ""
 
 
-def _line_of_method(error: BaseException, files: RobotFiles) -> str | None:
-    """The line of a method that WPILib could not even call, as when its `self` was forgotten."""
+def _method_of(error: BaseException, files: RobotFiles) -> CodeType | None:
+    """The robot's method that could not even be called, as when its `self` was forgotten."""
     found = re.match(r"TypeError: (\w+)\.(\w+)\(\) (?:takes|missing|got)", text_of(error))
     if found is None:
         return None
     for module in list(sys.modules.values()):
         owner = vars(module).get(found[1]) if isinstance(module, ModuleType) else None
-        code = getattr(getattr(owner, found[2], None), "__code__", None)
-        if code is not None and files.is_robot_code(code.co_filename):
-            return f"{files.relative(code.co_filename)}:{code.co_firstlineno}"
+        function = vars(owner).get(found[2]) if isinstance(owner, type) else None
+        code = getattr(function, "__code__", None)  # a static method has none
+        if isinstance(code, CodeType) and files.is_robot_code(code.co_filename):
+            return code
     return None
+
+
+def _line_of(method: CodeType, files: RobotFiles) -> str:
+    return f"{files.relative(method.co_filename)}:{method.co_firstlineno}"
+
+
+def _lacks_self(method: CodeType, error: BaseException) -> bool:
+    """Whether it was called with one argument more than it takes, and its first parameter is no `self`."""
+    counts = re.search(r"takes (\d+) positional arguments? but (\d+) w", str(error))
+    if counts is None or int(counts[2]) != int(counts[1]) + 1:
+        return False
+    return method.co_varnames[: method.co_argcount][:1] not in {("self",), ("cls",), ("this",)}
+
+
+def _without_self(method: CodeType) -> str:
+    written = ", ".join(method.co_varnames[: method.co_argcount])
+    corrected = ", ".join(["self", *method.co_varnames[: method.co_argcount]])
+    name = method.co_name
+    return f"the method {name}({written}) has no parameter self: write def {name}({corrected}):"

@@ -35,8 +35,10 @@ def _where_tests_are(config: pytest.Config) -> list[Path]:
 def _holds_robot(directory: Path) -> bool:
     """Whether this is a robot project: its robot.py is one of a robot, or its settings name another."""
     main, settings = directory / "robot.py", directory / "pyproject.toml"
-    if main.is_file() and any(library in main.read_text("utf-8", "replace") for library in _LIBRARIES):
-        return True
+    if main.is_file():
+        text = main.read_text("utf-8", "replace").replace("\0", "")  # of UTF-16, every second byte
+        if any(library in text for library in _LIBRARIES):
+            return True
     return settings.is_file() and "[tool.pyfrc" in settings.read_text("utf-8", "replace")
 
 
@@ -44,12 +46,14 @@ def _register(config: pytest.Config, directory: Path) -> None:
     import pytest
 
     from ..errors import PyfrcError
+    from ..hidden_libraries import refuse_hidden_libraries
     from ..project import find_project
     from .isolation.loop import IsolatedTests
     from .pytest_plugin import PyFrcPlugin
 
     try:
         project = find_project(directory)
+        refuse_hidden_libraries(project.root, project.main_file)
         plugin = PyFrcPlugin(None, project.main_file, project.root, project=project)
     except PyfrcError as error:
         raise pytest.UsageError(str(error)) from None

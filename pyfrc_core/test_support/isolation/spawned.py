@@ -57,6 +57,7 @@ def main() -> None:
     from ..pytest_plugin import PyFrcPlugin
 
     project = Project(Path(job["main_file"]), job["class_name"])
+    _ = project.settings  # before pytest reads the same pyproject.toml, which may begin with a byte-order mark
     plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=job["options"])
     status = pytest.main(job["args"], plugins=[plugin, OnlyOneTest(job, plugin)])
     save_here()

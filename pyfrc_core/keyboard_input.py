@@ -1,0 +1,38 @@
+"""``input()`` in robot code: refused with the line, since a robot has no keyboard and would wait for ever."""
+
+from __future__ import annotations
+
+import builtins
+import sys
+from typing import TYPE_CHECKING
+
+from .errors import RobotCodeError
+
+if TYPE_CHECKING:
+    from .robot_files import RobotFiles
+
+_real_input = builtins.input
+_files: list[RobotFiles] = []
+
+
+def refuse_keyboard_input(files: RobotFiles) -> None:
+    """Have ``input()`` raise an error when it is called from one of these files; others read as before.
+
+    Calling it again only changes the files.
+    """
+    _files[:] = [files]
+    builtins.input = _input
+
+
+def _input(prompt: object = "", /) -> str:
+    __tracebackhide__ = True
+    caller = sys._getframe(1)
+    filename = caller.f_code.co_filename
+    if not any(files.is_robot_code(filename) for files in _files):
+        return _real_input(prompt)
+    raise RobotCodeError(
+        "input() waits for a keyboard, and a robot has none",
+        where=f"{_files[0].relative(filename)}:{caller.f_lineno}",
+        remedy="Ask the driver station instead: a wpilib.SendableChooser or SmartDashboard to choose, "
+        "a joystick or gamepad to drive.",
+    )
