@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from conftest import MakeProject, Result
 from test_failures import ANY_TEST, ROBOT
@@ -30,7 +32,7 @@ def test_a_file_that_hides_a_library_is_named_before_it_is_imported(make_project
 
 
 @pytest.mark.parametrize(
-    "command", ["sim --ui none --seconds 1", "fuzz --runs 1", "replay x.jsonl", "deploy", "profile test", "--pytest"]
+    "command", ["sim --ui none --seconds 1", "fuzz --runs 1", "replay x.jsonl", "deploy", "--pytest"]
 )
 def test_each_command_that_runs_the_robot_names_such_a_file(make_project: MakeProject, command: str) -> None:
     project = make_project({"robot.py": ROBOT, **TESTS, "commands2.py": "1 / 0\n"})
@@ -169,6 +171,8 @@ ASKS_THE_KEYBOARD = """
             {}
 """
 
+SIMULATE = "sim --ui none --mode teleop --seconds 1"
+
 IN_TELEOP = """
     def test_it(control, robot):
         with control.run_robot():
@@ -182,8 +186,8 @@ def test_input_in_robot_code_is_refused_with_its_line(make_project: MakeProject,
     lines[where] = 'NAME = input("Speed? ")'
     project = make_project({"robot.py": ASKS_THE_KEYBOARD.format(*lines), "tests/test_a.py": IN_TELEOP})
     expected = f"{project.place('robot.py', 'input(')}: input() waits for a keyboard, and a robot has none"
-    for command in (["test"], ["sim", "--ui", "none", "--mode", "teleop", "--seconds", "1"]):
-        text = explained(project.run(*command, stdin="5\n"), 1)
+    for command in ("test", *([SIMULATE] if where == 2 else [])):
+        text = explained(project.run(*command.split(), stdin="5\n"), 1)
         assert expected in text
         assert "SendableChooser" in text
 
@@ -211,8 +215,183 @@ def test_a_missing_self_is_named_with_the_methods_line(
                     self.helper(1)
     """
     project = make_project({"robot.py": robot, "tests/test_a.py": IN_TELEOP})
-    for command in (["test"], ["sim", "--ui", "none", "--mode", "teleop", "--seconds", "1"]):
-        result = project.run(*command)
+    for command in ("test", *([SIMULATE] if "teleop" in definition else [])):
+        result = project.run(*command.split())
         assert result.code == 1
         assert f"{project.place('robot.py', definition)}: the method " in result.output
         assert f"has no parameter self: write {corrected}" in result.output
+
+
+# --- methods that WPILib never calls
+
+MISSPELLED = """
+    import commands2
+    import wpilib
+
+
+    class Arm(commands2.Subsystem):
+        def Periodic(self):
+            pass
+
+
+    class Raise(commands2.Command):
+        def is_finished(self):
+            return True
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.addPeriodic(self.teleop_peridic, 0.01)
+
+        def teleopPeriodc(self):
+            pass
+
+        def autoInit(self):
+            pass
+
+        def disabled_periodic(self):
+            pass
+
+        def simulationPeriodic(self):
+            pass
+
+        # The robot's own business:
+
+        def testPeriodic(self):
+            pass
+
+        def test_periodic(self):
+            pass
+
+        def teleop_peridic(self):
+            pass
+
+        def teleopDrive(self):
+            pass
+
+        def initRobot(self):
+            pass
+"""
+
+MEANT = {
+    "Periodic": "periodic",
+    "is_finished": "isFinished",
+    "teleopPeriodc": "teleopPeriodic",
+    "autoInit": "autonomousInit",
+    "disabled_periodic": "disabledPeriodic",
+    "simulationPeriodic": "_simulationPeriodic",
+}
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "test",
+        "--pytest",
+        "sim --ui none --seconds 0.1",
+        "doctor --no-robot",
+        "test --late",
+    ],
+)
+def test_a_method_that_wpilib_never_calls_is_named_once_with_what_was_meant(
+    make_project: MakeProject, command: str
+) -> None:
+    robot = MISSPELLED
+    if command == "test --late":  # a device made by the import: the tests run from a spare process
+        robot, command = f"{robot}\n    MOTOR = wpilib.PWMSparkMax(0)\n", "test"
+    project = make_project({"robot.py": robot, "tests/test_a.py": IN_TELEOP})
+    result = project.pytest() if command == "--pytest" else project.run(*command.split())
+    assert result.code == (1 if "doctor" in command else 0), result.output
+    for name, meant in MEANT.items():
+        place = project.place("robot.py", f"def {name}(")
+        assert re.search(rf"{place}: WPILib never calls \w+\.{name}: did you mean {meant}\?", result.output), name
+    assert result.output.count("WPILib never calls") == len(MEANT)
+    assert len(re.findall("names are those of WPILib 2027", result.output)) == 2
+
+
+# --- a test that never ran the robot
+
+NEVER_RUNS = """
+    def test_without_a_run(control, robot, hal_data):
+        assert hal_data["pwm"][0]["value"] == 1
+
+    def test_with_hal_data_only(hal_data):
+        assert hal_data["pwm"][0]["value"] == 1
+
+    def test_with_a_run(control, robot):
+        control.run_test(lambda now: now < 0.1)
+        assert False
+
+    def test_with_a_wrong_run(control, robot):
+        control.run_test(5)
+
+    def test_of_arithmetic():
+        assert 1 + 1 == 3
+"""
+
+
+def test_a_failure_of_a_test_that_never_ran_the_robot_says_so(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": NEVER_RUNS})
+    blocks = project.run("test").blocks()
+    said = {name for name, text in blocks.items() if "The robot was never run in this test" in text}
+    assert len(blocks) == 5
+    assert said == {"test_without_a_run", "test_with_hal_data_only"}
+
+
+# --- one bug that breaks many tests
+
+ONE_BUG = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.count = 0
+
+        def teleopPeriodic(self):
+            self.count += 1
+            raise ValueError(f"no such arm: {self.count}")
+
+        def autonomousPeriodic(self):
+            raise ValueError("another")
+"""
+
+EIGHT_TESTS = """
+    import pytest
+
+    @pytest.mark.parametrize("number", range(6))
+    def test_teleop(control, robot, number):
+        with control.run_robot():
+            control.step_timing(seconds=number, autonomous=False, enabled=False)
+            control.step_timing(seconds=1, autonomous=False, enabled=True)
+
+    def test_autonomous(control, robot):
+        with control.run_robot():
+            control.step_timing(seconds=1, autonomous=True, enabled=True)
+
+    @pytest.mark.parametrize("number", range(2))
+    def test_itself(control, robot, number):
+        assert number == 5
+"""
+
+
+@pytest.mark.parametrize("how", ["-j 2", "--isolation none"])
+def test_one_bug_is_explained_once_and_the_other_tests_point_there(make_project: MakeProject, how: str) -> None:
+    project = make_project({"robot.py": ONE_BUG, "tests/test_a.py": EIGHT_TESTS})
+    result = project.run("test", *how.split(), "--", "--junitxml=junit.xml")
+    assert result.code == 1
+    place = project.place("robot.py", "no such arm")
+    blocks = result.blocks()
+    assert len(blocks) == 9
+    assert blocks["test_teleop[0]"].startswith(f"{place}: ValueError: no such arm: 1\n")
+    assert "> " in blocks["test_teleop[0]"]
+    for number in range(1, 6):
+        assert blocks[f"test_teleop[{number}]"] == f"{place}: the same as in test_teleop[0], which is explained above"
+        assert re.search(
+            rf"FAILED \S*test_a.py::test_teleop\[{number}\] - {place}: the same as in test_teleop\[0\]", result.stdout
+        )
+    assert project.place("robot.py", '"another"') in blocks["test_autonomous"]
+    for number in range(2):  # a test's own line is no bug of the robot
+        assert "assert" in blocks[f"test_itself[{number}]"]
+    junit = (project.path / "junit.xml").read_text("utf-8")
+    assert junit.count("ValueError(f&quot;no such arm") + junit.count('ValueError(f"no such arm') >= 6
+    assert "the same as" not in junit

@@ -11,6 +11,7 @@ from packaging.requirements import InvalidRequirement, Requirement
 from ..config.settings import parse_toml, read_toml
 from ..errors import PyfrcError, SettingsError
 from ..hidden_libraries import find_hidden_libraries
+from ..misspelled_methods import MisspelledMethod, find_misspelled_methods
 from ..project import Project
 from ..runtime.apart import run_apart
 from .findings import Finding, hint, ok, problem
@@ -99,17 +100,19 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[Finding]:
 
 def _robot_class(project: Project) -> Iterator[Finding]:
     try:
-        name = run_apart(_name_of_class, project, "while it was imported")
+        name, misspelled = run_apart(_look_at_class, project, "while it was imported")
     except (PyfrcError, OSError) as error:
         yield problem_of("program", error, "Correct that line; pyfrc test shows more of it.")
     except Exception as error:  # what the other process could not tell
         yield problem("program", f"{project.main_file.name} cannot be imported: {error}", "See what pyfrc test says.")
     else:
         yield ok("program", f"class {name} in {project.main_file}")
+        for method in misspelled:
+            yield problem("program", str(method), method.remedy)
 
 
-def _name_of_class(project: Project, words: LastWords) -> str:
-    return project.load().__name__
+def _look_at_class(project: Project, words: LastWords) -> tuple[str, list[MisspelledMethod]]:
+    return project.load().__name__, find_misspelled_methods(project)
 
 
 def _sim_config(project: Project) -> Iterator[Finding]:

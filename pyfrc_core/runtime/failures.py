@@ -47,6 +47,12 @@ def headline(error: BaseException, files: RobotFiles) -> str | None:
     return f"{line}: {text_of(error)}" if line else None
 
 
+def headline_is_the_robots(text: str, files: RobotFiles) -> bool:
+    """Whether a headline names a line of the robot's code, and not one of a test."""
+    name = text.partition(":")[0]
+    return files.is_robot_code(files.root + name)
+
+
 def as_robot_code_error(error: BaseException, files: RobotFiles) -> PyfrcError:
     """What the user's code raised, as an error that names its line."""
     if isinstance(error, PyfrcError):

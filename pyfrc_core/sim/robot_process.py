@@ -17,6 +17,7 @@ from typing import Any
 import hal
 
 from ..errors import PyfrcError
+from ..misspelled_methods import find_misspelled_methods
 from ..physics.engine import load_physics
 from ..project import Project
 from ..robot_files import is_pyfrc
@@ -81,7 +82,8 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
 
             def ready() -> Ready:
                 tags = tags_of(project.sim_config) if job.tags is None else job.tags
-                return Ready(tags, tuple(_libraries(project)), session.network_address)
+                notes = tuple(map(str, find_misspelled_methods(project)))
+                return Ready(tags, tuple(_libraries(project)), session.network_address, notes)
 
             try:
                 session.go(construct, ready)

@@ -315,7 +315,8 @@ class Simulation(Controls):
             elif isinstance(message, Ready):
                 self._tags = message.tags
                 self.field = replace(self.field, tags=message.tags)
-                self._status = replace(self._status, network_address=message.network_address)
+                note = " ".join(message.notes) or self._status.note
+                self._status = replace(self._status, network_address=message.network_address, note=note)
                 if self.options.recording:  # else there is no other robot's process to come, in all likelihood
                     assert self._processes is not None
                     self._processes.preload(message.libraries)

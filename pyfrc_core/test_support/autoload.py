@@ -50,6 +50,7 @@ def _register(config: pytest.Config, directory: Path) -> None:
     from ..project import find_project
     from .isolation.loop import IsolatedTests
     from .pytest_plugin import PyFrcPlugin
+    from .summary import Summary
 
     try:
         project = find_project(directory)
@@ -59,3 +60,4 @@ def _register(config: pytest.Config, directory: Path) -> None:
         raise pytest.UsageError(str(error)) from None
     config.pluginmanager.register(plugin, "pyfrc.robot")
     config.pluginmanager.register(IsolatedTests(plugin), "pyfrc.isolation")
+    config.pluginmanager.register(Summary(project), "pyfrc.summary")

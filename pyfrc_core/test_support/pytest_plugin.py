@@ -20,7 +20,7 @@ from ..errors import ProjectError, PyfrcError
 from ..hal import HalData
 from ..project import Project
 from ..runtime.data_logs import TEST_LOGS, LogPlace
-from ..runtime.failures import NamesItsPlace, headline, leave_out_pyfrc, names_its_place
+from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_pyfrc, names_its_place
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.redirect import redirection
 from ..runtime.robot import RobotRun
@@ -28,10 +28,11 @@ from ..runtime.scripts.files import recorded, traced
 from ..runtime.seeds import seed_generators
 from ..runtime.threads import RobotThread
 from ..runtime.watchdog import Watchdog
+from . import controller
 from .controller import TestController
 from .fake_time import FakeTime
 from .options import TestOptions
-from .reporting import put_first
+from .reporting import BUG, bug_of, put_first
 
 if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
@@ -236,15 +237,36 @@ class PyFrcPlugin:
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         short = not item.config.option.fulltrace
+        # Asked before pyfrc's own part is taken out of the traceback.
+        never_run = call.excinfo is not None and call.when == "call" and _never_ran_the_robot(item, call.excinfo)
         if call.excinfo is not None and short:
             leave_out_pyfrc(call.excinfo.value, self.project.files)
         report = yield
         if report.failed and call.excinfo is not None:
-            text = headline(call.excinfo.value, self.project.files)
+            error, files = call.excinfo.value, self.project.files
+            text = headline(error, files)
             if text is not None:
-                put_first(report, text, only=short and names_its_place(call.excinfo.value))
+                if not never_run and headline_is_the_robots(text, files):
+                    setattr(report, BUG, bug_of(text))
+                put_first(report, text, only=short and names_its_place(error))
+            if never_run:
+                report.sections.append(_NEVER_RUN)
             report.sections.append(seed_section(self.options))
         return report
+
+
+_NEVER_RUN = (
+    "pyfrc",
+    "The robot was never run in this test: call control.run_test(...), or step inside `with control.run_robot():`.",
+)
+
+
+def _never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseException]) -> bool:
+    """Whether a test that has to do with the robot failed, and not because it ran the robot in a wrong way."""
+    run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
+    if not isinstance(run, RobotRun) or run.started:
+        return False
+    return all(str(entry.path) != controller.__file__ for entry in failure.traceback)
 
 
 def _file_name(nodeid: str) -> str:

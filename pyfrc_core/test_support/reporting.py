@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pytest
+
+
+#: The attribute of a report that says by which bug of the robot's code a test has failed.
+BUG = "pyfrc_bug"
+
+#: Numbers in a message differ from test to test, as times do.
+_NUMBER = re.compile(r"\d+(\.\d+)?(e-?\d+)?")
 
 
 def put_first(report: pytest.TestReport, text: str, only: bool = False) -> None:
@@ -30,3 +38,13 @@ def put_first(report: pytest.TestReport, text: str, only: bool = False) -> None:
             longrepr.reprcrash.message = text.splitlines()[0]
     else:
         report.longrepr = f"{text}\n\n{longrepr}" if longrepr else text
+
+
+def bug_of(headline: str | None) -> str | None:
+    """What is the same in all failures by one bug: the robot's line, and what happened there.
+
+    :param headline: ``robot.py:12: ZeroDivisionError: division by zero``
+    """
+    if headline is None or (found := re.match(r"[^\n]*?\.py:\d+: ", headline)) is None:
+        return None
+    return found[0] + _NUMBER.sub("#", headline[found.end() :].partition("\n")[0])

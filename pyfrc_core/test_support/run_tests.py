@@ -18,6 +18,7 @@ from .isolation.loop import IsolatedTests
 from .isolation.spare import Spare
 from .options import TestOptions
 from .pytest_plugin import PyFrcPlugin
+from .summary import Summary, warn_of_misspelled_methods
 
 
 class NoTestsError(PyfrcError):
@@ -60,8 +61,11 @@ def run_tests(
         if not imports_late:
             plugin.robot_class()  # a robot that cannot be imported is told once, not by every test
             if spare is not None and spare.needed():
-                return spare.take_over()
-        return int(pytest.main(args, plugins=[plugin, IsolatedTests(plugin), _NoUnusedHypothesis()]))
+                status = spare.take_over()
+                warn_of_misspelled_methods(project)  # the spare has not imported them
+                return status
+        plugins = [plugin, IsolatedTests(plugin), Summary(project), _NoUnusedHypothesis()]
+        return int(pytest.main(args, plugins=plugins))
 
     spare = None
     if FORK_IS_SAFE and options.isolation in ("auto", "fork"):

@@ -20,8 +20,11 @@ from typing import Any
 
 import pytest
 
+from ...robot_files import RobotFiles
+from ...runtime.failures import headline_is_the_robots
 from ...runtime.forks import FORK_IS_SAFE, left_behind
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
+from ..reporting import BUG, bug_of
 from .messages import decode, replay
 from .processes import ForkedTest, SpawnedTest, TestProcess, wait_for_any
 
@@ -102,7 +105,7 @@ class IsolatedTests:
             item = waiting.pop(0)
             self._announce(item)
             del self._running[item]
-            _report(item, process, seed_section(self._plugin.options))
+            _report(item, process, self._plugin.project.files, seed_section(self._plugin.options))
             process.close()
             item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
             _stop_if_asked(session)
@@ -152,7 +155,7 @@ def _stop_if_asked(session: pytest.Session) -> None:
         raise session.Interrupted(session.shouldstop)
 
 
-def _report(item: pytest.Item, process: TestProcess, seed: tuple[str, str]) -> None:
+def _report(item: pytest.Item, process: TestProcess, files: RobotFiles, seed: tuple[str, str]) -> None:
     """Replay here what the test's process told, and what it can no longer tell."""
     done, phases = False, []
     for message in decode(process.output()):
@@ -166,7 +169,10 @@ def _report(item: pytest.Item, process: TestProcess, seed: tuple[str, str]) -> N
     for phase in ("setup", "call", "teardown"):
         if phase not in phases:
             text = crash if phase == "call" else None
-            item.ihook.pytest_runtest_logreport(report=_made_up(item, phase, text, process.captured(), seed))
+            report = _made_up(item, phase, text, process.captured(), seed)
+            if text is not None and headline_is_the_robots(text, files):
+                setattr(report, BUG, bug_of(text))
+            item.ihook.pytest_runtest_logreport(report=report)
 
 
 def _made_up(

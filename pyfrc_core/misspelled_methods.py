@@ -1,0 +1,150 @@
+"""Methods that WPILib never calls because their name is not quite the one it calls: ``teleopPeriodc``.
+
+WPILib calls the base class's empty method instead, so that the robot silently does nothing. Reported are only methods
+that resemble a method to be overridden in their own base class, that the class does not override as well, and that
+nothing in the project refers to.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .project import Project
+
+#: The libraries whose classes have methods to be overridden.
+_LIBRARIES = ("wpilib", "commands2", "magicbot")
+
+_MODES = re.compile(r"_?(robot|disabled|autonomous|teleop|test|simulation)(Init|Periodic|Exit)")
+
+#: Those besides the modes' that robot code overrides.
+_OVERRIDDEN = frozenset(
+    {
+        *("startCompetition", "endCompetition", "driverStationConnected", "createObjects", "onException"),
+        *("initialize", "execute", "end", "isFinished", "runsWhenDisabled", "getInterruptionBehavior", "periodic"),
+    }
+)
+
+#: Other words for the modes: those of WPILib 2027, and abbreviations.
+_SYNONYMS = (
+    (re.compile("^auto(n|nomus|nomos)?(?=init|periodic|exit)"), "autonomous"),
+    (re.compile("^(teleoperated|tele)(?=init|periodic|exit)"), "teleop"),
+    (re.compile("^(disable)(?=init|periodic|exit)"), "disabled"),
+    (re.compile("^(utility)(?=init|periodic|exit)"), "test"),
+)
+
+
+@dataclass(frozen=True)
+class MisspelledMethod:
+    """A method that WPILib never calls, and the name that was meant.
+
+    :param where: ``robot.py:12``
+    """
+
+    where: str
+    class_name: str
+    name: str
+    meant: str
+
+    @property
+    def text(self) -> str:
+        """What is wrong, without its place."""
+        season = " (snake_case names are those of WPILib 2027)" if "_" in self.name.strip("_") else ""
+        return f"WPILib never calls {self.class_name}.{self.name}: did you mean {self.meant}?{season}"
+
+    @property
+    def remedy(self) -> str:
+        """What to do about it."""
+        return f"Rename it to {self.meant}."
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.text}"
+
+
+def find_misspelled_methods(project: Project) -> list[MisspelledMethod]:
+    """Those in all classes of the project's modules that have been imported, in the order of their lines."""
+    found = [each for cls in _classes(project) for each in _in_class(cls, project)]
+    return sorted(set(found), key=lambda each: (each.where.rpartition(":")[0], int(each.where.rpartition(":")[2])))
+
+
+def _classes(project: Project) -> Iterator[type]:
+    for module in list(sys.modules.values()):
+        file = getattr(module, "__file__", None) if isinstance(module, ModuleType) else None
+        if not isinstance(file, str) or not project.files.is_robot_code(file):
+            continue
+        for value in list(vars(module).values()):
+            if isinstance(value, type) and value.__module__ == module.__name__:
+                yield value
+
+
+def _in_class(cls: type, project: Project) -> Iterator[MisspelledMethod]:
+    library = [base for base in cls.__mro__ if base.__module__.partition(".")[0] in _LIBRARIES]
+    if not library:
+        return
+    known = {name for base in library for name in vars(base)}
+    own = {name for base in cls.__mro__ if base not in library and base is not object for name in vars(base)}
+    missing = {name for name in known if name in _OVERRIDDEN or _MODES.fullmatch(name)} - own
+    for name, method in list(vars(cls).items()):
+        if name in known or not isinstance(method, FunctionType) or name.startswith("__"):
+            continue
+        meant = _nearest(name, missing)
+        if meant is None or not project.files.is_robot_code(method.__code__.co_filename):
+            continue
+        if not _is_referred_to(name, project):
+            place = f"{project.files.relative(method.__code__.co_filename)}:{_line_of(method)}"
+            yield MisspelledMethod(place, cls.__name__, name, meant)
+
+
+def _nearest(name: str, known: set[str]) -> str | None:
+    """The name that `name` is most probably meant to be."""
+    plain = _plain(name)
+    allowed = {each: 2 if len(each) >= 12 else 1 if len(each) >= 7 else 0 for each in known}
+    distances = {each: _distance(plain, each.strip("_").lower()) for each in known}
+    close = [each for each in sorted(known) if distances[each] <= allowed[each]]
+    return min(close, key=distances.__getitem__, default=None)
+
+
+def _plain(name: str) -> str:
+    """The name in one spelling: ``teleop_periodic`` and ``TeleopPeriodic`` are the same."""
+    plain = name.replace("_", "").lower()
+    for synonym, word in _SYNONYMS:
+        plain = synonym.sub(word, plain)
+    return plain
+
+
+def _distance(one: str, other: str) -> int:
+    """How many letters are to be left out, added, replaced, or swapped with the next, to make one of the other."""
+    if abs(len(one) - len(other)) > 2:
+        return 3
+    before: list[int] = []
+    row = list(range(len(other) + 1))
+    for i, letter in enumerate(one, 1):
+        before, last, row = row, before, [i]
+        for j, wanted in enumerate(other, 1):
+            cost = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (letter != wanted))
+            if i > 1 and j > 1 and letter == other[j - 2] and one[i - 2] == wanted:
+                cost = min(cost, last[j - 2] + 1)
+            row.append(cost)
+    return row[-1]
+
+
+def _is_referred_to(name: str, project: Project) -> bool:
+    """Whether anything but its definition has this name: what the robot calls itself is no mistake."""
+    reference = re.compile(rf"(?<!def )\b{re.escape(name)}\b")
+    for module in list(sys.modules.values()):
+        file = getattr(module, "__file__", None) if isinstance(module, ModuleType) else None
+        if isinstance(file, str) and project.files.is_robot_code(file):
+            lines = Path(file).read_text("utf-8", "replace").splitlines()
+            if any(reference.search(line.partition("#")[0]) for line in lines):
+                return True
+    return False
+
+
+def _line_of(method: FunctionType) -> int:
+    return method.__code__.co_firstlineno

@@ -1,0 +1,75 @@
+"""What pytest shows at the end of a run: one bug explained once, and methods that WPILib never calls.
+
+Reports are shortened for the terminal only: JUnit files and the like have each failure in full.
+"""
+
+from __future__ import annotations
+
+import copy
+import sys
+from collections.abc import Generator
+from typing import Any, TextIO
+
+import pytest
+
+from ..misspelled_methods import find_misspelled_methods
+from ..project import Project
+from .reporting import BUG, put_first
+
+
+class Summary:
+    """The part of the plugin that decides what the summary says.
+
+    :param project: the robot project that is tested
+    """
+
+    def __init__(self, project: Project) -> None:
+        self._project = project
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_terminal_summary(self, terminalreporter: Any, config: pytest.Config) -> Generator[None, object, object]:
+        if not config.option.fulltrace:
+            _explain_each_bug_once(terminalreporter.stats)
+        misspelled = find_misspelled_methods(self._project)
+        if misspelled:
+            terminalreporter.section("misspelled methods", yellow=True, bold=True)
+            for method in misspelled:
+                terminalreporter.write_line(str(method), yellow=True)
+        return (yield)
+
+
+def warn_of_misspelled_methods(project: Project, stream: TextIO = sys.stderr) -> None:
+    """Print those of the modules that this process has imported."""
+    for method in find_misspelled_methods(project):
+        print(f"warning: {method}", file=stream)
+
+
+def _explain_each_bug_once(stats: dict[str, list[Any]]) -> None:
+    """Let failures by a bug that has been explained point to the test where it is."""
+    explained: dict[str, str] = {}
+    for outcome in ("error", "failed"):  # in the order in which they are shown
+        reports = stats.get(outcome, [])
+        for index, report in enumerate(reports):
+            bug = getattr(report, BUG, None)
+            if not isinstance(report, pytest.TestReport) or bug is None:
+                continue
+            if bug not in explained:
+                explained[bug] = _name(report)
+            elif explained[bug] != _name(report):
+                reports[index] = _pointing_to(report, bug, explained[bug])
+
+
+def _pointing_to(report: pytest.TestReport, bug: str, explained: str) -> pytest.TestReport:
+    short = copy.copy(report)
+    short.longrepr = copy.deepcopy(report.longrepr)
+    place = bug.partition(": ")[0]
+    text = f"{place}: the same as in {explained}, which is explained above"
+    put_first(short, text, only=True)
+    if isinstance(short.longrepr, str):
+        short.longrepr = text
+    short.sections = []
+    return short
+
+
+def _name(report: pytest.TestReport) -> str:
+    return report.nodeid.partition("::")[2].replace("::", ".") or report.nodeid
