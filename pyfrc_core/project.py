@@ -32,6 +32,11 @@ MOST_NAMED = 5
 #: The modules whose robot classes are there to be derived from.
 _LIBRARIES = ("wpilib", "commands2", "magicbot")
 
+_ROBOT_METHODS = frozenset({"robotInit", "teleopInit", "teleopPeriodic", "autonomousInit", "autonomousPeriodic"})
+_ROBOT_CLASS = re.compile(
+    r"^class \w+\((?:\w+\.)?(?:(?:Timed|TimedCommand|Magic)Robot|(?:Iterative)?RobotBase)\):", re.M
+)
+
 #: In what Python says of a file that it cannot decode.
 _OF_ENCODING = re.compile(r"null bytes|Non-UTF-8|codec can't decode")
 
@@ -161,7 +166,7 @@ class Project:
 
     def _failed_import(self, file: Path, error: BaseException) -> RobotCodeError:
         """What the program raised while it was imported, with its line and what to do."""
-        from .hidden_libraries import find_hidden_by_any_name
+        from .hidden_libraries import LIBRARIES, find_hidden_by_any_name
         from .runtime.endings import TestFroze
 
         place = self.files.innermost_line(error.__traceback__) or file.name
@@ -175,6 +180,8 @@ class Project:
             remedy += " Is the name right, and its package installed?"
             if (self.root / "requirements.txt").is_file():
                 remedy += " Your project's packages: python -m pip install -r requirements.txt"
+        elif isinstance(error, NameError) and error.name in {*LIBRARIES, *sys.stdlib_module_names}:
+            remedy += f" Is this line missing at the top: import {error.name}"
         if isinstance(error, (ImportError, AttributeError)):
             for hidden in find_hidden_by_any_name(self.root, self.main_file):
                 remedy += f" {hidden.text}. {hidden.remedy}"
@@ -218,6 +225,12 @@ class Project:
         bases = {base for robot in robots.values() for base in robot.__mro__[1:]}
         candidates = [robot for robot in robots.values() if robot not in bases]
         if not candidates:
+            if (alike := _without_base(module)) is not None:
+                raise ProjectError(
+                    f"the class {alike} is not derived from a robot class",
+                    where=f"{where}:{_line_of_class(self.main_file, alike)}",
+                    remedy=f"Write: class {alike}(wpilib.TimedRobot):",
+                )
             raise ProjectError(
                 "there is no robot class in this file",
                 where=where,
@@ -235,6 +248,15 @@ class Project:
                 f'or with robot_class = "{candidates[0].__name__}" under [tool.pyfrc] in pyproject.toml.',
             )
         return candidates[0]
+
+
+def _without_base(module: ModuleType) -> str | None:
+    """The name of a class that has a robot's methods, but nothing that would call them."""
+    for value in vars(module).values():
+        own = isinstance(value, type) and value.__module__ == module.__name__ and value.__bases__ == (object,)
+        if own and _ROBOT_METHODS.intersection(vars(value)):
+            return str(value.__name__)
+    return None
 
 
 def _line_of_class(file: Path, name: str) -> int:
@@ -297,12 +319,25 @@ def _nothing_found(directory: Path, how: str) -> ProjectError:
             remedy=f"Go there with: cd {first}. Or name it with: --project {first}",
         )
     nearly = next((file.name for file in directory.glob("*.py") if file.name.lower() == MAIN_FILE), None)
+    other = next((file.name for file in sorted(directory.glob("*.py")) if _defines_robot(file)), None)
+    if nearly is None and other is not None:
+        return ProjectError(
+            f"no robot project found: there is no {MAIN_FILE} {how} {directory}, but a robot class in {other}",
+            remedy=f"Rename {other} to {MAIN_FILE}, or name it with --main {other}",
+        )
     return ProjectError(
         f"no robot project found: there is no {MAIN_FILE} {how} {directory}"
         + (f" (but a {nearly}: rename it)" if nearly else ""),
         remedy="Go to your project's directory, name it with --project DIR, name the file with --main FILE, "
         "or make a new project with: pyfrc init",
     )
+
+
+def _defines_robot(file: Path) -> bool:
+    try:
+        return _ROBOT_CLASS.search(file.read_text("utf-8", "replace")) is not None
+    except OSError:
+        return False
 
 
 def _projects_below(directory: Path) -> list[Path]:

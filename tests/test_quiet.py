@@ -24,7 +24,7 @@ ROBOT = """
             if self.stick.getRawButton(1):
                 raise ValueError("not that button")
 
-        def simulationPeriodic(self):
+        def _simulationPeriodic(self):
             pass
 """
 

@@ -22,7 +22,7 @@ def explained(result: Result, code: int) -> str:
 # --- files that hide a library
 
 
-@pytest.mark.parametrize("name", ["random.py", "wpilib.py", "queue/__init__.py"])
+@pytest.mark.parametrize("name", ["random.py", "wpilib/__init__.py"])
 def test_a_file_that_hides_a_library_is_named_before_it_is_imported(make_project: MakeProject, name: str) -> None:
     library = name.partition("/")[0].removesuffix(".py")
     project = make_project({"robot.py": ROBOT, **TESTS, name: "1 / 0\n"})
@@ -31,9 +31,7 @@ def test_a_file_that_hides_a_library_is_named_before_it_is_imported(make_project
     assert "another name." in text
 
 
-@pytest.mark.parametrize(
-    "command", ["sim --ui none --seconds 1", "fuzz --runs 1", "replay x.jsonl", "deploy", "--pytest"]
-)
+@pytest.mark.parametrize("command", ["sim --ui none", "fuzz --runs 1", "replay x.jsonl", "deploy", "--pytest"])
 def test_each_command_that_runs_the_robot_names_such_a_file(make_project: MakeProject, command: str) -> None:
     project = make_project({"robot.py": ROBOT, **TESTS, "commands2.py": "1 / 0\n"})
     if command == "--pytest":
@@ -93,11 +91,10 @@ def test_another_module_in_utf_16_is_named(make_project: MakeProject) -> None:
     assert "Save it as UTF-8" in result.stderr
 
 
-@pytest.mark.parametrize("isolation", ["none", "spawn"])
-def test_a_byte_order_mark_before_the_settings_does_no_harm(make_project: MakeProject, isolation: str) -> None:
+def test_a_byte_order_mark_before_the_settings_does_no_harm(make_project: MakeProject) -> None:
     settings = "\ufeff[tool.pyfrc.test]\njobs = 1\n[tool.pytest.ini_options]\naddopts = '-v'\n"
     project = make_project({"robot.py": ROBOT, "pyproject.toml": settings, **TESTS})
-    result = project.run("test", "--isolation", isolation)
+    result = project.run("test", "--isolation", "spawn")  # where two processes read them
     assert result.code == 0, result.output
     assert set(result.outcomes().values()) == {"PASSED"}  # so pytest has read -v in it
 
@@ -145,7 +142,53 @@ def test_a_wrong_value_is_reported_at_its_own_tables_line(make_project: MakeProj
     assert result.first_error.startswith("pyproject.toml:6: tool.pyfrc.team = 'b'")
 
 
+def test_a_test_file_in_utf_16_is_explained(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, **TESTS})
+    (project.path / "tests/test_b.py").write_bytes(b"\xff\xfe" + "x = 1\n".encode("utf-16-le"))
+    text = explained(project.run("test"), 2)
+    assert "tests/test_b.py: this file is in UTF-16, and Python reads UTF-8" in text
+
+
 # --- where the project is
+
+
+@pytest.mark.parametrize(
+    ("files", "args", "said", "remedy"),
+    [
+        ({"main.py": ROBOT}, "test", "but a robot class in main.py", "--main main.py"),
+        (
+            {"robot.py": ROBOT, **TESTS},
+            "robot.py",
+            "There is no command 'robot.py'",
+            "finds the robot's file by itself",
+        ),
+        ({"robot.py": ROBOT, **TESTS}, "test robot.py", "robot.py is the robot program", "pyfrc test"),
+        (
+            {"robot.py": "class A:\n    def robotInit(self): pass\n"} | TESTS,
+            "test",
+            "robot.py:1: the class A",
+            "class A(wpi",
+        ),
+        (
+            {"robot.py": ROBOT, "pyproject.toml": "# ours\n[pyfrc]\nteam = 1\n"},
+            "test",
+            "toml:2: [pyfrc] has no",
+            "[tool.pyfrc]",
+        ),
+    ],
+    ids=["main.py", "a-file-for-a-command", "the-robot-as-a-test", "no-base-class", "wrong-table"],
+)
+def test_the_file_and_the_class_are_named(
+    make_project: MakeProject, files: dict[str, str], args: str, said: str, remedy: str
+) -> None:
+    text = explained(make_project(files).run(*args.split()), 2)
+    assert said in text
+    assert remedy in text
+
+
+def test_a_missing_import_is_named(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": "class MyRobot(wpilib.TimedRobot):\n    pass\n", **TESTS})
+    assert "Is this line missing at the top: import wpilib" in explained(project.run("test"), 1)
 
 
 def test_one_directory_too_high_names_the_projects_below(make_project: MakeProject) -> None:

@@ -144,6 +144,9 @@ def load_settings(pyproject: Path) -> Settings:
         return Settings()
     text = read_toml(pyproject)
     document = parse_toml(pyproject, text)
+    if "pyfrc" in document:
+        line = TomlText(pyproject, text).line_of(("pyfrc",))
+        raise SettingsError("[pyfrc] has no effect", where=f"{pyproject.name}:{line}", remedy="Write: [tool.pyfrc]")
     tools = document.get("tool")
     table = tools.get("pyfrc") if isinstance(tools, dict) else None
     if not table:

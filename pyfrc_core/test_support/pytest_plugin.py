@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from .. import tests as ready_made
+from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, PyfrcError
 from ..hal import HalData
 from ..project import Project
@@ -227,6 +228,19 @@ class PyFrcPlugin:
                 return {(file.name, file.stat().st_mtime_ns) for file in files}
         except OSError:
             return set()
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_make_collect_report(
+        self, collector: pytest.Collector
+    ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+        """A test file in another encoding is explained."""
+        report = yield
+        if report.failed and isinstance(collector, pytest.Module):
+            wrong = find_wrong_encoding(collector.path)
+            if wrong is not None:
+                place = f"{collector.nodeid}:{wrong.line}" if wrong.line else collector.nodeid
+                report.longrepr = f"{place}: {wrong.message}\n  {wrong.remedy}"
+        return report
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from .. import tests as ready_made
-from ..errors import PyfrcError
+from ..errors import PyfrcError, UsageError
 from ..project import Project
 from ..runtime.forks import FORK_IS_SAFE
 from .isolation.loop import IsolatedTests
@@ -82,6 +82,9 @@ def run_tests(
 
 def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> list[str]:
     """What to call pytest with."""
+    if any(not each.startswith("-") and Path(each).absolute() == project.main_file for each in pytest_args):
+        remedy = "pyfrc finds it, and its tests, by itself: pyfrc test"
+        raise UsageError(f"{project.main_file.name} is the robot program, and not a test file", remedy=remedy)
     args = [*pytest_args, f"--rootdir={project.pyproject.parent}", *_configuration(project)]
     if _names_tests(pytest_args):
         return args
