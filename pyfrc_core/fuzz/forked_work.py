@@ -53,7 +53,7 @@ class ForkedWork(Generic[Answer]):
                 raise error
             return answer  # type: ignore[no-any-return]
         self._words.seek(0)
-        left = self._words.read().decode(errors="replace")
+        left = self._words.read().decode(errors="surrogateescape")
         raise RobotCodeError(explain_end(left, self._fork.status, project.files, meanwhile))
 
 

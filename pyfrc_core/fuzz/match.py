@@ -175,6 +175,7 @@ def _robot(project: Project, words: LastWords, seed: int, is_judged: bool = True
     watchdog = Watchdog(run, project.files, settings.hang_seconds, words.write, words.descriptor)
     with watchdog.watching():
         run.open()
+        words.follow(run)
         LoopLimit(run, project.files, project.settings)
         with judged(run, project.files, settings) if is_judged else nullcontext():
             seed_generators(seed)

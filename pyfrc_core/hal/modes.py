@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+from collections.abc import Callable
+from typing import Any, Literal, TypeAlias
 
 from hal import AllianceStationID
 from hal.simulation import (
@@ -26,6 +27,7 @@ from hal.simulation import (
     setJoystickPOV,
     setJoystickPOVCount,
 )
+from wpilib.simulation import DriverStationSim
 
 from ..errors import UsageError
 
@@ -114,6 +116,22 @@ def mode_name() -> str:
     if getDriverStationAutonomous():
         return "disabled autonomous"
     return "disabled test" if getDriverStationTest() else "disabled"
+
+
+def when_mode_changes(listener: Callable[[str, Any], None]) -> list[object]:
+    """Have a function called whenever what `mode_name` returns may have changed.
+
+    :returns: what has to be kept for as long as it is to be called
+    """
+    station = DriverStationSim
+    return [
+        register(listener, False)
+        for register in (
+            station.registerEnabledCallback,
+            station.registerAutonomousCallback,
+            station.registerTestCallback,
+        )
+    ]
 
 
 def is_enabled() -> bool:

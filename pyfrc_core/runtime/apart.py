@@ -66,7 +66,7 @@ def run_apart(work: Callable[[Project, LastWords], Answer], project: Project, me
             check=False,
         )
         if not answer.is_file():
-            left = words.read_text("utf-8", errors="replace") if words.is_file() else ""
+            left = words.read_bytes().decode(errors="surrogateescape") if words.is_file() else ""
             from .own_process import explain_end
 
             raise RobotCodeError(explain_end(left, done.returncode, project.files, meanwhile))
@@ -84,7 +84,7 @@ def main() -> None:
     from .own_process import LastWords, end_processes_of_the_robot, exit_now
 
     result, error, stack = None, None, ""
-    with job.words.open("wb", buffering=0) as file:
+    with job.words.open("w+b", buffering=0) as file:
         words = LastWords(file.fileno())
         words.leave_on_crash()
         try:

@@ -10,7 +10,8 @@ Times are whole microseconds, as in WPILib's HAL, so that 20 ms packets never dr
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from array import array
+from collections.abc import Callable, MutableSequence
 from heapq import heappop, heappush
 
 from ..hal.timing import deliver_packet, step_us, stop_and_zero
@@ -43,6 +44,8 @@ class Clock:
         #: Called before each packet with the robot time in seconds: the place to change inputs.
         self.before_packet: list[Callable[[float], None]] = []
         self._recurring: list[tuple[int, int, Action]] = []
+        #: Its first number follows the time: memory that another process may see.
+        self.moment: MutableSequence[int] | memoryview = array("q", [0])
         self.initialize()
 
     def initialize(self) -> None:
@@ -142,7 +145,7 @@ class Clock:
     def _move_to(self, time_us: int) -> None:
         if time_us > self.now_us:
             step_us(time_us - self.now_us)
-            self.now_us = time_us
+            self.now_us = self.moment[0] = time_us
 
     @property
     def next_packet_us(self) -> int:

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 import faulthandler
+import mmap
 import os
 import re
 import signal
+import struct
 import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import takewhile
+from typing import TYPE_CHECKING, Any
 
 from ..robot_files import RobotFiles, is_pyfrc
 from .watchdog import EXIT_HANGS
+
+if TYPE_CHECKING:
+    from .robot import RobotRun
 
 #: Ends the process at once, whatever robot code's `os._exit` is made to do.
 exit_now = os._exit
@@ -29,23 +36,66 @@ def write_all(descriptor: int, data: bytes) -> None:
         data = data[os.write(descriptor, data) :]
 
 
+#: What a file of last words begins with: this, then the robot time in microseconds and the mode, as 64-bit integers.
+#: A process that is killed has no time to write; what it has written to memory that is mapped to a file stays.
+_MAGIC = b"\0moment\n"
+_MOMENT = struct.Struct("=8sqq")
+_NOT_STARTED = -1
+
+
 @dataclass(frozen=True)
+class Moment:
+    """When a robot's process ended.
+
+    :param seconds: robot time
+    :param mode: one of `modes.MODES`
+    """
+
+    seconds: float
+    mode: str
+
+    def __str__(self) -> str:
+        return f"at {self.seconds:.2f} s in {self.mode} mode"
+
+
 class LastWords:
     """Where this process leaves word for another one, which gives it to `explain_end`.
 
-    :param descriptor: that of a file open for writing
+    :param descriptor: that of a file open for reading and writing, empty
     """
 
-    descriptor: int
+    def __init__(self, descriptor: int) -> None:
+        self.descriptor = descriptor
+        self._moment: memoryview | None = None
+        self._listening: list[object] = []
 
     def write(self, text: str) -> None:
         write_all(self.descriptor, text.encode())
 
+    def follow(self, run: RobotRun) -> None:
+        """From now on, keep the robot time and the mode of this run, which is open, up to date in the file."""
+        from ..hal import modes  # not in processes that run no robot
+
+        moment = self._moment
+        if moment is None:
+            return
+
+        def note_mode(name: str = "", value: Any = None) -> None:
+            moment[1] = modes.MODES.index(modes.mode_name())
+
+        note_mode()
+        moment[0] = run.clock.now_us
+        run.clock.moment = moment
+        self._listening = modes.when_mode_changes(note_mode)
+
     def leave_on_crash(self, before_exit: Callable[[], object] = lambda: None) -> None:
-        """From now on, have a fault in C code and `os._exit` say where they were.
+        """From now on, have a fault in C code and `os._exit` say where they were, and `follow` when.
 
         :param before_exit: called when robot code calls `os._exit`
         """
+        write_all(self.descriptor, _MOMENT.pack(_MAGIC, _NOT_STARTED, 0))
+        with contextlib.suppress(OSError, ValueError):  # where it cannot be mapped, the moment is not known
+            self._moment = memoryview(mmap.mmap(self.descriptor, _MOMENT.size))[len(_MAGIC) :].cast("q")
         faulthandler.enable(self.descriptor, all_threads=False)
 
         def telling_exit(status: int) -> None:
@@ -71,11 +121,12 @@ def call_before_sudden_end() -> None:
 def explain_end(words: str, status: int, files: RobotFiles, meanwhile: str) -> str:
     """Why a process ended too early: the user's line first, where it can be told.
 
-    :param words: what it has left
+    :param words: what it has left, bytes that are no text as surrogates
     :param status: its exit code; a signal's number, negative
     :param meanwhile: when that was, such as "in the middle of the test"
     """
-    words = words.strip()
+    moment = moment_of(words)
+    words = _without_moment(words).strip()
     if status == EXIT_HANGS and words:
         return words
     if words.startswith("Timeout"):
@@ -84,10 +135,32 @@ def explain_end(words: str, status: int, files: RobotFiles, meanwhile: str) -> s
         what = f"the robot's process was ended by signal {-status} ({_signal_name(-status)})"
     else:
         what = f"the robot's process ended itself with exit code {status}, {meanwhile}"
+    if moment is not None:
+        what += f", {moment}"
     line = _line_of_crash(words, files)
     # Below the user's code, the stack is pyfrc's and pytest's: of no interest.
     words = "\n".join(takewhile(lambda text: not re.search(r"pyfrc_core|_pytest", text), words.splitlines()))
     return f"{line}: {what}\n\n{words}".strip() if line else f"{what}\n\n{words}".strip()
+
+
+def moment_of(words: str) -> Moment | None:
+    """Return when a process ended that has left these words; None when its robot had not started."""
+    left = _bytes_of(words)
+    if not left.startswith(_MAGIC) or len(left) < _MOMENT.size:
+        return None
+    from ..hal.modes import MODES
+
+    _, now_us, mode = _MOMENT.unpack_from(left)
+    return None if now_us == _NOT_STARTED else Moment(now_us / 1_000_000, MODES[mode])
+
+
+def _without_moment(words: str) -> str:
+    left = _bytes_of(words)
+    return left[_MOMENT.size if left.startswith(_MAGIC) else 0 :].decode(errors="replace")
+
+
+def _bytes_of(words: str) -> bytes:
+    return words.encode(errors="surrogateescape")
 
 
 def _line_of_crash(words: str, files: RobotFiles) -> str | None:

@@ -186,7 +186,7 @@ def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
     from .robot_process import run_robot
 
     status = 1
-    with launch.words.open("wb", buffering=0) as file:
+    with launch.words.open("w+b", buffering=0) as file:
         words = LastWords(file.fileno())
         words.leave_on_crash()
         signal.signal(signal.SIGTERM, _end_robot)

@@ -289,7 +289,7 @@ class RobotProcesses:
 
     def _last_words(self, number: int) -> str:
         with suppress(OSError):
-            return self._words(number).read_text("utf-8", errors="replace")
+            return self._words(number).read_bytes().decode(errors="surrogateescape")
         return ""
 
 

@@ -71,6 +71,7 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
             closing.callback(run.data_logs.close)
             seed_generators(job.script.seed)
             session = Session(run, job, connection)
+            words.follow(run)
 
             def construct() -> None:
                 if physics is not None:

@@ -14,7 +14,7 @@ from typing import Any
 from ..errors import PyfrcError, UsageError
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
-from ..runtime.own_process import explain_end
+from ..runtime.own_process import explain_end, moment_of
 from ..runtime.scripts.script import InputScript, Step
 from .assembly import Assembly
 from .commands import Command, Pause, Run, Speed
@@ -331,7 +331,9 @@ class Simulation(Controls):
             if launch == self._launch and self._status.state not in ("failed", "closed"):
                 text = explain_end(words, status, self.project.files, "while it was simulated")
                 headline, _, details = text.partition("\n\n")
-                self._fail(Failure(headline, details, self._recording.length_us / 1_000_000))
+                moment = moment_of(words)
+                seconds = self._recording.length_us / 1_000_000 if moment is None else moment.seconds
+                self._fail(Failure(headline, details, seconds))
                 self._changed.notify_all()
 
     def _on_output(self, text: str) -> None:

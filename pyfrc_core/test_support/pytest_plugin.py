@@ -77,6 +77,8 @@ class PyFrcPlugin:
         self.when_python_is_stuck: int | None = None
         #: Called with the explanation when robot code cannot be stopped otherwise than with its process.
         self.last_words: Callable[[str], None] | None = None
+        #: Called with each run when it has been opened.
+        self.when_opened: Callable[[RobotRun], object] = lambda run: None
         #: Whether each test's own process imports the robot's modules, since they cannot be forked.
         self.imports_late = imports_late
         self._former_logs: set[tuple[str, int]] = set()
@@ -168,6 +170,7 @@ class PyFrcPlugin:
         )
         with watchdog.watching(), ExitStack() as closing:
             run.open()
+            self.when_opened(run)
             LoopLimit(run, self.project.files, self.project.settings)
             if not self.own_process:
                 closing.callback(_forget, run, request.node)

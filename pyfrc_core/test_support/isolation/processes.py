@@ -72,7 +72,7 @@ class TestProcess(ABC):
     def explain_crash(self) -> str:
         """Why the process ended without finishing its test: the user's line first, where it can be told."""
         self._last_words.seek(0)
-        words = self._last_words.read().decode(errors="replace")
+        words = self._last_words.read().decode(errors="surrogateescape")
         return explain_end(words, self._status, self._files, "in the middle of the test")
 
 
@@ -203,6 +203,7 @@ def leave_word_on_crash(plugin: PyFrcPlugin, descriptor: int) -> None:
     plugin.when_python_is_stuck = descriptor
     words = LastWords(descriptor)
     plugin.last_words = words.write
+    plugin.when_opened = words.follow
     words.leave_on_crash(before_exit=save_here)
 
 

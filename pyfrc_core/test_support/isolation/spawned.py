@@ -38,7 +38,7 @@ class OnlyOneTest:
 
         with (
             Path(self._job["output"]).open("wb", buffering=0) as output,
-            Path(self._job["last_words"]).open("wb", buffering=0) as last_words,
+            Path(self._job["last_words"]).open("w+b", buffering=0) as last_words,
         ):
             leave_word_on_crash(self._plugin, last_words.fileno())
             for item in session.items:
