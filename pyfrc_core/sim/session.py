@@ -15,6 +15,7 @@ from ..physics.core import PhysicsInterface
 from ..runtime.clock import INPUT, OBSERVE, PACKET_US
 from ..runtime.endings import TestEnded
 from ..runtime.loop_limit import LoopLimit, LoopWaitsError
+from ..runtime.refresh import RefreshCheck
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.player import Player
 from ..runtime.scripts.recorder import Recorder
@@ -90,11 +91,10 @@ class Session:
         self._packets_at_once = 1
         #: How far the robot is let go on at a time; None while it starts.
         self._target_us: int | None = None
-        #: The wall time and the robot time at which that began.
-        self._advance_began = wall(), 0
-        #: The last target at which a look at commands is due, should the robot wait beyond it.
-        self._awaited_us: int | None = None
+        self._advance_began = wall(), 0  # on the wall and in robot time
+        self._awaited_us: int | None = None  # the last target beyond which it has been seen to wait
         self._taken_over = self._left = False
+        self._refresh = RefreshCheck(run)
         #: 1 in the microsecond after the target, where the robot waits beyond it; what is shown is the target.
         self._beyond_us = 0
         run.threads.before_driver_waits.append(self._on_wait)
@@ -373,6 +373,8 @@ class Session:
         if not self._run.alive:
             raise Ended
         self._mode_packets[modes.mode_name()] += _FOLLOW_PACKETS
+        if (note := self._refresh.look()) is not None:
+            self._notes.append(note)
         self._mark_position()
 
     def _mark_position(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
+import warnings
 from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack
 from functools import cached_property
@@ -24,6 +25,7 @@ from ..runtime.data_logs import TEST_LOGS, LogPlace
 from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_pyfrc, names_its_place
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.redirect import redirection
+from ..runtime.refresh import explain_missing_refresh
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.files import recorded, traced
 from ..runtime.seeds import seed_generators
@@ -177,8 +179,15 @@ class PyFrcPlugin:
             closing.enter_context(self._written_down(run, request.node))
             yield run
             run.end()
+            if getattr(request.function, "__module__", "").startswith(ready_made.__name__):
+                self._warn_of_missing_refresh(run)
         if run.still_running:
             raise ThreadStillRunningError("\n".join(self._still_running(record) for record in run.still_running))
+
+    def _warn_of_missing_refresh(self, run: RobotRun) -> None:
+        warning = explain_missing_refresh(run) if run.started and run.threads.failure is None else None
+        if warning is not None:
+            warnings.warn_explicit(warning, UserWarning, self._robot_file, 1)
 
     def _still_running(self, record: RobotThread) -> str:
         line = None if record.ident is None else self.project.files.line_of_thread(record.ident)
