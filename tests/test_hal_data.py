@@ -203,9 +203,9 @@ def test_channels_that_the_roborio_lacks_are_kept_values(tree: HalData) -> None:
 
 
 def test_pneumatics_of_both_makers(tree: HalData) -> None:
-    assert not tree["pcm"]
+    assert list(tree["pcm"]) == [0]
     with pytest.raises(KeyError, match="appears when the robot makes it"):
-        tree["pcm"][0]
+        tree["pcm"][1]
     ctre = wpilib.Solenoid(0, wpilib.PneumaticsModuleType.CTREPCM, 2)
     ctre.set(True)
     assert list(tree["pcm"]) == [0]

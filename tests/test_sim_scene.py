@@ -71,8 +71,8 @@ def test_a_line_in_field_coordinates(renderer: UserRenderer) -> None:
     ("keywords", "expected"),
     [
         ({"robot_coordinates": True}, [(10, 5), (10, 7), (9, 7)]),
-        ({"robot_coordinates": (1, 0)}, [(10, 6), (10, 8), (9, 8)]),
-        ({"robot_coordinates": (0, 1)}, [(9, 5), (9, 7), (8, 7)]),
+        ({"robot_coordinates": (0, 1)}, [(10, 6), (10, 8), (9, 8)]),
+        ({"robot_coordinates": (1, 0)}, [(9, 5), (9, 7), (8, 7)]),
         ({"relative_to_first": True}, [(0, 0), (2, 0), (2, 1)]),
         ({"scale": (2, 3)}, [(6, 12), (10, 12), (10, 15)]),
         ({"scale": (2, 3), "robot_coordinates": True}, [(10, 5), (10, 9), (7, 9)]),
@@ -93,7 +93,7 @@ def test_a_text(renderer: UserRenderer) -> None:
     renderer.draw_text("here", (1, 2))
     renderer.draw_text("there", (2, 1), "#0000ff", fontSize=20, scale=(2, 2), arrow=True, anchor="w")
     renderer.draw_text("robot", (1, 0), robot_coordinates=True)
-    renderer.draw_text("beside", (1, 0), robot_coordinates=(0, 2))
+    renderer.draw_text("beside", (1, 0), robot_coordinates=(2, 0))
     first, second, third, fourth = renderer.drawings()
     assert first == Text("here", 1, 2, "#000000", 10, {})
     assert second == Text("there", 4, 2, "#0000ff", 20, {"anchor": "w"})
@@ -125,7 +125,7 @@ def test_a_trajectory(renderer: UserRenderer) -> None:
 
 
 def test_a_trajectory_with_an_offset_and_a_scale(renderer: UserRenderer) -> None:
-    renderer.draw_pathfinder_trajectory([Segment(0, 0), Segment(1, 0)], offset=(0, 2), scale=(3, 3))
+    renderer.draw_pathfinder_trajectory([Segment(0, 0), Segment(1, 0)], offset=(2, 0), scale=(3, 3))
     assert points(only_line(renderer)) == [(8, 5), (8, 8)]
 
 

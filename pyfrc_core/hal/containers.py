@@ -1,18 +1,19 @@
 """The dicts and lists that `hal_data` is made of: they hold ways to read and write, never the values.
 
-`MutableMapping` and `Sequence` of the standard library give the behaviour; what is added is speed (a read is
-one dict look-up and one bound method of WPILib), errors that name the place, and listeners.
+`builtin_types` gives the behaviour of `dict` and `list`; what is added is speed (a read is one dict look-up and one
+bound method of WPILib), errors that name the place, and listeners.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, MutableMapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from numbers import Integral, Real
-from typing import Any, NamedTuple, overload
+from typing import Any, NamedTuple
 
 from pyfrc_core.errors import nearest
 
+from .builtin_types import LiveMapping, LiveSequence
 from .kinds import ANY, Kind, UnknownKey, WrongIndex, WrongType, WrongValue
 from .paths import join
 
@@ -27,6 +28,7 @@ class Slot(NamedTuple):
     :param canonical: the key whose listeners also hear of this one; differs from the key for another name of
         a value
     :param recorded: whether the value tells something that no other field tells
+    :param unset: what to write for None, at an output of the robot; None where None cannot be written
     """
 
     get: Callable[[], Any]
@@ -36,6 +38,11 @@ class Slot(NamedTuple):
     canonical: str = ""
     recorded: bool = True
     remedy: str | None = None
+    unset: Any = None
+
+
+#: What the HAL holds for a number that a test has set to None: nothing that a robot sets, and as good as 0.
+NOT_SET = 5e-324
 
 
 def kept(default: Any = None) -> Slot:
@@ -59,7 +66,7 @@ class _Watch:
             callback(key, self.owner[key])
 
 
-class LiveDict(MutableMapping[Any, Any]):
+class LiveDict(LiveMapping):
     """A dict whose values live in the simulated HAL.
 
     Reading asks WPILib, writing tells it. A wrong key raises a `KeyError` that lists the keys; a value that
@@ -68,6 +75,7 @@ class LiveDict(MutableMapping[Any, Any]):
     """
 
     def __init__(self, path: str, build: Callable[[], Mapping[str, Slot]]) -> None:
+        super().__init__()
         self._path = path
         self._build = build
         self._built: Mapping[str, Slot] | None = None
@@ -110,7 +118,11 @@ class LiveDict(MutableMapping[Any, Any]):
                 current.assign(value)
                 return
             raise WrongValue("cannot be written", where=join(self._path, key), remedy=slot.remedy)
-        checked = value if slot.kind is ANY else slot.kind.check(value, join(self._path, key))
+        if value is None and slot.unset is not None:
+            checked = slot.unset
+            self._getters[key] = partial(self._get_unless_unset, key, slot)
+        else:
+            checked = value if slot.kind is ANY else slot.kind.check(value, join(self._path, key))
         watch = self._watches.get(slot.canonical or key) if self._watches else None
         if watch is None:
             slot.set(checked)
@@ -121,8 +133,21 @@ class LiveDict(MutableMapping[Any, Any]):
         if not watch.heard:
             watch.fire()
 
+    def _get_unless_unset(self, key: Any, slot: Slot) -> Any:
+        """Read None until the robot, or a test, writes the value; then as before."""
+        value = slot.get()
+        if value == NOT_SET:
+            return None
+        self._getters[key] = slot.get
+        return value
+
     def __delitem__(self, key: Any) -> None:
         raise UnknownKey("a key of hal_data cannot be removed", where=join(self._path, key))
+
+    def clear(self) -> None:
+        """Remove every key, which most dicts here refuse."""
+        for key in list(self):
+            del self[key]
 
     def __iter__(self) -> Iterator[Any]:
         return iter(self._slots)
@@ -173,20 +198,15 @@ class LiveDict(MutableMapping[Any, Any]):
         if key in self._watches:
             self._watches[key].fire()
 
-    __hash__ = None  # type: ignore[assignment]
-
-    def __eq__(self, other: object) -> bool:
-        return self is other or (isinstance(other, Mapping) and dict(self.items()) == dict(other.items()))
-
     def __repr__(self) -> str:
         return f"<{self._path or 'hal_data'}: {plain(self)!r}>"
 
 
-class LiveList(Sequence[Any]):
+class LiveList(LiveSequence):
     """A list of fixed length: of devices, or of values that live in the HAL (`ValueList`)."""
 
     def __init__(self, path: str, items: Sequence[Any]) -> None:
-        self._path = path
+        super().__init__(path)
         self._items = items
 
     def __len__(self) -> int:
@@ -195,18 +215,24 @@ class LiveList(Sequence[Any]):
     def __iter__(self) -> Iterator[Any]:
         return iter(self._items)
 
-    @overload
-    def __getitem__(self, index: int) -> Any: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[Any]: ...
-    def __getitem__(self, index: int | slice) -> Any:
+    def __getitem__(self, index: Any) -> Any:
         try:
             return self._items[index]
         except (IndexError, TypeError):
             raise self._wrong(index) from None
 
-    def __setitem__(self, index: int, value: Any) -> None:
-        self[index].assign(value)
+    def __setitem__(self, index: Any, value: Any) -> None:
+        if isinstance(index, slice):
+            self._set_slice(index, value)
+        else:
+            self[index].assign(value)
+
+    def _set_slice(self, index: slice, values: Any) -> None:
+        positions, values = range(len(self))[index], list(values)
+        if len(positions) != len(values):
+            raise WrongValue(f"{len(values)} values do not fit {len(positions)} entries", where=self._path)
+        for position, value in zip(positions, values, strict=True):
+            self[position] = value
 
     def _wrong(self, index: Any) -> WrongIndex | WrongType:
         if not isinstance(index, int):
@@ -227,13 +253,6 @@ class LiveList(Sequence[Any]):
             raise WrongValue(f"{len(values)} values are too many for {len(self)} entries", where=self._path)
         for index, value in enumerate(values):
             self[index] = value
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, (LiveList, list, tuple)):
-            return list(self) == list(other)
-        return NotImplemented
 
     def __repr__(self) -> str:
         return f"<{self._path}: {plain(self)!r}>"
@@ -276,16 +295,15 @@ class ValueList(LiveList):
             raise self._wrong(index)
         return index + length if index < 0 else index
 
-    @overload
-    def __getitem__(self, index: int) -> Any: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[Any]: ...
-    def __getitem__(self, index: int | slice) -> Any:
+    def __getitem__(self, index: Any) -> Any:
         if isinstance(index, slice):
             return self._load()[index]
         return self._get(self._position(index))
 
-    def __setitem__(self, index: int, value: Any) -> None:
+    def __setitem__(self, index: Any, value: Any) -> None:
+        if isinstance(index, slice):
+            self._set_slice(index, value)
+            return
         position = self._position(index)
         self._put(position, self._kind.check(value, join(self._path, position)))
         if self._changed is not None:
@@ -297,7 +315,10 @@ def plain(value: Any) -> Any:
     if value is None or type(value) in (bool, int, float, str):
         return value
     if isinstance(value, Mapping):
-        return {k if isinstance(k, (str, int)) else str(k): plain(v) for k, v in value.items()}
+        if all(isinstance(key, int) for key in value):
+            return {key: plain(item) for key, item in value.items()}
+        # Texts and numbers together cannot be sorted, as a recording's keys are.
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
         return [plain(v) for v in value]
     if isinstance(value, (set, frozenset)):
@@ -306,5 +327,9 @@ def plain(value: Any) -> Any:
         return str(value)
     if isinstance(value, Real):
         return int(value) if isinstance(value, Integral) else float(value)
-    # The text of any other object may hold its address, which differs from run to run.
-    return f"<{type(value).__name__}>"
+    try:
+        text = str(value)
+    except Exception:  # of a class of the user's
+        text = ""
+    # Without a text of its own, an object shows its address, which differs from run to run.
+    return text if text and " at 0x" not in text else f"<{type(value).__name__}>"

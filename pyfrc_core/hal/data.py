@@ -17,6 +17,9 @@ from .paths import Segment, format_path, join, parse_path
 from .recording import Recording
 from .sim_devices import RobotDict, SimDevices
 
+#: The keys whose value is a part of one of the robot's pneumatics modules.
+_OF_A_MODULE = ("solenoid", "compressor")
+
 
 class HalData(LiveDict):
     """The robot's inputs and outputs as one tree of dicts and lists, live over WPILib's simulated HAL.
@@ -63,7 +66,6 @@ class HalData(LiveDict):
             "robot": lambda: RobotDict(self["CAN"]),
             "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER),
             **{kind.name: kind.devices for kind in devices.KINDS},
-            "solenoid": lambda: modules.solenoid,
             "pcm": lambda: modules.pcm,
             "ph": lambda: modules.ph,
             "pcm_compressor": lambda: modules.pcm_compressor,
@@ -79,9 +81,9 @@ class HalData(LiveDict):
             return self._rooms[key]
         except (KeyError, TypeError):
             pass
-        if key == "compressor":
+        if key in _OF_A_MODULE:
             # Not kept: which module's it is depends on what the robot has made.
-            return self.modules.compressor
+            return getattr(self.modules, key)
         if isinstance(key, str) and key in self._makers:
             room = self._rooms[key] = self._makers[key]()
             return room
@@ -102,10 +104,10 @@ class HalData(LiveDict):
             room.update(new)
 
     def __contains__(self, key: object) -> bool:
-        return key in self._rooms or key in self._makers or key == "compressor" or key in self._slots
+        return key in self._rooms or key in self._makers or key in _OF_A_MODULE or key in self._slots
 
     def __iter__(self) -> Iterator[str]:
-        return iter([*self._slots, *self._makers, "compressor", "custom", "reports"])
+        return iter([*self._slots, *self._makers, *_OF_A_MODULE, "custom", "reports"])
 
     def __repr__(self) -> str:
         return f"<hal_data: {', '.join(self)}>"

@@ -9,6 +9,7 @@ import hal
 import wpilib
 from wpilib import simulation as sim
 
+from .containers import NOT_SET
 from .fields import HAS_SOURCE, INITIALIZED, DeviceKind, Field
 from .kinds import BOOL, FLOAT, INT32, INT64, Kind, choice, number, text, whole
 
@@ -66,9 +67,9 @@ KINDS = (
         (
             INITIALIZED,
             F("type"),
-            F("raw_value", "PulseMicrosecond", INT32),
-            F("value", "Speed", number(-1, 1)),
-            F("position", "Position", number(0, 1), recorded=False),
+            F("raw_value", "PulseMicrosecond", INT32, unset=0),
+            F("value", "Speed", number(-1, 1), unset=NOT_SET),
+            F("position", "Position", number(0, 1), recorded=False, unset=NOT_SET),
             F("period_scale", "PeriodScale", INT32),
             F("zero_latch", "ZeroLatch", BOOL),
             F("elim_deadband", default=False),
@@ -81,7 +82,7 @@ KINDS = (
         (
             INITIALIZED,
             HAS_SOURCE,
-            F("value", "Value", BOOL),
+            F("value", "Value", BOOL, unset=False),
             F("is_input", "IsInput", BOOL),
             F("pulse_length", "PulseLength", FLOAT),
             F("filter_idx", "FilterIndex", INT32),
@@ -147,7 +148,7 @@ KINDS = (
         "analog_out",
         8,
         sim.AnalogOutputSim,
-        (INITIALIZED, F("voltage", "Voltage", FLOAT)),
+        (INITIALIZED, F("voltage", "Voltage", FLOAT, unset=NOT_SET)),
         real=2,
     ),
     DeviceKind(
@@ -190,15 +191,15 @@ KINDS = (
                 get=_relay_initialized,
                 put=_initialize_relay,
             ),
-            F("fwd", "Forward", BOOL),
-            F("rev", "Reverse", BOOL),
+            F("fwd", "Forward", BOOL, unset=False),
+            F("rev", "Reverse", BOOL, unset=False),
         ),
     ),
     DeviceKind(
         "d0_pwm",
         26,
         sim.DigitalPWMSim.createForIndex,
-        (INITIALIZED, F("duty_cycle", "DutyCycle", FLOAT), F("pin", "Pin", INT32)),
+        (INITIALIZED, F("duty_cycle", "DutyCycle", FLOAT, unset=NOT_SET), F("pin", "Pin", INT32)),
         real=6,
     ),
     DeviceKind(

@@ -16,7 +16,7 @@ from wpilib.simulation import DriverStationSim
 
 from .containers import LiveDict, LiveList, Slot, ValueList, kept
 from .fields import HAS_SOURCE, Field
-from .kinds import BOOL, FLOAT, INT32, Kind, WrongValue, choice, number, text, whole
+from .kinds import BOOL, FLOAT, INT32, Kind, choice, number, text, whole
 from .paths import join
 
 JOYSTICKS = 6
@@ -117,6 +117,7 @@ class Joystick(LiveDict):
     def __init__(self, port: int) -> None:
         super().__init__(join("joysticks", port), self._all)
         self._port = port
+        self._unused_button = False
         self._axes, self._buttons, self._povs = hal.JoystickAxes(), hal.JoystickButtons(), hal.JoystickPOVs()
         # Both are views of the buffers above, which each read fills anew.
         self._axis_values, self._pov_values = self._axes.axes, self._povs.povs
@@ -215,7 +216,7 @@ class Joystick(LiveDict):
     def controls(self) -> tuple[list[float], list[bool], list[int]]:
         """Axes, buttons and POVs as far as the robot sees them."""
         axes, buttons, povs = self.counts()
-        return self._load_axes()[:axes], self._load_buttons()[: buttons + 1], self._load_povs()[:povs]
+        return self._load_axes()[:axes], [False, *self._load_buttons()[1 : buttons + 1]], self._load_povs()[:povs]
 
     def _set_axis(self, index: int, value: float) -> None:
         hs.setJoystickAxis(self._port, index, value)
@@ -230,17 +231,17 @@ class Joystick(LiveDict):
         return 1 + max(BUTTONS, self.counts()[1])
 
     def _button(self, index: int) -> bool:
-        return index > 0 and bool(self._bits() >> (index - 1) & 1)
+        return bool(self._bits() >> (index - 1) & 1) if index else self._unused_button
 
     def _load_buttons(self) -> list[bool]:
         # Position 0 is unused: the bits move up by one.
-        bits = self._bits() << 1
+        bits = self._bits() << 1 | self._unused_button
         return [bool(bits >> i & 1) for i in range(self._buttons_shown())]
 
     def _set_button(self, index: int, value: bool) -> None:
         if index == 0:
-            if value:
-                raise WrongValue("buttons count from 1, as in WPILib", where=f"joysticks[{self._port}].buttons[0]")
+            # Buttons count from 1, as in WPILib. Loops over the whole list write this one too: the robot cannot see it.
+            self._unused_button = value
             return
         hs.setJoystickButton(self._port, index, value)
         if self.counts()[1] < index:

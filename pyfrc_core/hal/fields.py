@@ -24,6 +24,7 @@ class Field:
     :param hal:      WPILib's name for it; None where today's HAL lacks it and `default` is kept instead
     :param same_as:  the field of which this is another name: it shares the listeners
     :param recorded: False for a value that follows from others
+    :param unset:    of an output of the robot: what the HAL gets when a test writes None
     :param get, put: the access from and to the `*Sim` object where it is not WPILib's own
     """
 
@@ -33,6 +34,7 @@ class Field:
     default: Any = None
     same_as: str = ""
     recorded: bool = True
+    unset: Any = None
     get: Callable[[Any], Any] | None = None
     put: Callable[[Any, Any], object] | None = None
 
@@ -46,7 +48,7 @@ class Field:
         put = partial(self.put, device) if self.put else getattr(device, f"set{self.hal}", None)
         register = getattr(device, f"register{self.hal}Callback", None)
         watch = None if register is None else partial(_watch, register)
-        return Slot(get, put, self.kind, watch, self.same_as or self.name, self.recorded)
+        return Slot(get, put, self.kind, watch, self.same_as or self.name, self.recorded, unset=self.unset)
 
 
 def _loaded(get: Callable[[], Any], load: Callable[[Any], Any]) -> Callable[[], Any]:

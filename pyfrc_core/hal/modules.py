@@ -56,7 +56,7 @@ def solenoid(module: Any, path: str, channel: int) -> LiveDict:
             return module.registerSolenoidOutputCallback(channel, lambda *_: fire(), False)
 
         get, put = partial(module.getSolenoidOutput, channel), partial(module.setSolenoidOutput, channel)
-        return {"initialized": INITIALIZED.slot(module), "value": Slot(get, put, BOOL, watch)}
+        return {"initialized": INITIALIZED.slot(module), "value": Slot(get, put, BOOL, watch, unset=False)}
 
     return LiveDict(path, build)
 
@@ -86,17 +86,22 @@ def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
 
 
 class ModuleDict(LiveDict):
-    """Modules by their CAN number, each there once the robot has made it."""
+    """Modules by their CAN number, each there once the robot has made it.
 
-    def __init__(self, path: str, initialized: Callable[[int], bool], make: Callable[[int], Any]) -> None:
+    :param always: the number of a module that is there before that, too
+    """
+
+    def __init__(
+        self, path: str, initialized: Callable[[int], bool], make: Callable[[int], Any], always: int | None = None
+    ) -> None:
         super().__init__(path, dict)
-        self._initialized, self._make = initialized, make
+        self._initialized, self._make, self._always = initialized, make, always
 
     def __contains__(self, key: object) -> bool:
-        return isinstance(key, int) and 0 <= key < MODULES and self._initialized(key)
+        return isinstance(key, int) and (key == self._always or (0 <= key < MODULES and self._initialized(key)))
 
     def __iter__(self) -> Iterator[int]:
-        return (number for number in range(MODULES) if self._initialized(number))
+        return (number for number in range(MODULES) if number in self)
 
     def __getitem__(self, key: Any) -> Any:
         if key not in self:
@@ -125,10 +130,10 @@ class Modules:
         )
         distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), self._power_sim(n)))
         self.ph = ModuleDict("ph", self._has_hub, self._hub_solenoids)
-        self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either)
+        self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either, always=0)
         self.ph_compressor = ModuleDict("ph_compressor", self._has_hub, self._hub_compressor)
         self.pcm_compressor = ModuleDict("pcm_compressor", self._has_pcm, self._pcm_compressor)
-        self.pdp = ModuleDict("pdp", lambda n: self._power_sim(n).getInitialized(), distributions)
+        self.pdp = ModuleDict("pdp", lambda n: self._power_sim(n).getInitialized(), distributions, always=0)
 
     def _has_pcm(self, module: int) -> bool:
         return self._pcm_sim(module).getInitialized()
@@ -137,8 +142,9 @@ class Modules:
         return self._hub_sim(module).getInitialized()
 
     def _either(self, module: int) -> LiveList:
-        # A PCM and a hub may share a number: the PCM has the older right to the key.
-        return self._hub_solenoids(module) if not self._has_pcm(module) else self._pcm_solenoids(module)
+        # A PCM and a hub may share a number: the PCM has the older right to the key, and what no robot has made is one.
+        is_hub = self._has_hub(module) and not self._has_pcm(module)
+        return self._hub_solenoids(module) if is_hub else self._pcm_solenoids(module)
 
     @staticmethod
     def _solenoids(key: str, module: Any, number: int, count: int) -> LiveList:
@@ -147,8 +153,8 @@ class Modules:
 
     @property
     def solenoid(self) -> LiveList:
-        """The solenoids of the CTRE module 0, whether the robot has made it or not."""
-        return self._pcm_solenoids(0)
+        """The solenoids of module 0, whether the robot has made it or not: CTRE's, unless it has made REV's only."""
+        return self._either(0)
 
     @property
     def compressor(self) -> LiveDict:

@@ -98,7 +98,8 @@ class Recording:
                     yield from _of(solenoid, "value")
         for room in (modules.pcm_compressor, modules.ph_compressor, modules.pdp):
             for module in room.values():
-                yield from _of(module)
+                if module["initialized"]:
+                    yield from _of(module)
         for name in sorted(tree["CAN"]):
             yield from _of(tree["CAN"][name])
 

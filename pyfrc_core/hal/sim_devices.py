@@ -250,6 +250,10 @@ class RobotDict(LiveDict):
             raise self._unknown(key)
         del self._free[key]
 
+    def clear(self) -> None:
+        """Remove what no device of the robot stands for."""
+        self._free.clear()
+
     def __contains__(self, key: object) -> bool:
         return key in self._free or self._bridge(key) is not None
 

@@ -11,6 +11,7 @@ import wpilib
 from wpimath.geometry import Pose2d, Rotation2d, Transform2d
 from wpimath.kinematics import ChassisSpeeds
 
+from ..config.document import document_of
 from ..config.in_effect import config_of
 from ..config.sim import SimConfig
 from ..errors import RobotCodeError
@@ -73,7 +74,7 @@ class PhysicsInterface:
 
     :param robot_path: the directory of the robot's code
     :param fake_time: the robot's time, for physics that want to ask it
-    :param config_obj: what ``sim/config.json`` holds
+    :param config_obj: what ``sim/config.json`` holds: the parsed file as a dict, or its values in effect
     :param hal_data: the robot's inputs and outputs, where the gyros are; None leaves gyros alone
     """
 
@@ -86,14 +87,15 @@ class PhysicsInterface:
     ) -> None:
         self.robot_path = str(robot_path)
         self.fake_time = fake_time
-        #: The robot's start, its size, the field.
-        self.config_obj = config_obj
         #: The field as dashboards show it; `setRobotPose` puts the robot elsewhere.
         self.field = wpilib.Field2d()
         #: The targets that a `VisionSim` looks for, and those that it sees now.
         self.vision_targets: tuple[VisionSimTarget, ...] = ()
         self.vision_targets_in_view: tuple[VisionSimTarget, ...] = ()
         config = config_obj if isinstance(config_obj, SimConfig) else config_of(config_obj)
+        #: ``sim/config.json`` as a plain dict, with the default of each key that is not in the file:
+        #: ``config_obj["pyfrc"]["robot"]["w"]``.
+        self.config_obj = document_of(config) if isinstance(config_obj, SimConfig) else config_obj
         self._hal_data = hal_data
         self._pose: Pose
         self._shown: Pose2d

@@ -11,6 +11,7 @@ from typing import Any
 import wpilib
 from wpimath.geometry import Pose2d
 
+from ..config.document import document_of
 from ..hal import modes
 from ..project import Project
 from ..runtime.clock import PACKET_US, PHYSICS, to_us
@@ -57,8 +58,10 @@ class PhysicsModule:
 
         :param fake_time: what engines find as `physics_controller.fake_time`
         """
-        config = self._project.sim_config
+        loaded = self._project.loaded_sim_config
+        config = loaded.config
         controller = PhysicsInterface(self._project.root, fake_time, config, run.hal_data)
+        controller.config_obj = document_of(config, loaded.text.value if loaded.text is not None else None)
         if not self.takes_hal_data and not config.says_start:
             controller.field.setRobotPose(Pose2d())  # where today's robots start
         return Physics(self, controller, run)

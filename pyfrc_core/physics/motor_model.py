@@ -9,11 +9,13 @@ any length is exact.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from .motor_cfgs import MotorModelConfig
-from .parameters import ParameterError, not_negative, positive, within_full_power
+from .parameters import ParameterError, finite, not_negative, positive, within_full_power
 from .quantities import magnitude
+from .units import units
 
 if TYPE_CHECKING:
     from .units import Quantity
@@ -21,6 +23,9 @@ if TYPE_CHECKING:
 
 class MotorModel:
     """Motor model used by the `TankModel`, which makes its own.
+
+    `position`, `velocity`, `kv`, `ka` and `vintercept` may be set at any time: the next step goes on from there. So may
+    `acceleration`, which the next step computes anew.
 
     :param motor_config: the specification of the motor
     :param kv: voltage for a speed (`units.tm_kv`), computed or measured for the robot
@@ -30,12 +35,20 @@ class MotorModel:
     :raises ParameterError: for a value that cannot be, such as a negative `ka`
     """
 
+    # With a dict, so that a test may set any attribute, or replace a method.
     __slots__ = (
+        "__dict__",
+        "__weakref__",
         "_friction_speed",
         "_full_speed",
         "_tm_diff",
+        "_volts",
+        "_volts_of_friction",
+        "_volts_per_acceleration",
+        "_volts_per_speed",
         "kept",
         "lag",
+        "on_change",
         "position",
         "reach",
         "steady",
@@ -54,27 +67,81 @@ class MotorModel:
     kept: float
     #: How far a lag of 1 ft/s brings the wheel meanwhile (in ft)
     reach: float
+    #: Called when an attribute was set, from which others were computed
+    on_change: Callable[[], None] | None
 
     def __init__(self, motor_config: MotorModelConfig, kv: Quantity, ka: Quantity, vintercept: Quantity) -> None:
-        self.lag = self.position = self.steady = 0.0
-        volts_per_speed = positive(magnitude(kv, "volt * second / foot", "kv"), "kv")
-        volts_per_acceleration = positive(magnitude(ka, "volt * second ** 2 / foot", "ka"), "ka")
-        friction = not_negative(magnitude(vintercept, "volt", "vintercept"), "vintercept")
+        self.lag = self.position = self.steady = self._tm_diff = 0.0
+        self.on_change = None
+        self._volts_per_speed = _volts_per_speed(kv)
+        self._volts_per_acceleration = _volts_per_acceleration(ka)
+        self._volts_of_friction = _volts_of_friction(vintercept)
+        self._volts = nominal_volts(motor_config)
+        self._compute_constants()
+
+    def _compute_constants(self) -> None:
         # Speeds instead of voltages: what each would come to. And the time in which they do.
-        self._full_speed = nominal_volts(motor_config) / volts_per_speed
-        self._friction_speed = friction / volts_per_speed
-        self.time_constant = volts_per_acceleration / volts_per_speed
-        self.prepare(0.0)
+        self._full_speed = self._volts / self._volts_per_speed
+        self._friction_speed = self._volts_of_friction / self._volts_per_speed
+        self.time_constant = self._volts_per_acceleration / self._volts_per_speed
+        self.prepare(self._tm_diff)
+        if self.on_change is not None:
+            self.on_change()
+
+    @property
+    def kv(self) -> Quantity:
+        """Voltage for a speed (`units.tm_kv`)."""
+        volts: Quantity = self._volts_per_speed * units.tm_kv
+        return volts
+
+    @kv.setter
+    def kv(self, kv: Quantity) -> None:
+        self._volts_per_speed = _volts_per_speed(kv)
+        self._compute_constants()
+
+    @property
+    def ka(self) -> Quantity:
+        """Voltage for an acceleration (`units.tm_ka`)."""
+        volts: Quantity = self._volts_per_acceleration * units.tm_ka
+        return volts
+
+    @ka.setter
+    def ka(self, ka: Quantity) -> None:
+        self._volts_per_acceleration = _volts_per_acceleration(ka)
+        self._compute_constants()
+
+    @property
+    def vintercept(self) -> Quantity:
+        """The least voltage that overcomes steady friction (`units.volt`)."""
+        volts: Quantity = self._volts_of_friction * units.volt
+        return volts
+
+    @vintercept.setter
+    def vintercept(self, vintercept: Quantity) -> None:
+        self._volts_of_friction = _volts_of_friction(vintercept)
+        self._compute_constants()
 
     @property
     def velocity(self) -> float:
         """Current computed velocity (in ft/s)."""
         return self.steady + self.lag
 
+    @velocity.setter
+    def velocity(self, velocity: float) -> None:
+        self.lag = finite(velocity, "velocity") - self.steady
+
     @property
     def acceleration(self) -> float:
         """Current computed acceleration (in ft/s^2)."""
         return 0.0 - self.lag / self.time_constant
+
+    @acceleration.setter
+    def acceleration(self, acceleration: float) -> None:
+        velocity = self.velocity
+        self.lag = -finite(acceleration, "acceleration") * self.time_constant
+        self.steady = velocity - self.lag
+        if self.on_change is not None:
+            self.on_change()
 
     def compute(self, motor_pct: float, tm_diff: float) -> float:
         """Go on for `tm_diff` seconds with this motor value.
@@ -111,6 +178,18 @@ class MotorModel:
         gained = -math.expm1(-tm_diff / self.time_constant)
         self.kept = 1.0 - gained
         self.reach = self.time_constant * gained
+
+
+def _volts_per_speed(kv: Quantity) -> float:
+    return positive(magnitude(kv, "volt * second / foot", "kv"), "kv")
+
+
+def _volts_per_acceleration(ka: Quantity) -> float:
+    return positive(magnitude(ka, "volt * second ** 2 / foot", "ka"), "ka")
+
+
+def _volts_of_friction(vintercept: Quantity) -> float:
+    return not_negative(magnitude(vintercept, "volt", "vintercept"), "vintercept")
 
 
 def nominal_volts(motor_config: MotorModelConfig) -> float:

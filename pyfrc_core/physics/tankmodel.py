@@ -12,7 +12,7 @@ from wpimath.geometry import Transform2d
 from .arc import MOST_BEND, MOST_TIME_CONSTANTS, MOST_TURN, Side, along, bow
 from .motor_cfgs import MotorModelConfig
 from .motor_model import MotorModel, nominal_volts
-from .parameters import ParameterError, positive
+from .parameters import ParameterError, finite, positive
 from .quantities import magnitude
 from .units import units
 
@@ -40,6 +40,9 @@ class TankModel:
     ``model.inertia = mass * x_wheelbase**2 / 2`` the heading agrees exactly with wheels that do not slip at all:
     ``(l_position - r_position) / x_wheelbase`` radians clockwise.
 
+    `inertia`, `bm`, and the positions and velocities of both sides may be set at any time: the next step goes on from
+    there.
+
     :param motor_config: specification of the motors
     :param robot_mass: mass of the robot
     :param x_wheelbase: distance between the left and the right wheels
@@ -56,7 +59,10 @@ class TankModel:
     :raises ParameterError: for a value that cannot be, such as a negative mass
     """
 
+    # With a dict, so that a test may set any attribute, or replace a method.
     __slots__ = (
+        "__dict__",
+        "__weakref__",
         "_inertia",
         "_l_motor",
         "_lmotor",
@@ -93,6 +99,7 @@ class TankModel:
 
         self._lmotor = MotorModel(motor_config, l_kv, l_ka, l_vi)
         self._rmotor = MotorModel(motor_config, r_kv, r_ka, r_vi)
+        self._lmotor.on_change = self._rmotor.on_change = self._start_anew
         self._l_motor = self._r_motor = self._tm_diff = 0.0
 
         self._pull = 0.5 * wheelbase * mass
@@ -176,24 +183,59 @@ class TankModel:
         self._prepare(self._tm_diff)
 
     @property
+    def bm(self) -> Quantity:
+        """Half the wheelbase times the mass, [length] * [mass]: the lever of the sides' forces. Set it for another one.
+
+        :raises WrongDimension: when set in another unit
+        """
+        lever: Quantity = self._pull * units.foot * units.pound
+        return lever
+
+    @bm.setter
+    def bm(self, lever: Quantity) -> None:
+        self._pull = positive(magnitude(lever, "foot * pound", "bm"), "bm")
+        self._prepare(self._tm_diff)
+
+    def _start_anew(self) -> None:
+        """Have the next step look at the motors' values and constants again."""
+        self._l_motor = self._r_motor = math.nan  # unlike any value
+        self._prepare(self._tm_diff)
+
+    @property
     def l_position(self) -> float:
         """The linear position of the left side wheel (in feet), forward positive."""
         return self._lmotor.position
+
+    @l_position.setter
+    def l_position(self, position: float) -> None:
+        self._lmotor.position = finite(position, "l_position")
 
     @property
     def r_position(self) -> float:
         """The linear position of the right side wheel (in feet), forward positive."""
         return self._rmotor.position
 
+    @r_position.setter
+    def r_position(self, position: float) -> None:
+        self._rmotor.position = finite(position, "r_position")
+
     @property
     def l_velocity(self) -> float:
         """The velocity of the left side (in ft/s), forward positive."""
         return self._lmotor.velocity
 
+    @l_velocity.setter
+    def l_velocity(self, velocity: float) -> None:
+        self._lmotor.velocity = finite(velocity, "l_velocity")
+
     @property
     def r_velocity(self) -> float:
         """The velocity of the right side (in ft/s), forward positive."""
         return self._rmotor.velocity
+
+    @r_velocity.setter
+    def r_velocity(self, velocity: float) -> None:
+        self._rmotor.velocity = finite(velocity, "r_velocity")
 
     def get_distance(self, l_motor: float, r_motor: float, tm_diff: float) -> tuple[float, float, float]:
         """How far the robot has moved, for `PhysicsInterface.distance_drive`.

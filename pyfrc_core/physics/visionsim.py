@@ -43,6 +43,24 @@ class VisionSimTarget:
     def __repr__(self) -> str:
         return f"VisionSimTarget({self.x}, {self.y}, {self.view_angle_start}, {self.view_angle_end})"
 
+    def compute(self, now: float, x: float, y: float, angle: float) -> Sighting | None:
+        """See this target from the robot, with a camera that looks everywhere and infinitely far.
+
+        `VisionSim` calls this for each of its targets: a subclass may move a target, or hide it.
+
+        :param now: robot time, in seconds
+        :param x: of the robot, in feet
+        :param y: of the robot, in feet, growing downwards
+        :param angle: of the robot, in radians, clockwise from east
+        :returns: (1, `now`, offset in degrees, distance in feet), offsets to the right positive; None from where the
+            target cannot be seen
+        """
+        if not self.faces(x, y):
+            return None
+        dx, dy = self.x - x, self.y - y
+        offset = math.degrees(math.remainder(math.atan2(dy, dx) - angle, math.tau))
+        return 1, now, offset, math.hypot(dx, dy)
+
     def faces(self, x: float, y: float) -> bool:
         """Whether (x, y) is where the target can be seen from, however far away."""
         span = self.view_angle_end - self.view_angle_start
@@ -124,14 +142,14 @@ class VisionSim:
         """
         if not math.isfinite(x + y + angle):
             raise ParameterError(f"x, y, angle = {x!r}, {y!r}, {angle!r}: must be finite numbers")
-        in_view = self._in_view(x, y, angle)
-        self._show(tuple(target for _, _, target in in_view))
-        in_view.sort(key=lambda sight: abs(sight[0]))
-        self._immediate_distance = in_view[0][1] if in_view else None
+        in_view = self._in_view(now, x, y, angle)
+        self._show(tuple(target for _, target in in_view))
+        in_view.sort(key=lambda sight: abs(sight[0][2]))
+        self._immediate_distance = in_view[0][0][3] if in_view else None
         if self._first_frame is not None and now < self._first_frame:
             self.dont_compute()  # another run has begun
         if self._frame_is_due(now):
-            frame = [(1, now, offset, distance) for offset, distance, _ in in_view]
+            frame = [sighting for sighting, _ in in_view]
             self._in_flight.append(frame or [(0, now, math.inf, 0)])
         arrived = None
         while self._in_flight and self._in_flight[0][0][1] + self._lag <= now + _TICK:
@@ -151,15 +169,16 @@ class VisionSim:
         """
         return self._immediate_distance
 
-    def _in_view(self, x: float, y: float, angle: float) -> list[tuple[float, float, VisionSimTarget]]:
-        """Offset in degrees, distance in feet, and target, of each in view."""
+    def _in_view(self, now: float, x: float, y: float, angle: float) -> list[tuple[Sighting, VisionSimTarget]]:
+        """Each target in view, with what is seen of it."""
         in_view = []
         for target in self._targets:
-            dx, dy = target.x - x, target.y - y
-            distance = math.hypot(dx, dy)
-            offset = math.degrees(math.remainder(math.atan2(dy, dx) - angle, math.tau))
-            if self._nearest <= distance <= self._farthest and abs(offset) <= self._half_fov and target.faces(x, y):
-                in_view.append((offset, distance, target))
+            sighting = target.compute(now, x, y, angle)
+            if sighting is None:
+                continue
+            _, _, offset, distance = sighting
+            if self._nearest <= distance <= self._farthest and abs(offset) <= self._half_fov:
+                in_view.append((sighting, target))
         return in_view
 
     def _frame_is_due(self, now: float) -> bool:

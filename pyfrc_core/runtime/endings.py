@@ -6,6 +6,8 @@ swallow the end of its own run. (Importable from their documented place, `pyfrc.
 
 from __future__ import annotations
 
+from ..errors import PyfrcError
+
 
 class TestEnded(BaseException):
     """This is thrown when the controller has been signaled to end the test.
@@ -31,3 +33,7 @@ class TestFroze(Exception):
     """The robot code stopped letting time go on: an endless loop, or a call that never returns."""
 
     __test__ = False
+
+
+class WrongThread(PyfrcError, RuntimeError):
+    """A thread asked for what only the thread that drives the clock, or one in robot time, can do."""

@@ -210,8 +210,11 @@ class Redirection:
                 if run is None:
                     real(delta)
                     return
+                target_us = run.clock.now_us + in_us(delta)
+                if run.sleep_on_robot_thread(target_us):
+                    return
                 try:
-                    run.clock.run_until(run.clock.now_us + in_us(delta))
+                    run.clock.run_until(target_us)
                 except TestEnded:
                     if run.threads.failure is None:
                         raise

@@ -23,7 +23,7 @@ from ..hal.output_gate import OutputGate
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .data_logs import DataLogs, LogPlace
-from .endings import TestEnded, TestFroze
+from .endings import TestEnded, TestFroze, WrongThread
 from .loop_watchdog import LoopOverruns, end_wpilibs_thread
 from .motor_safety import MotorSafetyCheck
 from .notifier import Alarms
@@ -175,10 +175,63 @@ class RobotRun:
             action()
 
     def run_until(self, target_us: int) -> None:
-        """Let the robot run until `target_us`, raising what its code raises."""
+        """Let the robot run until `target_us`, raising what its code raises.
+
+        A thread of the robot sleeps until then, as with `time.sleep`.
+
+        :raises WrongThread: on a thread that does not live in robot time
+        """
         __tracebackhide__ = True
-        with self._failing():
-            self.clock.run_until(target_us)
+        if not self.sleep_on_robot_thread(target_us):
+            with self._failing():
+                self.clock.run_until(target_us)
+
+    def sleep_on_robot_thread(self, target_us: int) -> bool:
+        """Sleep until `target_us` if one of the robot's threads calls this, and return whether it does.
+
+        :raises WrongThread: on a thread that does not live in robot time
+        """
+        __tracebackhide__ = True
+        if not self._on_robot_thread("let robot time pass"):
+            return False
+        self.threads.sleep_until(target_us)
+        return True
+
+    def check_drives_clock(self, what: str) -> None:
+        """Raise an error unless the calling thread is the one that drives the clock.
+
+        :param what: what it is about to do, completing "cannot ..."
+        :raises WrongThread: on every other thread
+        """
+        __tracebackhide__ = True
+        if self._on_robot_thread(what):
+            raise WrongThread(
+                f"the thread {threading.current_thread().name!r} cannot {what}: it sleeps in robot time",
+                remedy="do it in the test itself, not in a thread",
+            )
+
+    def check_can_set_time_back(self) -> None:
+        """Raise an error unless robot time can be set back: by the thread that drives it, before the robot starts."""
+        __tracebackhide__ = True
+        self.check_drives_clock("set robot time back")
+        if self.started:
+            raise RuntimeError("the robot is running: its time can only be set back before run_test() or run_robot()")
+
+    def _on_robot_thread(self, what: str) -> bool:
+        """Whether the calling thread is one of the robot's, and not the one that drives the clock.
+
+        :raises WrongThread: when it is neither
+        """
+        __tracebackhide__ = True
+        if threading.get_ident() == self.threads.driver:
+            return False
+        if self.threads.current() is not None:
+            return True
+        name = threading.current_thread().name
+        raise WrongThread(
+            f"the thread {name!r} cannot {what}: it does not live in robot time",
+            remedy="only the test itself and the robot's own threads can",
+        )
 
     def next_packet(self) -> None:
         """Let the robot run to the next driver-station packet and through everything that is due with it."""

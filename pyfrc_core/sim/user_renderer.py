@@ -14,7 +14,7 @@ from .scene import Line, Point, Pose, Text
 #: So many drawings stay on the field; when there are more, the oldest go.
 MOST_DRAWINGS = 500
 
-#: ``True``: as seen from the robot's centre; an (x, y): from that place on the robot.
+#: ``True``: as seen from the robot's centre; an (x, y): from that place on the robot, x to its right and y forward.
 RobotCoordinates = bool | Point
 
 
@@ -30,7 +30,8 @@ class UserRenderer:
     """Draws on the simulated field. May be used from any thread.
 
     Places are (x, y) in feet: on the field, x to the right and y downwards from its top left corner; in robot
-    coordinates, x forward and y to the robot's right. Where the robot is, is asked when something is drawn: a drawing
+    coordinates, x forward and y to the robot's right. An offset, a place on the robot, is (across, along) as its width
+    and length are: x to the robot's right, y forward. Where the robot is, is asked when something is drawn: a drawing
     stays where it is when the robot moves on. The same drawn again is drawn once.
 
     :param robot: answers where the robot is
@@ -61,7 +62,7 @@ class UserRenderer:
         :param line_pts: a list of (x, y) pairs, in feet
         :param color: as a 6-digit hex color
         :param robot_coordinates: if True, the line starts at the robot's centre and is turned as the robot is; if an
-            (x, y), it starts at that place on the robot
+            (x, y), it starts at that place on the robot: x feet to the right of its centre, y feet ahead
         :param relative_to_first: if True, the points are moved so that the first is (0, 0)
         :param arrow: if True, there is an arrow at the end
         :param scale: all points are multiplied by this (x, y)
@@ -93,7 +94,7 @@ class UserRenderer:
         :param color: as a 6-digit hex color
         :param fontSize: in points
         :param robot_coordinates: if True, the point is as seen from the robot's centre; if an (x, y), from that place
-            on the robot
+            on the robot: x feet to the right of its centre, y feet ahead
         :param scale: the point is multiplied by this (x, y)
         :param arrow: changes nothing: texts have no arrow; calls that give it, as documented, work
         :param kwargs: keyword options for ``tkinter``'s `create_text`
@@ -117,7 +118,7 @@ class UserRenderer:
 
         :param trajectory: a list of segments; their y grows to the left, as in pathfinder
         :param color: as a 6-digit hex color
-        :param offset: an (x, y) on the robot where the path starts
+        :param offset: an (x, y) on the robot where the path starts: x feet to the right of its centre, y feet ahead
         :param scale: all points are multiplied by this (x, y)
         :param show_dt: write the time along the path every so many seconds, or False
         :param dt_offset: is added to each time shown
@@ -144,9 +145,9 @@ class UserRenderer:
         points = [(x * scale_x, y * scale_y) for x, y in points]
         if robot_coordinates is False:
             return tuple(points)
-        dx, dy = (0.0, 0.0) if robot_coordinates is True else _point(robot_coordinates)
+        across, along = (0.0, 0.0) if robot_coordinates is True else _point(robot_coordinates)
         robot = self._robot() or Pose(0.0, 0.0, 0.0)
-        moved = (robot.moved(x + dx, y + dy, 0.0) for x, y in points)
+        moved = (robot.moved(x + along, y + across, 0.0) for x, y in points)
         return tuple((pose.x, pose.y) for pose in moved)
 
     def _add(self, drawing: Line | Text) -> None:

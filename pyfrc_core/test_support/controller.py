@@ -82,10 +82,10 @@ class TestController:
 
         :param controller: a function that takes the current robot time in seconds, or a class (or an object) that has
             such a method ``on_step``; of a class an instance is made. It is called before every driver-station
-            packet, and the robot sees with that packet what it sets. The robot runs for as long as it answers
-            something true.
+            packet, and the robot sees with that packet what it sets. The robot runs for as long as it returns
+            something true. In a practice match it may return nothing: the match decides when the run ends.
         :returns: the instance, if `controller` is a class
-        :raises RuntimeError: when called twice, or without a controller and without `set_practice_match`
+        :raises RuntimeError: when called twice, in a thread, or without a controller and without `set_practice_match`
         """
         __tracebackhide__ = True
         self._begin("run_test")
@@ -128,7 +128,7 @@ class TestController:
                 raise TypeError(
                     f"run_test(controller): {controller!r} is neither a function nor a class with an on_step method"
                 )
-            steps.append(_answering(on_step))
+            steps.append(_answering(on_step) if self._practice_match is None else _until_false(on_step))
         if not steps:
             raise RuntimeError("run_test() needs a function to call on each step, or set_practice_match() before it")
         return instance, steps
@@ -201,11 +201,23 @@ class TestController:
 
     def _begin(self, how: str) -> None:
         __tracebackhide__ = True
+        self._run.check_drives_clock(f"call {how}()")
         if self._run.started:
             raise RuntimeError(
                 f"{how}(): the robot has run already in this test. It can only run once; "
                 "write a second test, or do everything in one run."
             )
+
+
+def _until_false(on_step: OnStep) -> OnStep:
+    """`on_step` of a practice match: nothing returned means "go on", something false ends the match early."""
+
+    def step(now: float) -> object:
+        __tracebackhide__ = True
+        answer = on_step(now)
+        return answer is None or answer
+
+    return step
 
 
 def _answering(on_step: OnStep) -> OnStep:

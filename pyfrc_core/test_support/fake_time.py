@@ -14,6 +14,9 @@ class FakeTime:
 
     Do not create this object: your test gets it as the ``fake_time`` fixture. All times are seconds of robot time,
     which starts at 0 and moves only when the robot, or your test, lets it.
+
+    A thread of the robot may use it, too: a thread that increments the time sleeps for as long, as with `time.sleep`.
+    A thread that does not live in robot time can only ask for the time and set the limit.
     """
 
     def __init__(self, run: RobotRun | None = None) -> None:
@@ -44,8 +47,7 @@ class FakeTime:
 
         :raises RuntimeError: when the robot runs already
         """
-        if self.run.started:
-            raise RuntimeError("the robot is running: its time can only be set back before run_test() or run_robot()")
+        self.run.check_can_set_time_back()
         self.run.clock.initialize()
 
     def reset(self) -> None:

@@ -17,8 +17,14 @@ _OTHER_SECONDS = 5.0
 
 # First, being the longest: the others run beside it.
 def test_practice(control: TestController, fake_time: FakeTime, robot: Any) -> None:
-    """Runs through the entire span of a practice match."""
+    """Runs through the entire span of a practice match.
+
+    The field sends the first of the `game_specific_messages` in ``sim/config.json``, if there are any;
+    `test_autonomous` runs with each of them.
+    """
     __tracebackhide__ = True
+    messages = control.project.game_specific_messages if control.project is not None else ()
+    control.game_specific_message = next(iter(messages), None)
     control.set_practice_match()
     control.run_test()
 

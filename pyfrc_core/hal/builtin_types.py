@@ -1,0 +1,142 @@
+"""Base classes that make the live containers of `hal_data` a `dict` and a `list` of Python.
+
+Tests of 2019 check ``isinstance(hal_data, dict)``, and hand parts of the tree to code that takes a dict or a list only.
+The values stay in the HAL: `dict` and `list` are bases for the type check, and their own storage holds no value. Each
+method that would look there is replaced here. What Python's own C code does with a subclass goes through these
+methods: ``json.dumps``, ``dict(x)``, ``{**x}``, ``x | y``, ``x == y``, ``copy``, ``pickle``, ``list(x)``, ``x + y``.
+A C extension that reads the storage itself, as `orjson` does, finds one entry that names the remedy: not an empty dict.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Iterator, Mapping, MutableMapping, Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from .kinds import WrongType
+
+#: The one entry of a dict's own storage. `json` takes a dict without any for an empty one.
+_STORED = ("live", "these values are in the HAL: take a copy with dict(...) or hal_data.snapshot()")
+
+
+if TYPE_CHECKING:
+    # The parameters that the standard library's two descriptions of a dict give to the same method differ a little.
+    _Dict = dict[Any, Any]
+    _List = list[Any]
+else:
+
+    class _Dict(MutableMapping, dict):
+        """What every method of `dict` does, by the few methods of a `MutableMapping`."""
+
+    class _List(Sequence, list):
+        """What the reading methods of `list` do, by the few methods of a `Sequence`."""
+
+
+class LiveMapping(_Dict):
+    """A dict whose entries are somewhere else; subclasses say where, as for a `MutableMapping`."""
+
+    def __init__(self) -> None:
+        dict.__setitem__(self, *_STORED)
+
+    def copy(self) -> dict[Any, Any]:
+        """A dict of the values of this moment. Containers in it are live."""
+        return {key: self[key] for key in self}
+
+    @classmethod
+    def fromkeys(cls, iterable: Iterable[Any], value: Any = None) -> dict[Any, Any]:
+        """As of `dict`, of which this makes an ordinary one."""
+        return dict.fromkeys(iterable, value)
+
+    def __reversed__(self) -> Iterator[Any]:
+        yield from reversed(list(self))
+
+    def __or__(self, other: Any) -> Any:
+        return self.copy() | _values_of(other) if isinstance(other, Mapping) else NotImplemented
+
+    def __ror__(self, other: Any) -> Any:
+        return _values_of(other) | self.copy() if isinstance(other, Mapping) else NotImplemented
+
+    def __ior__(self, other: Any) -> Any:
+        self.update(other)
+        return self
+
+    def __eq__(self, other: object) -> bool:
+        return self is other or (isinstance(other, Mapping) and self.copy() == _values_of(other))
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    __hash__ = None
+
+    def __copy__(self) -> dict[Any, Any]:
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> dict[Any, Any]:
+        return copy.deepcopy(self.copy(), memo)
+
+    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+        return dict, (self.copy(),)
+
+
+class LiveSequence(_List):
+    """A list of fixed length whose entries are somewhere else; subclasses say where, as for a `Sequence`."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+
+    def copy(self) -> list[Any]:
+        """A list of the values of this moment. Containers in it are live."""
+        return list(self)
+
+    def _fixed(self, *_: Any, **__: Any) -> NoReturn:
+        problem, remedy = "the list has a fixed length and order", "write its entries, or take list(...) of it"
+        raise WrongType(problem, where=self._path, remedy=remedy)
+
+    append = extend = insert = pop = remove = clear = sort = reverse = _fixed
+    __delitem__ = __iadd__ = __imul__ = _fixed
+
+    def __add__(self, other: Any) -> Any:
+        return list(self) + list(other) if isinstance(other, list) else NotImplemented
+
+    def __radd__(self, other: Any) -> Any:
+        return list(other) + list(self) if isinstance(other, list) else NotImplemented
+
+    def __mul__(self, times: Any) -> Any:
+        return list(self) * times
+
+    __rmul__ = __mul__
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, (list, tuple)):
+            return self is other or list(self) == list(other)
+        return NotImplemented
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    def __lt__(self, other: Any) -> Any:
+        return list(self) < list(other) if isinstance(other, list) else NotImplemented
+
+    def __le__(self, other: Any) -> Any:
+        return list(self) <= list(other) if isinstance(other, list) else NotImplemented
+
+    def __gt__(self, other: Any) -> Any:
+        return list(self) > list(other) if isinstance(other, list) else NotImplemented
+
+    def __ge__(self, other: Any) -> Any:
+        return list(self) >= list(other) if isinstance(other, list) else NotImplemented
+
+    __hash__ = None
+
+    def __copy__(self) -> list[Any]:
+        return list(self)
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> list[Any]:
+        return copy.deepcopy(list(self), memo)
+
+    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+        return list, (list(self),)
+
+
+def _values_of(mapping: Mapping[Any, Any]) -> dict[Any, Any]:
+    return {key: mapping[key] for key in mapping}
