@@ -17,7 +17,7 @@ from conftest import MakeProject, Result, RobotProject
 from hal import simulation as hs
 from sim_robots import run
 
-from pyfrc.physics import motor_cfgs, tankmodel
+from pyfrc.physics import drivetrains, motor_cfgs, tankmodel
 from pyfrc.physics.units import units
 from pyfrc.physics.visionsim import VisionSim, VisionSimTarget
 from pyfrc.sim.field.user_renderer import UserRenderer
@@ -249,6 +249,17 @@ def test_the_levers_of_a_tank_model_are_set() -> None:
     assert turned[1:] == pytest.approx([2 * turned[0]] * 2)
     with pytest.raises(ValueError, match="bm"):
         model.bm = 3 * units.feet
+
+
+def test_wheel_speeds_are_set() -> None:
+    drive = drivetrains.MecanumDrivetrain()
+    drive.get_vector(1, 1, 1, 1)
+    drive.lr_speed = drive.rr_speed = 0
+    drive.rf_speed = 2.0
+    assert (drive.lr_speed, drive.rr_speed, drive.lf_speed, drive.rf_speed) == (0, 0, 5, 2)
+    drive.calculate(1, 1, -1, -1)
+    drive.rf_speed = 2.0
+    assert (drive.rr_speed, drive.rf_speed) == (5, 2)
 
 
 def motor_model(kv: float = 0.9, ka: float = 0.3, vi: float = 1.3) -> tankmodel.MotorModel:

@@ -45,6 +45,11 @@ class Slot(NamedTuple):
 NOT_SET = 5e-324
 
 
+def _get_unless_unset(slot: Slot) -> Any:
+    value = slot.get()
+    return None if value == NOT_SET else value
+
+
 def kept(default: Any = None) -> Slot:
     """A value that the HAL of today does not have: it is kept as written, so that older tests still work."""
     cell = [default]
@@ -120,7 +125,7 @@ class LiveDict(LiveMapping):
             raise WrongValue("cannot be written", where=join(self._path, key), remedy=slot.remedy)
         if value is None and slot.unset is not None:
             checked = slot.unset
-            self._getters[key] = partial(self._get_unless_unset, key, slot)
+            self._getters[key] = partial(_get_unless_unset, slot)
         else:
             checked = value if slot.kind is ANY else slot.kind.check(value, join(self._path, key))
         watch = self._watches.get(slot.canonical or key) if self._watches else None
@@ -132,14 +137,6 @@ class LiveDict(LiveMapping):
         slot.set(checked)
         if not watch.heard:
             watch.fire()
-
-    def _get_unless_unset(self, key: Any, slot: Slot) -> Any:
-        """Read None until the robot, or a test, writes the value; then as before."""
-        value = slot.get()
-        if value == NOT_SET:
-            return None
-        self._getters[key] = slot.get
-        return value
 
     def __delitem__(self, key: Any) -> None:
         raise UnknownKey("a key of hal_data cannot be removed", where=join(self._path, key))

@@ -238,20 +238,41 @@ class MecanumDrivetrain:
         """Speed of the left front wheel in ft/s after the last calculation, forward positive: use it for encoders."""
         return self._given[0] * self._speed
 
+    @lf_speed.setter
+    def lf_speed(self, speed: float) -> None:
+        self._set_speed(0, speed)
+
     @property
     def lr_speed(self) -> float:
         """Of the left rear wheel, as `lf_speed`."""
         return self._given[1] * self._speed
+
+    @lr_speed.setter
+    def lr_speed(self, speed: float) -> None:
+        self._set_speed(1, speed)
 
     @property
     def rf_speed(self) -> float:
         """Of the right front wheel, as `lf_speed`."""
         return self._given[2] * self._speed * self._right_forward
 
+    @rf_speed.setter
+    def rf_speed(self, speed: float) -> None:
+        self._set_speed(2, speed * self._right_forward)
+
     @property
     def rr_speed(self) -> float:
         """Of the right rear wheel, as `lf_speed`."""
         return self._given[3] * self._speed * self._right_forward
+
+    @rr_speed.setter
+    def rr_speed(self, speed: float) -> None:
+        self._set_speed(3, speed * self._right_forward)
+
+    def _set_speed(self, wheel: int, speed: float) -> None:
+        given = list(self._given)
+        given[wheel] = finite(speed, "speed") / self._speed
+        self._given = given[0], given[1], given[2], given[3]
 
     @property
     def wheelSpeeds(self) -> MecanumDriveWheelSpeeds:
