@@ -399,6 +399,7 @@ PHYSICS = """
             hal_data["pdp"][0]["voltage"] = 11.5
 
         def update_sim(self, hal_data, now, tm_diff):
+            assert hal_data["pwm"][8]["value"] is None or abs(hal_data["pwm"][8]["value"]) <= 1
             hal_data["custom"].update({"tm_diff": tm_diff, "count": 3, "of each": {"a": [1, 2.5, True], 2: None}})
 """
 
@@ -485,6 +486,17 @@ TESTS = """
         assert hal_data["pwm"][8]["value"] is None
         hal_data["pwm"][8]["value"] = 0.5
         assert hal_data["pwm"][8]["value"] == 0.5
+
+
+    def test_none_stays_while_physics_of_a_disabled_robot_runs(control, hal_data):
+        def on_step(tm):
+            if tm == 0.1:
+                hal_data["pwm"][8]["value"] = None
+            return tm < 0.2
+
+        control.set_operator_control(enabled=False)
+        control.run_test(on_step)
+        assert hal_data["pwm"][8]["value"] is None
 
 
     def test_pneumatics_and_power(control, hal_data, robot):
