@@ -312,11 +312,12 @@ def _project_in(directory: Path, class_name: str | None) -> Project | None:
 def _nothing_found(directory: Path, how: str) -> ProjectError:
     below = _projects_below(directory)
     if below:
-        first = below[0].as_posix()
         also = f" (or {', '.join(f'./{each.as_posix()}' for each in below[1:])})" if len(below) > 1 else ""
+        there = (directory / below[0] if how == "in" else below[0]).as_posix()
+        there = f'"{there}"' if " " in there else there
         return ProjectError(
-            f"there is no {MAIN_FILE} {how} {directory}, but there is one in ./{first}{also}",
-            remedy=f"Go there with: cd {first}. Or name it with: --project {first}",
+            f"there is no {MAIN_FILE} {how} {directory}, but there is one in ./{below[0].as_posix()}{also}",
+            remedy=f"Go there with: cd {there}. Or name it with: --project {there}",
         )
     nearly = next((file.name for file in directory.glob("*.py") if file.name.lower() == MAIN_FILE), None)
     other = next((file.name for file in sorted(directory.glob("*.py")) if _defines_robot(file)), None)

@@ -198,6 +198,8 @@ def test_one_directory_too_high_names_the_projects_below(make_project: MakeProje
     assert f"there is no robot.py in or above {project.path}, but there is one in ./myrobot" in result.first_error
     assert "Go there with: cd myrobot. Or name it with: --project myrobot" in result.stderr
     assert project.run("test", "--project", "myrobot").code == 0
+    named = project.run("test", "--project", "..", cwd=project.path / "myrobot")
+    assert "--project ../myrobot" in named.stderr
 
 
 # --- mistakes in the robot's code
