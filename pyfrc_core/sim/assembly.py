@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from types import MappingProxyType
 from typing import Any
 
@@ -10,24 +11,53 @@ from .messages import Update
 from .scene import Field, Point, Scene
 from .snapshot import Snapshot
 
+#: So many of the trail's last points are all shown, and so many of those before.
+_RECENT_POINTS, _OLDER_POINTS = 2048, 4096
+
+
+class _Trail:
+    """Where the robot has been: of a long way, fewer and fewer of the older points."""
+
+    def __init__(self) -> None:
+        self._older: list[Point] = []
+        self._recent: list[Point] = []
+        #: Each of so many points is kept among the older ones, and how many there have been.
+        self._every, self._count = 1, 0
+        self.points: tuple[Point, ...] = ()
+
+    def add(self, points: Iterable[Point]) -> None:
+        self._recent += points
+        excess = len(self._recent) - _RECENT_POINTS
+        if excess > _RECENT_POINTS // 2:  # seldom, since front ends draw the whole trail anew then
+            for point in self._recent[:excess]:
+                if self._count % self._every == 0:
+                    self._older.append(point)
+                self._count += 1
+            del self._recent[:excess]
+            while len(self._older) > _OLDER_POINTS:
+                del self._older[1::2]
+                self._every *= 2
+        self.points = (*self._older, *self._recent)
+
 
 class Assembly:
     """The snapshots of one run."""
 
     def __init__(self) -> None:
         self._last: Snapshot | None = None
-        self._trail: list[Point] = []
+        self._trail = _Trail()
 
     @property
     def trail(self) -> tuple[Point, ...]:
         """Where the robot has been."""
-        return tuple(self._trail)
+        return self._trail.points
 
     def snapshot_after(self, update: Update, field: Field) -> Snapshot:
         """The robot as it is after an update."""
         before = self._last or Snapshot(0.0, "disabled", Scene(field))
         values = _values(before, update)
-        self._trail += update.trail
+        if update.trail:
+            self._trail.add(update.trail)
         since = update.station.practice_since_us
         self._last = Snapshot(
             time=update.time_us / 1_000_000,

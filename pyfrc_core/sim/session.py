@@ -347,6 +347,8 @@ class Session:
         self._told_at = wall()
         self._drawings, self._vision = drawings, vision
         self._steps_told = update.steps_from + len(steps)
+        if self._recorder is not None:
+            self._recorder.forget_before(update.steps_from)
         self._lines.clear()
         self._trail.clear()
         self._notes.clear()

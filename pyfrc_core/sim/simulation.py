@@ -95,7 +95,8 @@ class Simulation(Controls):
     @property
     def recordings(self) -> tuple[InputScript, ...]:
         """What was recorded until time was turned back, or the robot restarted; the latest first."""
-        return tuple(each.script() for each in self._older)
+        with self._changed:
+            return tuple(each.script() for each in self._older)
 
     def take_output(self) -> str:
         """What the robot has printed since this was last asked."""

@@ -36,6 +36,7 @@ class Recorder:
         self._hal_data = run.hal_data
         self._network = _Network()
         self._steps: list[Step] = []
+        self._forgotten = 0
         self._match_time = _MatchTime()
         self._told_by_name = {MODE, *map(plugged, range(modes.JOYSTICKS))}
         self._start_us = 0
@@ -88,7 +89,12 @@ class Recorder:
 
     def steps_from(self, index: int) -> tuple[Step, ...]:
         """What was recorded, from its step with this number on. The last step may still change."""
-        return tuple(self._steps[index:])
+        return tuple(self._steps[max(0, index - self._forgotten) :])
+
+    def forget_before(self, index: int) -> None:
+        """Drop the steps before the one with this number: a simulation, which has been given them, keeps them."""
+        del self._steps[: index - self._forgotten]
+        self._forgotten = index
 
     def _look(self) -> dict[str, Any]:
         found: dict[str, Any] = {MODE: modes.mode_name()}

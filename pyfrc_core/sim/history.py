@@ -1,0 +1,107 @@
+"""What has happened, in order of time: kept on disk but for its end, so that memory does not grow with a long run."""
+
+from __future__ import annotations
+
+import os
+import pickle
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import takewhile
+from operator import itemgetter
+from tempfile import TemporaryFile
+from typing import Generic, TypeVar
+
+Item = TypeVar("Item")
+
+#: So many entries are written at once. As many, and fewer than twice as many, are in memory.
+_BLOCK = 512
+
+
+class _File:
+    """A temporary file without a name, closed when no history needs it any more."""
+
+    def __init__(self) -> None:
+        self.io = TemporaryFile(prefix="pyfrc-sim-", buffering=0)  # noqa: SIM115
+
+    def __del__(self) -> None:
+        if hasattr(self, "io"):  # else there was no room for it
+            self.io.close()
+
+
+@dataclass(frozen=True)
+class _Block:
+    """Entries in a file, pickled; never changed, so that several histories may share it.
+
+    :param last_us: the time of its last entry
+    """
+
+    file: _File
+    offset: int
+    last_us: int
+
+
+class History(Generic[Item]):
+    """A list of times, in microseconds, and what happened then, which grows at its end.
+
+    Its temporary file has no name and is gone with the process. Use a history from one thread at a time.
+    """
+
+    def __init__(self) -> None:
+        self._blocks: list[_Block] = []
+        self._recent: list[tuple[int, Item]] = []
+        self._file: _File | None = None
+        self._most = 2 * _BLOCK
+
+    def append(self, at_us: int, item: Item) -> None:
+        """Add an entry; none is earlier than the one before."""
+        self._recent.append((at_us, item))
+        if len(self._recent) >= self._most:
+            self._write()
+
+    def _write(self) -> None:
+        entries = self._recent[:-_BLOCK]
+        try:
+            if self._file is None:
+                self._file = _File()
+            offset = self._file.io.seek(0, os.SEEK_END)
+            data = memoryview(pickle.dumps(entries, pickle.HIGHEST_PROTOCOL))
+            while data:
+                data = data[self._file.io.write(data) :]
+        except OSError:  # there is no room on the disk: it stays in memory, until more has come
+            self._most *= 2
+            return
+        self._blocks.append(_Block(self._file, offset, entries[-1][0]))
+        del self._recent[:-_BLOCK]
+        self._most = 2 * _BLOCK
+
+    def __iter__(self) -> Iterator[tuple[int, Item]]:
+        for block in self._blocks:
+            yield from self._read(block)
+        yield from self._recent
+
+    @property
+    def last(self) -> Item | None:
+        """The last entry."""
+        return self._recent[-1][1] if self._recent else None
+
+    def until(self, time_us: int) -> History[Item]:
+        """Return the part until a moment. It can grow otherwise than this one does."""
+        part = History[Item]()
+        whole = bisect_right(self._blocks, time_us, key=lambda block: block.last_us)
+        part._blocks = self._blocks[:whole]
+        after = self._read(self._blocks[whole]) if whole < len(self._blocks) else self._recent
+        part._recent = list(takewhile(lambda entry: entry[0] <= time_us, after))
+        if not part._recent and part._blocks:
+            part._recent = self._read(part._blocks.pop())
+        return part
+
+    @staticmethod
+    def _read(block: _Block) -> list[tuple[int, Item]]:
+        block.file.io.seek(block.offset)
+        return pickle.load(block.file.io)  # type: ignore[no-any-return]
+
+
+def entries(history: History[Item]) -> Iterator[Item]:
+    """What has happened, without the times."""
+    return map(itemgetter(1), history)

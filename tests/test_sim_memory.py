@@ -1,0 +1,175 @@
+"""A long simulation: its history is on disk, and memory does not grow with it."""
+
+from __future__ import annotations
+
+import gc
+import hashlib
+import json
+import tracemalloc
+from pathlib import Path
+
+import pytest
+from sim_robots import run, settle, wait
+
+from pyfrc_core.project import find_project
+from pyfrc_core.runtime.robot import RobotRun
+from pyfrc_core.runtime.scripts.recorder import Recorder
+from pyfrc_core.sim import assembly, history
+from pyfrc_core.sim.history import History, entries
+from pyfrc_core.sim.options import SimOptions
+from pyfrc_core.sim.simulation import Simulation
+
+FILES = {
+    "robot.py": """
+        import math
+
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.left, self.right, self.count = wpilib.PWMSparkMax(0), wpilib.PWMSparkMax(1), 0
+
+            def teleopPeriodic(self):
+                self.count += 1
+                self.left.set(0.8 + 0.2 * math.sin(self.count / 100))
+                self.right.set(-0.5)
+    """,
+    "physics.py": """
+        class PhysicsEngine:
+            def __init__(self, physics_controller):
+                self.controller = physics_controller
+
+            def update_sim(self, hal_data, now, tm_diff):
+                self.controller.drive(hal_data["pwm"][0]["value"] * 10, 1, tm_diff)
+    """,
+}
+
+
+def trace_hash(file: Path) -> str:
+    """The hash of what a saved trace says that the robot did."""
+    digest = hashlib.sha256()
+    for line in file.read_text().splitlines():
+        if "t" in json.loads(line):
+            digest.update(line.encode())
+    return digest.hexdigest()
+
+
+def test_memory_does_not_grow_with_time(make_project, tmp_path: Path) -> None:
+    made = make_project(FILES)
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
+        simulation.choose_mode("teleop")
+        simulation.enable()
+        run(simulation, 50)
+        tracemalloc.start()
+        gc.collect()
+        before, _ = tracemalloc.get_traced_memory()
+        run(simulation, 100)
+        gc.collect()
+        after, _ = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        # 5000 changes of hal_data take 1.2 MB.
+        assert after - before < 600_000
+        whole = simulation.script()
+        simulation.rewind(60)
+        settle(simulation)
+        assert simulation.snapshot is not None
+        assert simulation.snapshot.time == 60
+        run(simulation, 30)
+        simulation.save_all(tmp_path / "run.jsonl")
+    assert trace_hash(tmp_path / "run-1.trace.jsonl") == whole.trace
+    again, first = ((tmp_path / f"{name}.trace.jsonl").read_text().splitlines()[:-1] for name in ("run", "run-1"))
+    until = sum(json.loads(line).get("t", 0) <= 60 for line in first)
+    assert again[:until] == first[:until]
+    assert json.loads(again[-1])["t"] == 90
+    replayed = made.run("replay", tmp_path / "run.jsonl")
+    assert "The trace equals the recorded one." in replayed.stdout, replayed.output
+
+
+def test_what_was_told_is_read_back_from_disk(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "_BLOCK", 4)
+    made = make_project(FILES)
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
+        simulation.choose_mode("teleop")
+        simulation.enable()
+        for number in range(40):
+            simulation.write({"joysticks[0].axes[1]": number / 100})
+            run(simulation, 0.1)
+        whole = simulation.script()
+        simulation.rewind(2)
+        settle(simulation)
+        half = simulation.script()
+        simulation.write({"joysticks[0].axes[1]": 1.0})
+        run(simulation, 0.5)
+        other = simulation.script()
+        assert simulation.recordings == (whole,)
+    axes = [value for step in whole.steps for path, value in step.writes.items() if path == "joysticks[0].axes[1]"]
+    assert axes == [number / 100 for number in range(1, 40)]
+    assert half.steps == tuple(step for step in whole.steps if step.at_us <= 2_000_000)
+    assert other.steps[: len(half.steps)] == half.steps
+    assert other.steps[-1].writes["joysticks[0].axes[1]"] == 1
+
+
+def test_a_long_trail_is_thinned_out(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(assembly, "_RECENT_POINTS", 64)
+    monkeypatch.setattr(assembly, "_OLDER_POINTS", 128)
+    made = make_project(FILES)
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True, recording=False)) as simulation:
+        simulation.choose_mode("teleop")
+        simulation.enable()
+        simulation.run_until(60)
+        lengths = []
+        wait(simulation, lambda: bool(lengths.append(simulation.snapshot)) or simulation.status.state == "paused")
+        wait(simulation, lambda: simulation.snapshot is not None and simulation.snapshot.time >= 59.99)
+        assert simulation.snapshot is not None
+        trail = simulation.snapshot.scene.trail
+    assert 128 < len(trail) < 300  # of some 1400
+    first = next(each.scene.trail[0] for each in lengths if each is not None and each.scene.trail)
+    assert trail[0] == first
+    assert len(set(trail)) == len(trail)
+
+
+def test_the_robots_process_keeps_no_steps() -> None:
+    robot_run = RobotRun()
+    robot_run.open()
+    try:
+        recorder = Recorder(robot_run)
+        for _ in range(5):
+            recorder.on_packet_out_of_turn()
+        everything = recorder.steps_from(0)
+        recorder.forget_before(3)
+        assert (recorder.steps_from(3), recorder.steps_from(4)) == (everything[3:], everything[4:])
+        recorder.on_packet_out_of_turn()
+        recorder.forget_before(5)
+        assert len(recorder.steps_from(0)) == 1
+    finally:
+        robot_run.close()
+
+
+@pytest.mark.parametrize("until", [-1, 0, 511, 512, 1500, 1535, 1536, 2999, 5000])
+def test_a_part_of_a_history_grows_by_itself(until: int) -> None:
+    whole = History[str]()
+    for number in range(3000):
+        whole.append(number, str(number))
+    part = whole.until(until)
+    expected = [str(number) for number in range(3000) if number <= until]
+    assert list(entries(part)) == expected
+    assert part.last == (expected[-1] if expected else None)
+    more = [f"other {number}" for number in range(2000)]
+    for number, item in enumerate(more):
+        part.append(6000 + number, item)
+    assert list(entries(part)) == expected + more
+    assert list(entries(whole)) == [str(number) for number in range(3000)]
+
+
+def test_a_disk_without_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_room(**options: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(history, "TemporaryFile", no_room)
+    whole = History[int]()
+    for number in range(5000):
+        whole.append(number, number)
+    monkeypatch.undo()
+    for number in range(5000, 20_000):
+        whole.append(number, number)
+    assert list(entries(whole)) == list(range(20_000))
