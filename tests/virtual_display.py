@@ -21,11 +21,18 @@ class VirtualDisplay:
     """A screen that nobody sees.
 
     :param name: such as ``:7``
+    :param server: the process that shows it
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, server: subprocess.Popen[bytes]) -> None:
         self.name = name
+        self._server = server
         self.environment = {**os.environ, "DISPLAY": name}
+
+    def end(self) -> None:
+        """Let the display vanish, as when a session ends or a container's window is closed."""
+        self._server.kill()
+        self._server.wait()
 
     def do(self, *words: str | int) -> str:
         """One command of `xdotool`, or several; answers what it prints."""
@@ -48,7 +55,7 @@ def virtual_display(width: int = 1366, height: int = 768, dpi: int = 96) -> Iter
         with os.fdopen(read) as numbers:
             number = numbers.readline().strip()  # it is ready when it tells
         assert number, "Xvfb has not started"
-        yield VirtualDisplay(f":{number}")
+        yield VirtualDisplay(f":{number}", server)
     finally:
         server.terminate()
         server.wait()

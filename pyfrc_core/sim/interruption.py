@@ -14,9 +14,29 @@ _ENDING = ("SIGTERM", "SIGHUP")
 _Handler = Callable[[int, FrameType | None], object]
 
 
-def ending_like_ctrl_c() -> AbstractContextManager[None]:
+class Interruption:
+    """Raises KeyboardInterrupt for signals, as long as there is something to interrupt."""
+
+    def __init__(self) -> None:
+        self._ending = self._finishing = False
+
+    def finish(self) -> None:
+        """Raise it no more: files are written now."""
+        self._finishing = True
+
+    def handle(self, number: int, frame: FrameType | None) -> None:
+        """Raise it; for a terminal that is closed once only, since the system and the shell both tell of that."""
+        again, self._ending = self._ending, self._ending or number != signal.SIGINT
+        if not (self._finishing or again):
+            raise KeyboardInterrupt
+
+
+@contextmanager
+def ending_like_ctrl_c() -> Iterator[Interruption]:
     """While this lasts, raise KeyboardInterrupt for them, too."""
-    return _handling(_ENDING, signal.default_int_handler)
+    interruption = Interruption()
+    with _handling((*_ENDING, "SIGINT"), interruption.handle):
+        yield interruption
 
 
 def calling_when_ended(call: Callable[[], object]) -> AbstractContextManager[None]:

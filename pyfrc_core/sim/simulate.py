@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ..errors import UsageError
 from ..project import Project
 from ..runtime.scripts.script import load_script
+from .c_exit import calling_at_c_exit
 from .extensions import WINDOW
 from .interruption import ending_like_ctrl_c
 from .kept import KeptFiles
@@ -84,7 +87,10 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     simulation = Simulation(project, options)
     kept = KeptFiles(request.record, request.wpilog, request.picture)
     with ExitStack() as closing:
-        closing.enter_context(ending_like_ctrl_c())
+        interruption = closing.enter_context(ending_like_ctrl_c())
+        if ui == "tk":
+            simulation.echo = partial(_echo, say)
+            closing.enter_context(calling_at_c_exit(partial(_end_without_display, simulation, kept, say)))
         if request.watch:
             closing.enter_context(watching(simulation, front_end.saved))
         try:
@@ -92,11 +98,42 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         except KeyboardInterrupt:  # in the terminal: another way to close a window
             code = 0
         finally:  # also when the terminal has gone, and nothing can be said any more
+            interruption.finish()
             simulation.close()
             written = kept.write(simulation)
-    for file in () if request.quiet else written:
-        say(f"wrote {file}\n")
+    with suppress(OSError):  # the terminal has gone
+        for file in () if request.quiet else written:
+            say(f"wrote {file}\n")
     return code
+
+
+def _echo(say: Callable[[str], object], text: str) -> None:
+    try:
+        say(text)
+    except UnicodeEncodeError:  # a terminal without this letter
+        say(text.encode("ascii", "backslashreplace").decode())
+    except OSError:  # the terminal has gone
+        pass
+
+
+def _end_without_display(simulation: Simulation, kept: KeptFiles, say: Callable[[str], object]) -> None:
+    """Write the files of a simulation whose window's display has gone, and end. Nothing can be drawn any more."""
+    from ..runtime.own_process import exit_now
+
+    with suppress(KeyboardInterrupt):
+        simulation.close()
+    problem = "error: the display has gone, and the window with it"
+    try:
+        written = kept.write(simulation)
+    except Exception as wrong:
+        written, problem = [], f"{problem}. {wrong}"
+    with suppress(OSError):
+        for file in written:
+            _echo(say, f"wrote {file}\n")
+        sys.stdout.flush()
+        sys.stderr.write(f"{problem}\n")
+        sys.stderr.flush()
+    exit_now(2)
 
 
 def draw_script(project: Project, script: Path, picture: Path, until: float | None = None) -> None:

@@ -69,6 +69,8 @@ class Simulation(Controls):
         #: Where the robot's process is to be brought to before it goes on.
         self._forward_us = 0
         self._output = ""
+        #: Called with all that robots print, and with their tracebacks, from threads of this object's.
+        self.echo: Callable[[str], object] = lambda text: None
         self._processes: RobotProcesses | None = None
 
     # -- what there is to see -------------------------------------------------------------------------------------
@@ -326,24 +328,34 @@ class Simulation(Controls):
             else:
                 self._status = replace(self._status, state="closed")
             self._changed.notify_all()
+        if isinstance(message, Failed):
+            self._echo_failure(message.failure)
 
     def _on_exit(self, launch: int, status: int, words: str) -> None:
         with self._changed:
-            if launch == self._launch and self._status.state not in ("failed", "closed"):
-                text = explain_end(words, status, self.project.files, "while it was simulated")
-                headline, _, details = text.partition("\n\n")
-                moment = moment_of(words)
-                seconds = self._recording.length_us / 1_000_000 if moment is None else moment.seconds
-                self._fail(Failure(headline, details, seconds))
-                self._changed.notify_all()
+            if launch != self._launch or self._status.state in ("failed", "closed"):
+                return
+            text = explain_end(words, status, self.project.files, "while it was simulated")
+            headline, _, details = text.partition("\n\n")
+            moment = moment_of(words)
+            seconds = self._recording.length_us / 1_000_000 if moment is None else moment.seconds
+            failure = Failure(headline, details, seconds)
+            self._fail(failure)
+            self._changed.notify_all()
+        self._echo_failure(failure)
 
     def _on_output(self, text: str) -> None:
         with self._changed:
             self._output = (self._output + text)[-_MOST_OUTPUT:]
             self._changed.notify_all()
+        self.echo(text)
 
     def _fail(self, failure: Failure) -> None:
         self._status = replace(self._status, state="failed", failure=failure, reached=0.0)
+
+    def _echo_failure(self, failure: Failure) -> None:
+        details = f"{failure.details.rstrip()}\n" if failure.details else ""
+        self.echo(f"{details}failed at {failure.time:.2f} s: {failure.headline}\n")
 
     def _note(self, note: str) -> None:
         with self._changed:

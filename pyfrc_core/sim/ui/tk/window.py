@@ -135,8 +135,16 @@ class Window:
         self.begin()
         with calling_when_ended(self._interrupt):
             self.root.mainloop()
+        if isinstance(self.failure, tk.TclError) and not self._exists():
+            raise UsageError("the window was destroyed from outside") from None
         if self.failure is not None:
             raise self.failure
+
+    def _exists(self) -> bool:
+        try:
+            return bool(self.root.winfo_exists())
+        except tk.TclError:
+            return False
 
     def begin(self) -> None:
         """Begin to draw, as events are handled."""
