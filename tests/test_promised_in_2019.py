@@ -212,8 +212,8 @@ INPUTS: dict[str, Any] = {
     "power": {"vin_voltage": 12.0, "vin_current": 1.0, "has_source": True, **{
         f"user_{what}_{rail}": 0 for what in ("voltage", "current", "active", "faults") for rail in ("6v", "5v", "3v3")
     }},
-    "pdp.*": {"temperature": 20.0, "voltage": 12.0, "total_power": 1.0, "total_energy": 2.0},
-    "pdp.*.current.*": 1.5,
+    "pdp.0": {"temperature": 20.0, "voltage": 12.0, "total_power": 1.0, "total_energy": 2.0},
+    "pdp.0.current.*": 1.5,
     "custom": {"label": 1},
 }  # fmt: skip
 
@@ -505,14 +505,15 @@ TESTS = """
         assert hal_data["solenoid"][3]["value"] is hal_data.read("pcm[0][3].value") is True
         hal_data["solenoid"][3]["value"] = False
         assert hal_data["pcm"][0][3]["value"] is False
-        assert 0 in hal_data["pcm"]
-        assert list(hal_data["pcm"]) == [0]
+        assert not hal_data["pcm"]
+        assert not hal_data["pdp"]
         hal_data["pdp"][0]["current"][2] = 4
         assert (hal_data["pdp"][0]["voltage"], hal_data["pdp"][0]["total_current"]) == (11.5, 4.0)
         with control.run_robot():
             assert robot.power.getVoltage() == 11.5
             robot.piston.set(True)
             assert hal_data["pcm"][0][3]["value"] is True
+            assert list(hal_data["pcm"]) == list(hal_data["pdp"]) == [0]
 
 
     def test_config_obj(physics_controller):
@@ -626,7 +627,7 @@ TESTS = """
 
     def places(place, path):
         key, *rest = path
-        keys = [key] if key != "*" else list(place) if isinstance(place, dict) else list(range(len(place)))
+        keys = [int(key) if key.isdigit() else key] if key != "*" else list(place) if isinstance(place, dict) else list(range(len(place)))
         for each in keys:
             yield from places(place[each], rest) if rest else [(place, each)]
 

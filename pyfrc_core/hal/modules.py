@@ -88,23 +88,23 @@ def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
 class ModuleDict(LiveDict):
     """Modules by their CAN number, each there once the robot has made it.
 
-    :param always: the number of a module that is there before that, too
+    :param early: the number of a module that can be read and written before that, too
     """
 
     def __init__(
-        self, path: str, initialized: Callable[[int], bool], make: Callable[[int], Any], always: int | None = None
+        self, path: str, initialized: Callable[[int], bool], make: Callable[[int], Any], early: int | None = None
     ) -> None:
         super().__init__(path, dict)
-        self._initialized, self._make, self._always = initialized, make, always
+        self._initialized, self._make, self._early = initialized, make, early
 
     def __contains__(self, key: object) -> bool:
-        return isinstance(key, int) and (key == self._always or (0 <= key < MODULES and self._initialized(key)))
+        return isinstance(key, int) and 0 <= key < MODULES and self._initialized(key)
 
     def __iter__(self) -> Iterator[int]:
-        return (number for number in range(MODULES) if number in self)
+        return (number for number in range(MODULES) if self._initialized(number))
 
     def __getitem__(self, key: Any) -> Any:
-        if key not in self:
+        if key not in self and (key != self._early or not isinstance(key, int)):
             there = ", ".join(map(str, self)) or "none"
             raise self._unknown(key, f"a module appears when the robot makes it; there is now: {there}")
         return self._make(key)
@@ -130,10 +130,10 @@ class Modules:
         )
         distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), self._power_sim(n)))
         self.ph = ModuleDict("ph", self._has_hub, self._hub_solenoids)
-        self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either, always=0)
+        self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either, early=0)
         self.ph_compressor = ModuleDict("ph_compressor", self._has_hub, self._hub_compressor)
         self.pcm_compressor = ModuleDict("pcm_compressor", self._has_pcm, self._pcm_compressor)
-        self.pdp = ModuleDict("pdp", lambda n: self._power_sim(n).getInitialized(), distributions, always=0)
+        self.pdp = ModuleDict("pdp", lambda n: self._power_sim(n).getInitialized(), distributions, early=0)
 
     def _has_pcm(self, module: int) -> bool:
         return self._pcm_sim(module).getInitialized()

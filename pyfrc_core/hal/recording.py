@@ -98,8 +98,7 @@ class Recording:
                     yield from _of(solenoid, "value")
         for room in (modules.pcm_compressor, modules.ph_compressor, modules.pdp):
             for module in room.values():
-                if module["initialized"]:
-                    yield from _of(module)
+                yield from _of(module)
         for name in sorted(tree["CAN"]):
             yield from _of(tree["CAN"][name])
 
