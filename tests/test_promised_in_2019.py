@@ -627,7 +627,9 @@ TESTS = """
 
     def places(place, path):
         key, *rest = path
-        keys = [int(key) if key.isdigit() else key] if key != "*" else list(place) if isinstance(place, dict) else list(range(len(place)))
+        keys = [int(key) if key.isdigit() else key]
+        if key == "*":
+            keys = list(place) if isinstance(place, dict) else list(range(len(place)))
         for each in keys:
             yield from places(place[each], rest) if rest else [(place, each)]
 
