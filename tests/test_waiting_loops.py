@@ -303,3 +303,23 @@ def test_back_into_a_wait_and_on_with_new_code(simulation: Simulation, tmp_path:
     simulation.write(PRESSED)
     run(simulation, 0.5)
     assert motor(simulation) == 0.75
+
+
+def test_a_robot_init_that_waits_is_shown_while_it_does(make_project: MakeProject) -> None:
+    """It is not a periodic function, and may take its time; the simulation ends all the same."""
+    robot = """
+        import time
+
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                while not wpilib.DriverStation.isFMSAttached():
+                    time.sleep(0.02)
+    """
+    project = make_project({"robot.py": robot})
+    result = project.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "12")
+    assert result.code == 0, result.output
+    assert "simulated 12.00 s" in result.stdout
+    assert f"warning: {project.place('robot.py', 'time.sleep')}: the robot still waits here" in result.stdout

@@ -42,6 +42,8 @@ class LoopWaitsError(NamesItsPlace):
             "and the mode keep their values. Return instead, and look again at the next call.\n"
             "(loop_seconds under [tool.pyfrc.test] in pyproject.toml changes the limit.)"
         )
+        #: The message in one line.
+        self.note = " ".join(str(self).splitlines())
         self.place, self.begins_at, self.function = place, begins_at, function
 
 

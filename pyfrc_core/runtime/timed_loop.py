@@ -60,7 +60,8 @@ class TimedLoop:
         self._on_initialized = on_initialized
         self._created_us = created_us
         self._callbacks: list[Periodic] = []
-        self._in_place = False
+        #: Whether the clock calls what is due: from the end of `robotInit` on.
+        self.in_place = False
         self._turns_on_own_thread = False
         self._alarm_us = _NEVER
         self.stopped = False
@@ -78,7 +79,7 @@ class TimedLoop:
         first = self._created_us + to_us(offset) + (periods_gone + 1) * period_us
         callback = Periodic(call, first, period_us)
         self._callbacks.append(callback)
-        if self._in_place and callback.due_us < self._alarm_us < _NEVER:
+        if self.in_place and callback.due_us < self._alarm_us < _NEVER:
             self._set_alarm(callback)
 
     def begin(self, robot: wpilib.TimedRobot) -> None:
@@ -93,13 +94,13 @@ class TimedLoop:
 
     def run_in_place(self) -> None:
         """From now on the clock calls what is due."""
-        self._in_place = True
+        self.in_place = True
         self._set_alarm(self._next())
 
     @property
     def in_turn(self) -> bool:
         """Whether a turn of the loop is going on."""
-        return self._alarm_us == _NEVER if self._in_place else self._turns_on_own_thread
+        return self._alarm_us == _NEVER if self.in_place else self._turns_on_own_thread
 
     def _set_alarm(self, callback: Periodic) -> None:
         """Have the next turn begin when this callback is due, instead of whenever that was before."""

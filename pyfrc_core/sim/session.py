@@ -14,7 +14,7 @@ from ..hal import modes
 from ..physics.core import PhysicsInterface
 from ..runtime.clock import INPUT, OBSERVE, PACKET_US
 from ..runtime.endings import TestEnded
-from ..runtime.loop_limit import LoopLimit, LoopWaitsError
+from ..runtime.loop_limit import LoopLimit
 from ..runtime.refresh import RefreshCheck
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.player import Player
@@ -40,6 +40,8 @@ _LOOK_SECONDS = 0.05
 _FOLLOW_PACKETS, _TRAIL_STEP = 2, 0.05
 #: So long the robot runs at most without a look at commands when it goes as fast as it can: packets, wall seconds.
 _MOST_PACKETS, _CHUNK_SECONDS = 50, 0.01
+#: A `robotInit` that waits for longer than this is shown while it waits.
+_INITIALIZED_BY_US = 10_000_000
 
 
 class Ended(Exception):
@@ -89,14 +91,12 @@ class Session:
         self._told_at = 0.0
         self._update_seconds = _UPDATE_SECONDS if job.recording else _UNRECORDED_UPDATE_SECONDS
         self._packets_at_once = 1
-        #: How far the robot is let go on at a time; None while it starts.
-        self._target_us: int | None = None
+        self._target_us: int | None = None  # how far the robot is let go on at a time
         self._advance_began = wall(), 0  # on the wall and in robot time
         self._awaited_us: int | None = None  # the last target beyond which it has been seen to wait
         self._taken_over = self._left = False
         self._refresh = RefreshCheck(run)
-        #: 1 in the microsecond after the target, where the robot waits beyond it; what is shown is the target.
-        self._beyond_us = 0
+        self._beyond_us = 0  # 1 in the microsecond after the target, where the robot waits beyond it
         run.threads.before_driver_waits.append(self._on_wait)
         run.renderer = self._renderer
         run.clock.limit_us = 1 << 62
@@ -114,13 +114,14 @@ class Session:
         if job.recording:
             run.clock.before_packet.append(self._packet_begins)
             run.observe(self._packet_is_over)
-        LoopLimit(run, job.project.files, job.project.settings, self._on_waiting_loop)
+        LoopLimit(run, job.project.files, job.project.settings, lambda error: self._notes.append(error.note))
         construct()
         run.clock.every(_FOLLOW_PACKETS * PACKET_US, OBSERVE, self._follow)
-        Player(job.script, run).start()
-        self._mark_position()
         self._ready = ready
+        self._target_us = max(job.forward_to_us, _INITIALIZED_BY_US)
         try:
+            Player(job.script, run).start()
+            self._mark_position()
             if run.clock.now_us < job.forward_to_us:
                 self._target_us = job.forward_to_us
                 run.run_until(job.forward_to_us)
@@ -230,6 +231,9 @@ class Session:
             if self._taken_over:
                 self._end_advance()
             else:
+                if not run.timed_loop.in_place:
+                    line = self._job.project.files.line_of_thread(run.threads.driver)
+                    self._notes.append(f"{line}: the robot still waits here, before its loop has begun.")
                 self._take_over()
             next_us = self._next_target()
         finally:
@@ -242,9 +246,6 @@ class Session:
             raise TestEnded
         self._begin_advance(next_us)
         self._on_wait()
-
-    def _on_waiting_loop(self, error: LoopWaitsError) -> None:
-        self._notes.append(" ".join(str(error).splitlines()))
 
     def _stop_us(self) -> int:
         return 1 << 62 if self._time.until_us is None else self._time.until_us
