@@ -41,8 +41,8 @@ def test_the_ready_made_tests_warn(forgetful: RobotProject) -> None:
 
 
 def test_the_simulator_warns_once(forgetful: RobotProject) -> None:
-    """After a second enabled."""
-    result = forgetful.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "4")
+    """After some seconds enabled."""
+    result = forgetful.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "8")
     assert result.code == 0, result.output
     assert result.stdout.count(SENTENCE) == 1
 
@@ -52,5 +52,5 @@ def test_robots_that_refresh_are_not_warned_of(make_project: MakeProject) -> Non
     refresh = "wpilib.DriverStation.refreshData()"
     project = make_project({"robot.py": ROBOT.format(refresh=refresh), "tests/test_ready_made.py": READY_MADE})
     assert "still finds itself disabled" not in project.run("test").output
-    simulated = project.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "4")
+    simulated = project.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "8")
     assert "still finds itself disabled" not in simulated.output

@@ -305,6 +305,16 @@ def test_back_into_a_wait_and_on_with_new_code(simulation: Simulation, tmp_path:
     assert motor(simulation) == 0.75
 
 
+def test_a_magic_robot_that_waits_is_shown_too(make_project: MakeProject) -> None:
+    """Its loop is not WPILib's, and runs on a thread."""
+    project = make_project({"robot.py": MAGIC})
+    result = project.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "6")
+    assert result.code == 0, result.output
+    place = project.place("robot.py", "time.sleep(0.02)")
+    assert f"warning: {place}: execute has not returned after 2 s" in result.stdout
+    assert "loop overruns: 1, the longest turn" in result.stdout
+
+
 def test_a_robot_init_that_waits_is_shown_while_it_does(make_project: MakeProject) -> None:
     """It is not a periodic function, and may take its time; the simulation ends all the same."""
     robot = """

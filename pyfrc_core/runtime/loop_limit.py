@@ -78,6 +78,7 @@ class LoopLimit:
         self._armed = False
         #: When the turn began that was reported last.
         self._reported_us: int | None = None
+        run.turn_began = self._began
         run.threads.before_driver_waits.append(self._on_wait)
         run.threads.before_loop_waits = self._on_wait_of_own_loop
 
@@ -127,7 +128,7 @@ class LoopLimit:
                     return False  # the user's own loop
                 in_robot_code = True
             frame = frame.f_back
-        return in_robot_code and _is_magic(self._run.robot)
+        return in_robot_code and is_magic(self._run.robot)
 
     # -- the end of the limit ------------------------------------------------------------------------------------
 
@@ -169,5 +170,6 @@ class LoopLimit:
         return LoopWaitsError(place, begins_at, function or "the robot's loop", seconds)
 
 
-def _is_magic(robot: object) -> bool:
+def is_magic(robot: object) -> bool:
+    """Return whether this is a `MagicRobot`, whose own loop calls the robot's functions as WPILib's does."""
     return any(base.__module__.partition(".")[0] == "magicbot" for base in type(robot).__mro__)

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 import wpilib
 
 from ..hal import modes
+from .loop_limit import is_magic
 
 if TYPE_CHECKING:
     from .robot import RobotRun
 
 
-#: A robot that was enabled at this many looks should know it.
-_LOOKS = 25
+#: A robot that was enabled at this many looks, 0.04 s apart, should know it, however long it takes to start.
+_LOOKS = 125
 
 
 def explain_missing_refresh(run: RobotRun) -> str | None:
@@ -55,5 +56,7 @@ class RefreshCheck:
 
 
 def _sees_mode(run: RobotRun) -> bool:
-    """Whether the robot has been found enabled in its own view, or has a loop of WPILib's."""
-    return run.own_loop is None or isinstance(run.robot, wpilib.IterativeRobotBase) or wpilib.DriverStation.isEnabled()
+    """Whether the robot has been found enabled in its own view, or has a loop that a library has written."""
+    if run.own_loop is None or isinstance(run.robot, wpilib.IterativeRobotBase) or is_magic(run.robot):
+        return True
+    return bool(wpilib.DriverStation.isEnabled())

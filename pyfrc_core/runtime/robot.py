@@ -52,6 +52,8 @@ class RobotRun:
         self.alarms = Alarms(self.threads)
         self.overruns = LoopOverruns(self.clock)
         self.timed_loop = TimedLoop(self.clock, self.clock.now_us, self._on_initialized, self.overruns.count)
+        #: When the turn of the loop began that the robot is in, in microseconds; None between two turns.
+        self.turn_began: Callable[[], int | None] = lambda: None
         self.robot: Any = None
         #: Called when the robot has been constructed, and when its `robotInit` is over (see `initializes`).
         self.when_constructed: list[Callable[[], object]] = []
@@ -247,8 +249,9 @@ class RobotRun:
         A turn that still goes on counts as one as soon as it is late.
         """
         number, longest_us = self.overruns.number, self.overruns.longest_us
-        if self.timed_loop.in_turn:
-            took_us = self.clock.now_us - self.timed_loop.loop_start_us
+        began_us = self.turn_began()
+        if began_us is not None:
+            took_us = self.clock.now_us - began_us
             if took_us > PACKET_US:
                 return number + 1, max(longest_us, took_us)
         return number, longest_us
