@@ -91,9 +91,9 @@ class Session:
         self._told_at = 0.0
         self._update_seconds = _UPDATE_SECONDS if job.recording else _UNRECORDED_UPDATE_SECONDS
         self._packets_at_once = 1
-        self._target_us: int | None = None  # how far the robot is let go on at a time
+        # How far the robot is let go on at a time, and the last such target beyond which it has been seen to wait.
+        self._target_us = self._awaited_us = -1
         self._advance_began = wall(), 0  # on the wall and in robot time
-        self._awaited_us: int | None = None  # the last target beyond which it has been seen to wait
         self._taken_over = self._left = False
         self._refresh = RefreshCheck(run)
         self._beyond_us = 0  # 1 in the microsecond after the target, where the robot waits beyond it
@@ -213,7 +213,7 @@ class Session:
 
     def _on_wait(self) -> None:
         """Robot code on this thread is about to wait, perhaps for longer than it is let go on."""
-        if self._target_us is not None and self._awaited_us != self._target_us:
+        if self._awaited_us != self._target_us:
             self._awaited_us = self._target_us
             # Right after everything that is due at the target.
             self._run.clock.at(self._target_us + 1, INPUT, partial(self._on_beyond, self._target_us))
