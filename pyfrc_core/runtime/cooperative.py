@@ -1,21 +1,20 @@
 """Locks and threads for robot code: what waits, waits in robot time; everything else is Python's own.
 
 `threading`'s events, conditions, semaphores, barriers and timers, `queue`'s queues and the thread pools of
-`concurrent.futures` are all built on its locks, so these few stand-ins carry them all into robot time. For
+`concurrent.futures` are all built on its locks (`locks`), so these few replacements carry them all into robot time. For
 threads that take no part in a robot run they behave as the originals do.
 """
 
 from __future__ import annotations
 
-import _thread
 import sys
 import threading
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .clock import to_us
-from .threads import real_allocate_lock, real_thread_join
+from .threads import real_thread_join
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,8 +23,11 @@ if TYPE_CHECKING:
     from .threads import RobotThread, RobotThreads
 
 _LIBRARY = Path(threading.__file__).parent
-# The parts of the standard library that make locks and threads for whoever calls them.
-_BETWEEN = tuple(str(_LIBRARY / name) for name in ("threading.py", "queue.py", "concurrent", "sched.py"))
+# The parts of the standard library that make locks and threads for their callers, and what replaces their names.
+_BETWEEN = (
+    *(str(_LIBRARY / name) for name in ("threading.py", "queue.py", "concurrent", "sched.py", "contextlib.py")),
+    str(Path(__file__).with_name("locks.py")),
+)
 # Where a thread of the robot begins, when nothing of the robot's own is on its stack (a pool's worker).
 _ROBOT_THREADS = str(Path(__file__).with_name("threads.py"))
 
@@ -48,58 +50,21 @@ class _Scope:
             return None
         return threads
 
+    def let_waited_for_begin(self) -> None:
+        """Start, in real time, the threads that wait for a run to begin: code outside any run waits for one of them."""
+        if self.threads is None and self.waiting_to_begin:
+            waiting, self.waiting_to_begin = self.waiting_to_begin, []
+            for thread, _ in waiting:
+                _start_really(thread)
+
 
 scope = _Scope()
 
 
-class CooperativeLock:
-    """A lock for which threads of the robot wait in robot time."""
-
-    def __init__(self) -> None:
-        self._lock = real_allocate_lock()
-        self._waiters: list[RobotThread] = []
-        self.locked = self._lock.locked
-
-    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        __tracebackhide__ = True
-        if self._lock.acquire(False):
-            return True
-        if not blocking:
-            return self._lock.acquire(False, timeout)  # the real one complains of a time-out given with it
-        threads = scope.taking_part()
-        if threads is None:
-            return self._lock.acquire(True, timeout)
-        timeout_us = None if timeout < 0 else max(1, to_us(timeout))  # a wait that takes no time could go on for ever
-        return threads.wait(self._waiters, partial(self._lock.acquire, False), timeout_us)
-
-    def release(self) -> None:
-        self._lock.release()
-        if self._waiters and scope.threads is not None:
-            scope.threads.notify(self._waiters[:1])  # only one of them can have it
-
-    def __enter__(self) -> bool:
-        return self.acquire()
-
-    def __exit__(self, *exc_info: object) -> None:
-        self.release()
-
-    def _at_fork_reinit(self) -> None:
-        self._lock = real_allocate_lock()
-        self._waiters = []
-        self.locked = self._lock.locked
-
-    def __repr__(self) -> str:
-        return f"<{'locked' if self.locked() else 'unlocked'} pyfrc lock in robot time at {id(self):#x}>"
-
-
-def new_lock() -> CooperativeLock | _thread.LockType:
-    """`threading.Lock`. A library's own locks stay real: the threads it shares them with know no robot time."""
-    return CooperativeLock() if on_behalf_of_robot_code(sys._getframe(1)) else real_allocate_lock()
-
-
 def start_thread(thread: threading.Thread) -> None:
     """`Thread.start`: a thread that robot code starts gets its turns from the clock; a library's own does not."""
-    if on_behalf_of_robot_code(sys._getframe(1)):
+    initialized = getattr(thread, "_initialized", False) and thread.ident is None  # else the real one raises an error
+    if initialized and on_behalf_of_robot_code(sys._getframe(1)):
         start_in_robot_time(thread)
     else:
         _start_really(thread)
@@ -108,6 +73,8 @@ def start_thread(thread: threading.Thread) -> None:
 def start_in_robot_time(thread: threading.Thread) -> None:
     """Start a thread of the robot; before there is a run (its module is being imported), have it begin with the run."""
     if scope.threads is None:
+        if any(waiting is thread for waiting, _ in scope.waiting_to_begin):
+            raise RuntimeError("threads can only be started once")
         scope.waiting_to_begin.append((thread, thread.run))
     elif scope.taking_part() is None:
         _start_really(thread)
@@ -117,12 +84,19 @@ def start_in_robot_time(thread: threading.Thread) -> None:
 
 def on_behalf_of_robot_code(caller: FrameType | None) -> bool:
     """Whether robot code called, be it through the standard library (an event, a timer, a pool of threads)."""
-    while caller is not None and caller.f_code.co_filename.startswith(_BETWEEN):
+    while caller is not None:
+        filename = caller.f_code.co_filename
+        if scope.is_robot_code(filename) or filename == _ROBOT_THREADS:
+            return True
+        if not filename.startswith(_BETWEEN):
+            if not filename.startswith("<") or filename.startswith("<frozen "):
+                return False
+            # Generated code (a dataclass's `__init__`) belongs to the module that it was made for, or to its caller.
+            module = caller.f_globals.get("__file__")
+            if isinstance(module, str):
+                return scope.is_robot_code(module)
         caller = caller.f_back
-    if caller is None:
-        return False
-    filename = caller.f_code.co_filename
-    return scope.is_robot_code(filename) or filename == _ROBOT_THREADS
+    return False
 
 
 def begin_waiting_threads() -> None:
@@ -159,23 +133,8 @@ def join_thread(thread: threading.Thread, timeout: float | None = None) -> None:
     """`Thread.join`, in robot time when a robot's thread waits for another."""
     record, threads = record_of(thread), scope.taking_part()
     if record is None or threads is None or record is threads.current():
+        scope.let_waited_for_begin()
         return real_thread_join(thread, timeout)
     timeout_us = None if timeout is None else max(0, to_us(timeout))
     threads.wait(record.joiners, lambda: record.finished, timeout_us)
     return None
-
-
-def stand_ins() -> list[tuple[Any, str, Any]]:
-    """What to set where: (module or class, name, value)."""
-    import queue
-
-    python_rlock: Any = threading._PyRLock  # type: ignore[attr-defined]
-    python_queue: Any = queue._PySimpleQueue  # type: ignore[attr-defined]
-    return [
-        (threading, "Lock", new_lock),
-        (threading, "_allocate_lock", new_lock),
-        (threading, "RLock", python_rlock),  # the ones written in Python are built on the lock above
-        (queue, "SimpleQueue", python_queue),
-        (threading.Thread, "start", start_thread),
-        (threading.Thread, "join", join_thread),
-    ]

@@ -43,25 +43,27 @@ class Alarms:
         self._alarms[handle] = Alarm()
         return handle, 0
 
-    def update(self, handle: int, due_us: int) -> int:
-        return self._set(handle, int(due_us))
+    # The parameters have the HAL's names, by which they can be given.
 
-    def cancel(self, handle: int) -> int:
-        return self._set(handle, None)
+    def update(self, notifierHandle: int, triggerTime: int) -> int:
+        return self._set(notifierHandle, int(triggerTime))
 
-    def stop(self, handle: int) -> int:
-        self._alarms[handle].stopped = True
-        self._threads.notify(self._alarms[handle].waiters)
+    def cancel(self, notifierHandle: int) -> int:
+        return self._set(notifierHandle, None)
+
+    def stop(self, notifierHandle: int) -> int:
+        self._alarms[notifierHandle].stopped = True
+        self._threads.notify(self._alarms[notifierHandle].waiters)
         return 0
 
-    def clean(self, handle: int) -> None:
-        self.stop(handle)
-        del self._alarms[handle]
+    def clean(self, notifierHandle: int) -> None:
+        self.stop(notifierHandle)
+        del self._alarms[notifierHandle]
 
-    def wait(self, handle: int) -> tuple[int, int]:
-        """Answers the time at which the alarm went off, in microseconds, or 0 when it was stopped."""
+    def wait(self, notifierHandle: int) -> tuple[int, int]:
+        """Return the time at which the alarm went off, in microseconds, or 0 when it was stopped."""
         __tracebackhide__ = True
-        alarm, clock = self._alarms[handle], self._threads.clock
+        alarm, clock = self._alarms[notifierHandle], self._threads.clock
         while not alarm.stopped:
             if alarm.due_us is not None and alarm.due_us <= clock.now_us:
                 alarm.due_us = None

@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from operator import index
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,12 +24,13 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
-from . import cooperative, data_logs, robot_stack
+from . import cooperative, data_logs, locks, robot_stack
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
 from .endings import TestEnded
 from .loop_watchdog import Watchdog
 from .notifier import Notifier
+from .replacements import as_original
 
 if TYPE_CHECKING:
     from ..robot_files import RobotFiles
@@ -58,8 +60,9 @@ class Redirection:
         if hasattr(os, "register_at_fork"):
             os.register_at_fork(after_in_child=self._leave)
         for owner, name, replacement in self._replacements():
-            self._originals.append((owner, name, vars(owner).get(name, getattr(owner, name, None))))
-            setattr(owner, name, replacement)
+            original = vars(owner).get(name, getattr(owner, name, None))
+            self._originals.append((owner, name, original))
+            setattr(owner, name, as_original(owner, name, original, replacement))
         robot_stack.show_robots_lines(lambda: self._files)
 
     def uninstall(self) -> None:
@@ -95,7 +98,7 @@ class Redirection:
     def _replacements(self) -> list[tuple[Any, str, Any]]:
         return [
             *self._time_functions(),
-            *cooperative.stand_ins(),
+            *locks.replaced_names(),
             *self._waiting_in_wpilib(),
             *self._stepping_in_tests(),
             *self._timed_robot(),
@@ -116,15 +119,15 @@ class Redirection:
                     return real()
                 return from_us(self.run.clock.now_us if self.run is not None else 0)
 
-            # A static method is called like a function but, like the built-in it replaces, is not bound when
-            # somebody makes it a class's attribute.
-            return time, name, staticmethod(read)
+            return time, name, read
 
         def sleep(seconds: float, /) -> None:
             __tracebackhide__ = True
             threads = cooperative.scope.taking_part()
             if threads is None or not asked_by_robot_code():
                 return _real_sleep(seconds)
+            if not isinstance(seconds, float):
+                seconds = index(seconds)  # refuses what the real one refuses, as Decimal and numpy's float32
             if seconds < 0:
                 raise ValueError("sleep length must be non-negative")
             # A loop of sleep(0) lets other threads, and so time, go on; on a computer too that takes its microseconds.
@@ -137,7 +140,7 @@ class Redirection:
 
         real_monotonic = time.monotonic
         return [
-            (time, "sleep", staticmethod(sleep)),
+            (time, "sleep", sleep),
             reading("time", lambda us: KICKOFF + us / 1_000_000),
             reading("time_ns", lambda us: KICKOFF * 1_000_000_000 + us * 1_000),
             reading("monotonic", lambda us: us / 1_000_000),
@@ -172,7 +175,8 @@ class Redirection:
             def call(*args: Any, **kwargs: Any) -> Any:
                 __tracebackhide__ = True
                 run = self.run
-                if run is not None and (not args or args[0] in run.alarms):
+                handle = args[0] if args else kwargs.get("notifierHandle")
+                if run is not None and (handle is None or handle in run.alarms):
                     return getattr(run.alarms, ours)(*args, **kwargs)
                 return real(*args, **kwargs)
 
@@ -180,15 +184,15 @@ class Redirection:
 
         real_set_name = hal.setNotifierName
 
-        def set_notifier_name(handle: int, name: str) -> Any:
-            ours = self.run is not None and handle in self.run.alarms
-            return 0 if ours else real_set_name(handle, name)
+        def set_notifier_name(notifierHandle: int, name: str) -> Any:
+            ours = self.run is not None and notifierHandle in self.run.alarms
+            return 0 if ours else real_set_name(notifierHandle, name)
 
         return [
             (wpilib, "wait", wait),
             (wpilib, "Notifier", Notifier),
             (wpilib, "Watchdog", Watchdog),
-            (wpilib.DriverStation, "waitForDsConnection", staticmethod(wait_for_connection)),
+            (wpilib.DriverStation, "waitForDsConnection", wait_for_connection),
             notifier_call("initializeNotifier", "initialize"),
             notifier_call("updateNotifierAlarm", "update"),
             notifier_call("cancelNotifierAlarm", "cancel"),
