@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from types import TracebackType
+from types import FrameType, TracebackType
 
 # A virtual environment inside the project holds other people's code.
 _NOT_OURS = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
@@ -71,7 +71,12 @@ class RobotFiles:
         """``robot.py:12`` for the user's line that a running thread is at, if it is in the user's code."""
         frame = sys._current_frames().get(ident)
         while frame is not None:
-            if self.is_project_file(frame.f_code.co_filename):
-                return f"{self.relative(frame.f_code.co_filename)}:{frame.f_lineno}"
+            if (line := self.line_of_frame(frame)) is not None:
+                return line
             frame = frame.f_back
         return None
+
+    def line_of_frame(self, frame: FrameType) -> str | None:
+        """``robot.py:12`` for the user's line that a frame is at, if it is in the user's code."""
+        filename = frame.f_code.co_filename
+        return f"{self.relative(filename)}:{frame.f_lineno}" if self.is_project_file(filename) else None

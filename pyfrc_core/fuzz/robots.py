@@ -8,7 +8,6 @@ from __future__ import annotations
 import gc
 import signal
 import tempfile
-import threading
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -23,7 +22,7 @@ from ..errors import RobotCodeError
 from ..project import Project
 from ..runtime.apart import run_apart
 from ..runtime.clock import to_us
-from ..runtime.forks import FORK_IS_SAFE, left_behind, wait_for_any
+from ..runtime.forks import FORK_IS_SAFE, reasons_not_to_fork, wait_for_any
 from ..runtime.own_process import LastWords
 from ..runtime.scripts.script import InputScript
 from .failure import HANGS, PROCESS_ENDED, Failure
@@ -178,11 +177,10 @@ class ForkedRobots(Robots):
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
         self._running: list[ForkedWork[Played]] = []
-        threads = threading.active_count()
 
         def survey() -> tuple[bool, frozenset[Line]]:
             lines = robot_lines(project).all()
-            return left_behind(threads), lines
+            return bool(reasons_not_to_fork()), lines
 
         # In a process of its own first: what importing does cannot be taken back.
         imports_late, self._lines = self._do(survey)

@@ -166,8 +166,12 @@ class HalData(LiveDict):
             robot.sync()
 
     def anything_made(self) -> bool:
-        """Whether any device exists in the HAL."""
+        """Return whether any device exists in the HAL."""
         return self._recorder().anything_made()
+
+    def devices_made(self) -> list[str]:
+        """Return the devices that exist in the HAL, as ``pwm[3]``."""
+        return self._recorder().devices_made()
 
     def leaves(self) -> list[tuple[str, Any]]:
         """The robot and its inputs at this moment, as pairs of path and plain value, in a fixed order.

@@ -45,9 +45,19 @@ class Recording:
         self._paths: list[str] = []
 
     def anything_made(self) -> bool:
-        """Whether any device exists, or any thread of WPILib's that waits for an alarm."""
+        """Return whether any device exists, or any thread of WPILib's that waits for an alarm."""
         made = any(self._made.told()) or bool(self._tree["CAN"].signature())
         return made or hal.simulation.getNumNotifiers() > 0
+
+    def devices_made(self) -> list[str]:
+        """Return the devices that exist, as ``pwm[3]``, and last whether a thread of WPILib's waits for an alarm."""
+        slots = [join(kind.name, index) for kind in KINDS for index, _ in enumerate(kind.initialized())]
+        slots += ["pneumatics or power distribution"] * len(list(self._tree.modules.initialized()))
+        slots.append("accelerometer")
+        made = [name for name, there in zip(slots, self._made.told(), strict=True) if there]
+        if self._tree["CAN"].signature():
+            made += [join("CAN", name) for name in sorted(self._tree["CAN"])]
+        return made + ["a notifier"] * (hal.simulation.getNumNotifiers() > 0)
 
     def look(self) -> tuple[list[str], list[Any]]:
         """The paths, the same list while it is the same paths, and the value of each."""

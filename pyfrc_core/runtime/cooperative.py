@@ -41,6 +41,8 @@ class _Scope:
         self.threads: RobotThreads | None = None
         self.waiting_to_begin: list[tuple[threading.Thread, Callable[[], object]]] = []
         self.is_robot_code: Callable[[str], bool] = lambda filename: False
+        #: The project's line, as ``robot.py:12``, that a frame is at; None for a frame of other code.
+        self.line_of: Callable[[FrameType], str | None] = lambda frame: None
         self.local = threading.local()
 
     def taking_part(self) -> RobotThreads | None:
@@ -63,6 +65,8 @@ scope = _Scope()
 
 def start_thread(thread: threading.Thread) -> None:
     """`Thread.start`: a thread that robot code starts gets its turns from the clock; a library's own does not."""
+    if scope.threads is None:
+        _note_start(thread)
     initialized = getattr(thread, "_initialized", False) and thread.ident is None  # else the real one raises an error
     if initialized and on_behalf_of_robot_code(sys._getframe(1)):
         start_in_robot_time(thread)
@@ -105,6 +109,26 @@ def begin_waiting_threads() -> None:
     for thread, body in waiting:
         if scope.threads is not None:
             _begin(scope.threads, thread, body)
+
+
+def _note_start(thread: threading.Thread) -> None:
+    """Note which line of the project, if any, has a thread started outside a run: a fork would lack the thread."""
+    frame: FrameType | None = sys._getframe(2)
+    while frame is not None:
+        # A robot.py that is run as the program has everything on its stack, pytest's plugins too.
+        if (line := scope.line_of(frame)) is not None and frame.f_globals.get("__name__") != "__main__":
+            vars(thread)["_pyfrc_started_at"] = line
+            return
+        frame = frame.f_back
+
+
+def threads_of_the_project() -> list[tuple[threading.Thread, str]]:
+    """Return the threads that the project has started outside a run, by itself or in a library, and the line of each.
+
+    Threads that pytest, its plugins and other tools keep for themselves are not among them.
+    """
+    alive = [*(thread for thread, _ in scope.waiting_to_begin), *threading.enumerate()]
+    return [(thread, vars(thread)["_pyfrc_started_at"]) for thread in alive if "_pyfrc_started_at" in vars(thread)]
 
 
 def _begin(threads: RobotThreads, thread: threading.Thread, body: Callable[[], object]) -> None:

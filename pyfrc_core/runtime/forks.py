@@ -12,8 +12,8 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 
-from ..hal import devices_exist
-from .cooperative import scope
+from ..hal import devices_exist, existing_devices
+from .cooperative import threads_of_the_project
 from .own_process import exit_now, write_all
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
@@ -21,6 +21,7 @@ FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
 
 # How long to wait before looking whether a process is gone without a word. Decides nothing else.
 _LOOK_SECONDS = 0.05
+_NAMED_DEVICES = 3
 
 
 @contextlib.contextmanager
@@ -31,12 +32,21 @@ def forking_quietly() -> Iterator[None]:
         yield
 
 
-def left_behind(python_threads: int) -> bool:
-    """Whether this process has threads or devices that a fork of it would lack, and wait for.
+def reasons_not_to_fork() -> list[str]:
+    """Return what the project's code has made in this process and a fork of it would lack: threads and devices."""
+    reasons = [f"{line} starts {_described(thread)}" for thread, line in threads_of_the_project()]
+    if devices_exist():
+        devices = existing_devices()
+        more = f" and {len(devices) - _NAMED_DEVICES} more" if len(devices) > _NAMED_DEVICES else ""
+        reasons.append(f"devices are made: {', '.join(devices[:_NAMED_DEVICES])}{more}")
+    return reasons
 
-    :param python_threads: how many there were when all was well
-    """
-    return bool(scope.waiting_to_begin) or threading.active_count() > python_threads or devices_exist()
+
+def _described(thread: threading.Thread) -> str:
+    target = getattr(thread, "_target", None) or type(thread)
+    name = getattr(target, "__qualname__", type(thread).__qualname__)
+    module = getattr(target, "__module__", None)
+    return f"the thread {thread.name!r}, which runs {module}.{name}" if module else f"the thread {thread.name!r}"
 
 
 class Fork:

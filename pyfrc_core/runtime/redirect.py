@@ -55,6 +55,7 @@ class Redirection:
         """Replace the names, for the robot project with these files. Doing it again only changes the project."""
         self._files = files
         cooperative.scope.is_robot_code = files.is_robot_code
+        cooperative.scope.line_of = files.line_of_frame
         if self.installed:
             return
         if hasattr(os, "register_at_fork"):
@@ -73,6 +74,7 @@ class Redirection:
             else:
                 setattr(owner, name, original)
         cooperative.scope.is_robot_code = lambda filename: False
+        cooperative.scope.line_of = lambda frame: None
         robot_stack.show_all_lines()
 
     def _leave(self) -> None:

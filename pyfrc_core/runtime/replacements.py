@@ -99,7 +99,7 @@ def as_original(owner: Any, name: str, original: Any, replacement: Any) -> Any:
     """
     if isinstance(replacement, type) and not isinstance(replacement, ReplacementType):
         replacement.__module__ = original.__module__
-    if not isinstance(replacement, types.FunctionType):
+    if original is None or not isinstance(replacement, types.FunctionType):
         return replacement
     if isinstance(original, types.FunctionType):
         return functools.update_wrapper(replacement, original)

@@ -69,7 +69,7 @@ class PyFrcPlugin:
         *,
         project: Project | None = None,
         options: TestOptions | None = None,
-        imports_late: bool = False,
+        imports_late: str = "",
     ) -> None:
         self.project = project or Project(Path(robot_file).resolve())
         self.options = options or TestOptions.combined(self.project.settings.test)
@@ -81,7 +81,7 @@ class PyFrcPlugin:
         self.last_words: Callable[[str], None] | None = None
         #: Called with each run when it has been opened.
         self.when_opened: Callable[[RobotRun], object] = lambda run: None
-        #: Whether each test's own process imports the robot's modules, since they cannot be forked.
+        #: Why each test's own process imports the robot's modules; empty when they can be forked.
         self.imports_late = imports_late
         self._former_logs: set[tuple[str, int]] = set()
         self._robot_class = robot_class

@@ -5,7 +5,6 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,7 @@ import pytest
 from .. import tests as ready_made
 from ..errors import PyfrcError, UsageError
 from ..project import Project
-from ..runtime.forks import FORK_IS_SAFE
+from ..runtime.forks import FORK_IS_SAFE, reasons_not_to_fork
 from .isolation.loop import IsolatedTests
 from .isolation.spare import Spare
 from .options import TestOptions
@@ -54,14 +53,14 @@ def run_tests(
         if directory is not None:  # told once what is wrong with it, not by every test
             directory.mkdir(parents=True, exist_ok=True)
 
-    def session(imports_late: bool = False) -> int:
+    def session(imports_late: str = "") -> int:
         plugin = PyFrcPlugin(
             None, project.main_file, project.root, project=project, options=options, imports_late=imports_late
         )
         if not imports_late:
             plugin.robot_class()  # a robot that cannot be imported is told once, not by every test
-            if spare is not None and spare.needed():
-                status = spare.take_over()
+            if spare is not None and (reasons := reasons_not_to_fork()):
+                status = spare.take_over("; ".join(reasons))
                 warn_of_misspelled_methods(project)  # the spare has not imported them
                 return status
         plugins = [plugin, IsolatedTests(plugin), Summary(project), _NoUnusedHypothesis()]
@@ -69,7 +68,7 @@ def run_tests(
 
     spare = None
     if FORK_IS_SAFE and options.isolation in ("auto", "fork"):
-        spare = Spare(partial(session, imports_late=True))
+        spare = Spare(session)
     # What cancels a run (an IDE, a CI system) ends it as Ctrl-C does: with the processes it has started.
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:

@@ -14,7 +14,6 @@ import contextlib
 import gc
 import os
 import sys
-import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,7 +21,7 @@ import pytest
 
 from ...robot_files import RobotFiles
 from ...runtime.failures import headline_is_the_robots
-from ...runtime.forks import FORK_IS_SAFE, left_behind
+from ...runtime.forks import FORK_IS_SAFE, reasons_not_to_fork
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
 from .messages import decode, replay
@@ -30,6 +29,9 @@ from .processes import ForkedTest, SpawnedTest, TestProcess, wait_for_any
 
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
 _ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})
+
+_IMPORTS_LATE = "Each robot test imports the robot anew, which is slower: on import, {}. Do that in robotInit."
+_STARTS_PYTHON = "Each robot test starts a new Python, which is some 20 times slower: on import, {}."
 
 
 class IsolatedTests:
@@ -39,7 +41,7 @@ class IsolatedTests:
         self._plugin = plugin
         self._running: dict[pytest.Item, TestProcess] = {}
         self._announced: pytest.Item | None = None
-        self._python_threads = threading.active_count()
+        self._explained = False
 
     @pytest.hookimpl
     def pytest_runtestloop(self, session: pytest.Session) -> bool | None:
@@ -83,7 +85,7 @@ class IsolatedTests:
                 self._finish(session, waiting, down_to=0)
             _tear_down_shared(session, previous, item)
             previous = item
-            forked = self._can_fork()
+            forked = self._can_fork(session.config)
             if forked:  # a new interpreter sets up everything itself
                 _set_up_shared(session, item)
             waiting.append(item)
@@ -117,21 +119,36 @@ class IsolatedTests:
             self._announced = item
             item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
 
-    def _can_fork(self) -> bool:
+    def _can_fork(self, config: pytest.Config) -> bool:
         isolation = self._plugin.options.isolation
-        if isolation == "spawn" or (isolation == "auto" and not FORK_IS_SAFE):
+        if isolation == "spawn":
             return False
-        if not self._plugin.imports_late:
+        if isolation == "auto" and not FORK_IS_SAFE:
+            self._explain(config, "Each robot test starts a new Python: this system cannot fork a process safely.")
+            return False
+        if self._plugin.imports_late:
+            self._explain(config, _IMPORTS_LATE.format(self._plugin.imports_late))
+        else:
             with contextlib.suppress(Exception):  # told by each test that needs it
                 self._plugin.robot_class()
-        if not left_behind(self._python_threads):
+        reasons = "; ".join(reasons_not_to_fork())
+        if not reasons:
             return True
         if isolation == "fork":
             raise pytest.UsageError(
                 "the robot's tests cannot be forked: importing the robot, or a test file, has made devices or threads, "
-                "which a fork would lack. Leave out --isolation fork."
+                f"which a fork would lack ({reasons}). Leave out --isolation fork."
             )
+        self._explain(config, _STARTS_PYTHON.format(reasons))
         return False
+
+    def _explain(self, config: pytest.Config, text: str) -> None:
+        """Print once why the tests are slower than they could be."""
+        reporter: Any = config.pluginmanager.getplugin("terminalreporter")
+        if not self._explained and reporter is not None:
+            self._explained = True
+            reporter.ensure_newline()
+            reporter.write_line(f"pyfrc: {text}", yellow=True)
 
     def _uses_robot(self, item: pytest.Item) -> bool:
         if ROBOT_FIXTURES.intersection(getattr(item, "fixturenames", ())):

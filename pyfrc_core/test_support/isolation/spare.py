@@ -10,22 +10,23 @@ from __future__ import annotations
 import os
 import signal
 import sys
-import threading
 from collections.abc import Callable
 
 from ...measure.processes import save_here
-from ...runtime.forks import forking_quietly, left_behind
+from ...runtime.forks import forking_quietly
+
+#: What a pipe holds, at least: the reasons are written and read at once.
+_MOST_BYTES = 512
 
 
 class Spare:
     """The process as it is now, to be gone back to.
 
-    :param work: what the spare does when it takes over; answers the exit code
+    :param work: what the spare does when it takes over; is given the reasons, and returns the exit code
     """
 
-    def __init__(self, work: Callable[[], int]) -> None:
+    def __init__(self, work: Callable[[str], int]) -> None:
         self._over = False
-        self._threads = threading.active_count()
         reading_end, self._go = os.pipe()
         sys.stdout.flush()
         sys.stderr.flush()
@@ -35,18 +36,14 @@ class Spare:
             os.close(self._go)
             status = 0
             try:
-                if os.read(reading_end, 1):
-                    status = work()
+                if reasons := os.read(reading_end, _MOST_BYTES):
+                    status = work(reasons.decode(errors="ignore"))
                     save_here()
             finally:
                 sys.stdout.flush()
                 sys.stderr.flush()
                 os._exit(status)
         os.close(reading_end)
-
-    def needed(self) -> bool:
-        """Whether what was imported since has left something behind that a fork would not survive."""
-        return left_behind(self._threads)
 
     def dismiss(self) -> None:
         """It is not needed, or has done its work."""
@@ -57,10 +54,13 @@ class Spare:
             os.waitpid(self._pid, 0)
             os.close(self._go)
 
-    def take_over(self) -> int:
-        """Let the spare do the work instead of this process; answers its exit code."""
+    def take_over(self, reasons: str) -> int:
+        """Let the spare do the work instead of this process; return its exit code.
+
+        :param reasons: why this process cannot be forked
+        """
         self._over = True
-        os.write(self._go, b"!")
+        os.write(self._go, reasons.encode()[:_MOST_BYTES])
         os.close(self._go)
         while True:
             try:

@@ -1,0 +1,107 @@
+"""Robot tests run in forks, whatever is installed and not used; where they cannot, the output gives the reason once."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from conftest import MakeProject, RobotProject
+
+pytestmark = pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="tests are not forked here")
+
+ROBOT = """
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""
+
+TESTS = """
+    import os
+    import sys
+
+
+    def test_forked(control):
+        assert not any("spawned" in argument for argument in sys.orig_argv)
+
+
+    def test_another(control):
+        control.run_test(lambda tm: tm < 1)
+"""
+
+#: As pytest-rerunfailures does where pytest-xdist is installed, too, although neither is used.
+PLUGIN = """
+    import socket
+    import threading
+
+
+    def pytest_configure(config):
+        server = socket.socket()
+        server.bind(("127.0.0.1", 0))
+        server.listen()
+        threading.Thread(target=server.accept, name="server", daemon=True).start()
+"""
+
+#: A library with a thread of its own, from its import on.
+LIBRARY = """
+    import threading
+
+
+    def grab():
+        threading.Event().wait()
+
+
+    threading.Thread(target=grab, name="frames", daemon=True).start()
+"""
+
+NO_FORK = """
+    from pyfrc_core.test_support import run_tests
+    from pyfrc_core.test_support.isolation import loop
+
+    run_tests.FORK_IS_SAFE = loop.FORK_IS_SAFE = False
+"""
+
+
+def run(project: RobotProject, *options: str) -> tuple[list[str], dict[str, str]]:
+    """Run the project's tests with modules of other people's at hand; return what pyfrc explains, and the outcomes."""
+    others = project.path.parent / "others"
+    others.mkdir()
+    for name, text in {"serving": PLUGIN, "vision_library": LIBRARY, "no_fork": NO_FORK}.items():
+        RobotProject(others, others).write({f"{name}.py": text})
+    result = project.run("test", "--", "-v", *options, env={"PYTHONPATH": str(others)})
+    outcomes = {name.rpartition("::")[2]: outcome for name, outcome in result.outcomes().items()}
+    assert len(outcomes) == 2, result.output
+    return [line for line in result.output.splitlines() if line.startswith("pyfrc: ")], outcomes
+
+
+def test_a_plugin_with_a_thread_of_its_own_changes_nothing(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": TESTS})
+    assert run(project, "-p", "serving") == ([], {"test_forked": "PASSED", "test_another": "PASSED"})
+
+
+def test_a_thread_that_the_robot_starts_on_import_is_named_with_its_line(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": "    import vision_library\n" + ROBOT.lstrip("\n"), "tests/test_a.py": TESTS})
+    (explained,), outcomes = run(project)
+    assert "imports the robot anew" in explained
+    assert "robot.py:1 starts the thread 'frames', which runs vision_library.grab" in explained
+    assert outcomes == {"test_forked": "PASSED", "test_another": "PASSED"}
+
+
+def test_a_device_in_the_robots_class_is_named(make_project: MakeProject) -> None:
+    robot = ROBOT.replace("pass", "motor = wpilib.PWMSparkMax(3)")
+    (explained,), _ = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}))
+    assert "devices are made: pwm[3]" in explained
+
+
+def test_a_thread_of_a_test_file_is_named_with_its_line(make_project: MakeProject) -> None:
+    tests = "    import vision_library\n" + TESTS.lstrip("\n")
+    (explained,), outcomes = run(make_project({"robot.py": ROBOT, "tests/test_a.py": tests}))
+    assert "starts a new Python" in explained
+    assert "tests/test_a.py:1 starts the thread 'frames'" in explained.replace("\\", "/")
+    assert outcomes == {"test_forked": "FAILED", "test_another": "PASSED"}
+
+
+def test_a_system_without_fork_is_the_reason(make_project: MakeProject) -> None:
+    (explained,), _ = run(make_project({"robot.py": ROBOT, "tests/test_a.py": TESTS}), "-p", "no_fork")
+    assert "this system cannot fork" in explained
