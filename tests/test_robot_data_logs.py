@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 from sim_robots import run, settle
@@ -149,7 +150,7 @@ def test_each_test_has_a_log(isolation: list[str], make_project) -> None:
     settings = "[tool.pyfrc.test]\nhang_seconds = 0.2\n"
     files = robot() | {"tests/match_test.py": TESTS, "pyproject.toml": settings}
     made = make_project(files)
-    made.run("test", *isolation, "-k", "ends")
+    made.run("test", *isolation, "--", "-k", "ends")
     result = made.run("test", *isolation)  # whose logs replace the first one's
     assert "data logs: .pyfrc/logs/test\n" in result.stdout.replace("\\", "/")
     found = {file.name: len(turns(file)) for file in (made.path / ".pyfrc" / "logs" / "test").iterdir()}
@@ -157,7 +158,16 @@ def test_each_test_has_a_log(isolation: list[str], make_project) -> None:
     assert found == {f"tests_match_test.py.{test}.wpilog": count for test, count in expected.items()}
     assert not (made.path / "logs").exists()
     if isolation == []:
-        assert "data log" not in made.run("test", "-k", "nothing").stdout
+        assert "data log" not in made.run("test", "--", "-k", "nothing").stdout
+
+
+def test_a_log_that_is_started_at_import(make_project) -> None:
+    made = make_project({"robot.py": "import wpilib\nwpilib.DataLogManager.start()\n" + dedent(robot()["robot.py"])})
+    made.write({"tests/match_test.py": TESTS})
+    assert made.run("test", "--", "-k", "ends").code == 1
+    logs = (made.path / ".pyfrc" / "logs" / "test").iterdir()
+    assert sorted(len(turns(log)) for log in logs) == [50, 100]
+    assert not (made.path / "logs").exists()
 
 
 def test_replays_and_campaigns(make_project) -> None:

@@ -54,33 +54,36 @@ def trace_hash(file: Path) -> str:
     return digest.hexdigest()
 
 
-def test_memory_does_not_grow_with_time(make_project, tmp_path: Path) -> None:
+def test_memory_does_not_grow_with_time(make_project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "_BLOCK", 64)
+    monkeypatch.setattr(assembly, "_RECENT_POINTS", 64)
+    monkeypatch.setattr(assembly, "_OLDER_POINTS", 128)
     made = make_project(FILES)
     with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
         simulation.choose_mode("teleop")
         simulation.enable()
-        run(simulation, 50)
+        run(simulation, 20)
         tracemalloc.start()
         gc.collect()
         before, _ = tracemalloc.get_traced_memory()
-        run(simulation, 100)
+        run(simulation, 60)
         gc.collect()
         after, _ = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-        # 5000 changes of hal_data take 1.2 MB.
-        assert after - before < 600_000
+        # 3000 changes of hal_data take 600 kB.
+        assert after - before < 300_000
         whole = simulation.script()
-        simulation.rewind(60)
+        simulation.rewind(30)
         settle(simulation)
         assert simulation.snapshot is not None
-        assert simulation.snapshot.time == 60
-        run(simulation, 30)
+        assert simulation.snapshot.time == 30
+        run(simulation, 20)
         simulation.save_all(tmp_path / "run.jsonl")
     assert trace_hash(tmp_path / "run-1.trace.jsonl") == whole.trace
     again, first = ((tmp_path / f"{name}.trace.jsonl").read_text().splitlines()[:-1] for name in ("run", "run-1"))
-    until = sum(json.loads(line).get("t", 0) <= 60 for line in first)
+    until = sum(json.loads(line).get("t", 0) <= 30 for line in first)
     assert again[:until] == first[:until]
-    assert json.loads(again[-1])["t"] == 90
+    assert json.loads(again[-1])["t"] == 50
     replayed = made.run("replay", tmp_path / "run.jsonl")
     assert "The trace equals the recorded one." in replayed.stdout, replayed.output
 

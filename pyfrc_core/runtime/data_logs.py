@@ -44,6 +44,9 @@ _RealWriter, _RealBackgroundWriter = wpiutil.DataLogWriter, wpiutil.DataLogBackg
 #: WPILib's driver station and NetworkTables hold on to logs in C++ for as long as the process lives.
 _EVERY_LOG: list[DataLog] = []
 
+#: What robots' modules have given to `DataLogManager.start` while they were imported: before there is a run to log.
+_started_at_import: list[tuple[tuple[Any, ...], dict[str, Any]]] = []
+
 
 @dataclass(frozen=True)
 class LogPlace:
@@ -113,6 +116,11 @@ class DataLogs:
         self._manager: DataLog | None = None
         self._network: tuple[int, int] | None = None
         self._next_system_time_us = 0
+
+    def start_as_at_import(self) -> None:
+        """Start the manager's log where a robot's module has done that while it was imported."""
+        for args, kwargs in _started_at_import[:1]:
+            self.start(*args, **kwargs)
 
     # -- what robot code calls, under WPILib's names ----------------------------------------------------------------
 
@@ -302,6 +310,9 @@ def replacements(current: Callable[[], DataLogs | None]) -> list[tuple[Any, str,
 
         def call(*args: Any, **kwargs: Any) -> Any:
             logs = current()
+            if logs is None and name == "start":
+                _started_at_import.append((args, kwargs))
+                return None
             return (real if logs is None else getattr(logs, name))(*args, **kwargs)
 
         return wpilib.DataLogManager, name, staticmethod(call)

@@ -85,6 +85,7 @@ class RobotRun:
         wpilib.DriverStation.refreshData()
         self.clock.before_packet.append(MotorSafetyCheck().on_packet)
         end_wpilibs_thread()
+        self.data_logs.start_as_at_import()
         cooperative.begin_waiting_threads()
 
     def construct(self, robot_class: type[Any]) -> Any:
