@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pickle
 import signal
+import struct
 import tempfile
 from collections.abc import Callable
 from typing import IO, Generic, TypeVar
@@ -15,6 +16,8 @@ from ..runtime.forks import Fork
 from ..runtime.own_process import LastWords, end_processes_of_the_robot, exit_now, explain_end
 
 Answer = TypeVar("Answer")
+
+_LENGTH = struct.Struct("<Q")
 
 
 class ForkedWork(Generic[Answer]):
@@ -47,8 +50,10 @@ class ForkedWork(Generic[Answer]):
         :param meanwhile: when that was, such as "in the middle of the match"
         :raises RobotCodeError: when the process ended without an answer
         """
-        if self._fork.message:
-            answer, error = pickle.loads(self._fork.message)
+        message = self._fork.message
+        # The process may have died in the middle of its answer.
+        if len(message) >= _LENGTH.size and len(message) == _LENGTH.size + _LENGTH.unpack_from(message)[0]:
+            answer, error = pickle.loads(message[_LENGTH.size :])
             if error is not None:
                 raise error
             return answer  # type: ignore[no-any-return]
@@ -74,7 +79,8 @@ def _in_the_fork(do: Callable[[LastWords], object], send: Callable[[bytes], None
         error = raised
     except BaseException as raised:  # not for the process that asks to be ended by
         error = RobotCodeError(text_of(raised))
-    send(_pickled(answer, error))
+    pickled = _pickled(answer, error)
+    send(_LENGTH.pack(len(pickled)) + pickled)
     end_processes_of_the_robot()
     exit_now(0)  # without waiting for what the robot left running
 

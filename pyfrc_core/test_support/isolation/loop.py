@@ -174,18 +174,21 @@ def _stop_if_asked(session: pytest.Session) -> None:
 
 def _report(item: pytest.Item, process: TestProcess, files: RobotFiles, seed: tuple[str, str]) -> None:
     """Replay here what the test's process told, and what it can no longer tell."""
-    done, phases = False, []
+    done, phases, failed = False, [], False
     for message in decode(process.output()):
         if message[0] == "done":
             done = True
         elif (report := replay(item, message)) is not None:
             phases.append(report.when)
+            failed = failed or (report.failed and report.when == "setup")
     if done:
         return
     crash = process.explain_crash()
+    # After the call's report (or a setup that failed) came the teardown; it may have been reported itself.
+    crashed = "teardown" if "call" in phases or failed else "call"
     for phase in ("setup", "call", "teardown"):
-        if phase not in phases:
-            text = crash if phase == "call" else None
+        if phase == crashed or (phase not in phases and not (failed and phase == "call")):
+            text = crash if phase == crashed else None
             report = _made_up(item, phase, text, process.captured(), seed)
             if text is not None and headline_is_the_robots(text, files):
                 setattr(report, BUG, bug_of(text))

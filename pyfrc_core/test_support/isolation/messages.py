@@ -9,7 +9,7 @@ from __future__ import annotations
 import pickle
 import struct
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
 import pytest
@@ -43,14 +43,17 @@ class Teller:
         self._send = send
         self._listening = False
 
-    def run(self, item: pytest.Item) -> None:
-        """The whole of pytest's protocol for `item`, without a report on this side."""
+    def run(self, item: pytest.Item, shares: bool = True) -> None:
+        """The whole of pytest's protocol for `item`, without a report on this side.
+
+        :param shares: whether what the test shares with others is torn down by the other side
+        """
         # On registering, pytest tells the warnings recorded so far again: those the other side knows.
         item.config.pluginmanager.register(self, "pyfrc.teller")
         self._listening = True
         try:
-            # The next item is the one's parent: what the test shares with others is not torn down here.
-            item.ihook.pytest_runtest_protocol(item=item, nextitem=item.parent)
+            # With the item's parent for the next item, what the test shares with others is not torn down here.
+            item.ihook.pytest_runtest_protocol(item=item, nextitem=item.parent if shares else None)
         except pytest.exit.Exception as leaving:
             self.tell("exit", (leaving.msg, leaving.returncode))
         except KeyboardInterrupt:
@@ -66,9 +69,15 @@ class Teller:
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: Any) -> bool:
         from _pytest.runner import runtestprotocol
 
-        for report in runtestprotocol(item, log=False, nextitem=nextitem):
-            self.tell("report", item.config.hook.pytest_report_to_serializable(config=item.config, report=report))
+        runtestprotocol(item, log=False, nextitem=nextitem)
         return True
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_makereport(self, item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+        """Send each report as soon as it is made: the next phase may end the process."""
+        report = yield
+        self.tell("report", item.config.hook.pytest_report_to_serializable(config=item.config, report=report))
+        return report
 
     def pytest_warning_recorded(
         self, warning_message: warnings.WarningMessage, when: str, nodeid: str, location: Any

@@ -43,8 +43,7 @@ class OnlyOneTest:
             leave_word_on_crash(self._plugin, last_words.fileno())
             for item in session.items:
                 if item.nodeid == self._job["nodeid"]:
-                    Teller(output.write).run(item)  # type: ignore[arg-type]
-                    session._setupstate.teardown_exact(None)
+                    Teller(output.write).run(item, shares=False)  # type: ignore[arg-type]
         return True
 
 
