@@ -92,9 +92,18 @@ def late(function: Callable[..., Any], gate: Gate) -> Callable[..., Any]:
 
 @pytest.mark.parametrize("fork", BOTH_WAYS)
 def test_the_exit_is_reported_before_a_message_is_read(
-    fork: bool, make_project: MakeProject, exit_reported: Gate, monkeypatch: pytest.MonkeyPatch
+    fork: bool, make_project: MakeProject, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(robot_channel, "receive", late(robot_channel.receive, exit_reported))
+    """No message is read until the channel waits for nothing but that."""
+    gate = Gate()
+    end_of_input = robot_channel.end_of_input
+
+    def ending(connection: Connection) -> None:
+        end_of_input(connection)
+        gate.set()
+
+    monkeypatch.setattr(robot_channel, "end_of_input", ending)
+    monkeypatch.setattr(robot_channel, "receive", late(robot_channel.receive, gate))
     with failed(make_project, FAILS, fork) as simulation:
         see_the_users_error(simulation)
 
