@@ -26,7 +26,7 @@ class Mashing:
         self._run = run
         self._masher = masher
         self._diary = diary
-        self._targets = Targets(run.hal_data)
+        self._targets = Targets(run.hal_data, run.connection.packet)
 
     def write(self) -> None:
         """What there is to be written now; to be called once before the robot starts."""

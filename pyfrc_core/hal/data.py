@@ -28,15 +28,18 @@ class HalData(LiveDict):
     ``hal_data['dio'][1]['value'] = True`` is what the robot reads next. There may be several trees, made
     before or after the robot's devices: none keeps a value that the HAL has. Making one sets the inputs that
     the HAL leaves open: see `apply_defaults`.
+
+    :param defaults: whether to set them; in a run, they are set when it begins
     """
 
-    def __init__(self) -> None:
+    def __init__(self, defaults: bool = True) -> None:
         super().__init__("", self._values)
         self.modules = Modules()
         self._recording: Recording | None = None
         self._rooms: dict[Any, Any] = {"custom": {}, "reports": {}}
         self._makers = self._room_makers()
-        self.apply_defaults()
+        if defaults:
+            self.apply_defaults()
 
     def apply_defaults(self) -> None:
         """Red alliance, station 1, at the event 'sim-event', where neither has been said yet."""

@@ -184,7 +184,7 @@ def choice(names: dict[str, int], make: Callable[[int], Any] = int) -> Kind:
 
     def load(value: Any) -> Choice:
         raw = int(value)
-        return by_number.get(raw) or Choice(raw, f"unknown {raw}")
+        return by_number[raw] if raw in by_number else Choice(raw, f"unknown {raw}")  # 0 is false
 
     lower = {name.lower(): value for name, value in names.items()}
     expected = "one of " + ", ".join(f"{name!r} ({value})" for name, value in names.items())

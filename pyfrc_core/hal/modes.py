@@ -19,6 +19,7 @@ from hal.simulation import (
     setDriverStationEnabled,
     setDriverStationMatchTime,
     setDriverStationTest,
+    setEventName,
     setGameSpecificMessage,
     setJoystickAxis,
     setJoystickAxisCount,
@@ -35,6 +36,8 @@ from ..errors import UsageError
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
 
 JOYSTICKS = 6
+#: As in 2019.
+EVENT_NAME = "sim-event"
 #: What each joystick has until somebody says otherwise: as many controls as a robot may ask for.
 AXES, BUTTONS, POVS = 12, 12, 1
 #: What a POV reads while nobody touches it; pressed, it is an angle in degrees clockwise from up.
@@ -42,10 +45,11 @@ NOT_PRESSED = -1
 
 
 def reset_driver_station() -> None:
-    """Attached, disabled, teleoperated, red 1, no game message, six joysticks with nothing pressed."""
+    """Set what the driver station sends at first: attached, disabled, red 1, six joysticks with nothing pressed."""
     resetDriverStationData()
     setDriverStationDsAttached(True)
     setDriverStationAllianceStationId(AllianceStationID.kRed1)
+    setEventName(EVENT_NAME)
     for stick in range(JOYSTICKS):
         plug_in(stick)
 

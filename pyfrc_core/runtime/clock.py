@@ -43,6 +43,8 @@ class Clock:
     def __init__(self) -> None:
         #: Called before each packet with the robot time in seconds: the place to change inputs.
         self.before_packet: list[Callable[[float], None]] = []
+        #: Delivers a packet; of a run, over its connection, which may be lost.
+        self.deliver_packet: Action = deliver_packet
         self._recurring: list[tuple[int, int, Action]] = []
         #: Its first number follows the time: memory that another process may see.
         self.moment: MutableSequence[int] | memoryview = array("q", [0])
@@ -157,4 +159,4 @@ class Clock:
         self.at(self._next_packet, PACKET, self._packet)
         for listener in self.before_packet:
             listener(self.now_us / 1_000_000)
-        deliver_packet()
+        self.deliver_packet()

@@ -24,7 +24,7 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
-from . import cooperative, data_logs, locks, robot_stack
+from . import cooperative, data_logs, driver_station, locks, robot_stack
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
 from .endings import TestEnded
@@ -103,6 +103,7 @@ class Redirection:
             *locks.replaced_names(),
             *self._waiting_in_wpilib(),
             *self._stepping_in_tests(),
+            *driver_station.replacements(lambda: self.run),
             *self._timed_robot(),
             *self._directories(),
             *robot_stack.reports(lambda: self._files),
@@ -161,16 +162,6 @@ class Redirection:
                 return _real_sleep(seconds)
             return threads.sleep_until(threads.clock.now_us + max(0, to_us(seconds)))
 
-        real_connection_wait = wpilib.DriverStation.waitForDsConnection
-
-        def wait_for_connection(timeout: float) -> bool:
-            __tracebackhide__ = True
-            threads = cooperative.scope.taking_part()
-            if threads is None:
-                return bool(real_connection_wait(timeout))
-            timeout_us = to_us(timeout) if timeout > 0 else None  # 0: for as long as it takes
-            return threads.wait([], _driver_station_attached, timeout_us)
-
         def notifier_call(name: str, ours: str) -> tuple[Any, str, Any]:
             real = getattr(hal, name)
 
@@ -194,7 +185,6 @@ class Redirection:
             (wpilib, "wait", wait),
             (wpilib, "Notifier", Notifier),
             (wpilib, "Watchdog", Watchdog),
-            (wpilib.DriverStation, "waitForDsConnection", wait_for_connection),
             notifier_call("initializeNotifier", "initialize"),
             notifier_call("updateNotifierAlarm", "update"),
             notifier_call("cancelNotifierAlarm", "cancel"),
@@ -243,25 +233,7 @@ class Redirection:
             # Time stands still between steps already, and begins at 0 with the run.
             table += [left_to_the_run(owner, f"{verb}Timing") for verb in ("pause", "resume", "restart")]
             table.append(left_to_the_run(owner, "waitForProgramStart"))
-        return table + self._packets_in_tests()
-
-    def _packets_in_tests(self) -> list[tuple[Any, str, Any]]:
-        """Packets that a test delivers out of turn, for whoever records what comes from outside."""
-
-        def told(owner: Any, name: str) -> tuple[Any, str, Any]:
-            real = getattr(owner, name)
-
-            def notify() -> None:
-                if self.run is not None and self.run.recorder is not None:
-                    self.run.recorder.on_packet_out_of_turn()
-                real()
-
-            return owner, name, notify
-
-        return [
-            told(wpilib.simulation.DriverStationSim, "notifyNewData"),
-            told(hal.simulation, "notifyDriverStationNewData"),
-        ]
+        return table
 
     def _timed_robot(self) -> list[tuple[Any, str, Any]]:
         TimedRobot = wpilib.TimedRobot
@@ -325,10 +297,6 @@ class _Instant(float):
 
     def __sub__(self, other: float) -> _Instant:
         return _Instant(round(float(self) - other, 6))
-
-
-def _driver_station_attached() -> bool:
-    return bool(wpilib.DriverStation.isDSAttached())
 
 
 #: The redirection of this process.

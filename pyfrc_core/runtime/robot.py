@@ -19,6 +19,7 @@ import wpilib
 
 from ..errors import RobotCodeError
 from ..hal import HalData, devices_exist, modes, timing
+from ..hal.ds_connection import DriverStationConnection
 from ..hal.output_gate import OutputGate
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
@@ -48,6 +49,9 @@ class RobotRun:
         self.clock = Clock()
         #: What robot code starts of data logs.
         self.data_logs = DataLogs(self.clock, logs)
+        #: What brings packets to the robot.
+        self.connection = DriverStationConnection()
+        self.clock.deliver_packet = self.connection.packet
         self.threads = RobotThreads(self.clock)
         self.alarms = Alarms(self.threads)
         self.overruns = LoopOverruns(self.clock)
@@ -74,15 +78,15 @@ class RobotRun:
         self._closing = contextlib.ExitStack()
 
     def open(self) -> None:
-        """Take charge of the HAL: time at 0, the driver station attached and disabled, nothing pressed."""
+        """Take charge of the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
         self._closing.enter_context(redirection.active(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
         ntcore.NetworkTableInstance.getDefault().startLocal()
         if not devices_exist():  # of an earlier run in this process, only its inputs are left
             timing.forget_inputs()
+        self.connection.boot()
+        # What the first packet brings: it may still be changed.
         modes.reset_driver_station()
-        timing.deliver_packet()
-        wpilib.DriverStation.refreshData()
         self.clock.before_packet.append(MotorSafetyCheck().on_packet)
         end_wpilibs_thread()
         self.data_logs.start_as_at_import()
@@ -134,7 +138,7 @@ class RobotRun:
     @cached_property
     def hal_data(self) -> HalData:
         """The robot's inputs and outputs; one tree for everybody who has to do with this run."""
-        tree = HalData()
+        tree = HalData(defaults=False)
         # What was written for a gyro before the robot made it, reaches it then.
         self.clock.before_packet.append(lambda now: tree.sync())
         return tree

@@ -65,6 +65,7 @@ class Assembly:
             values=MappingProxyType(values),
             choosers=before.choosers if update.choosers is None else update.choosers,
             emergency_stopped=bool(values.get("control.eStop")),
+            station_attached=bool(values.get("control.dsAttached", True)),
             practice_since=None if since is None else since / 1_000_000,
             match_left=values.get("time.remaining", 0.0),
             distance=update.distance,

@@ -32,6 +32,10 @@ class Controls(ABC):
         """Stop the robot; it cannot be enabled again until it is restarted."""
         self._send(EmergencyStop())
 
+    def attach_driver_station(self, attached: bool) -> None:
+        """Lose the driver station, or attach it again: then, the mode that is asked for holds."""
+        self.write({"control.dsAttached": attached})
+
     def practice(self) -> None:
         """Begin a practice match, with the periods under ``[tool.pyfrc.match]``."""
         self._send(Practice())

@@ -63,7 +63,7 @@ class Session:
 
     def __init__(self, run: RobotRun, job: Job, connection: Connection) -> None:
         self._run, self._job, self._connection = run, job, connection
-        self._targets = Targets(run.hal_data)
+        self._targets = Targets(run.hal_data, run.connection.packet)
         self._choosers = Choosers()
         self._served: Served | None = None
         self._time = job.time_state
@@ -71,7 +71,6 @@ class Session:
         self._pace = Pace(self._time.speed, self._time.paused)
         if job.extensions:  # which have changed what every run begins with: that, too, comes from outside
             modes.reset_driver_station()
-            run.hal_data.apply_defaults()
         self._recorder = Recorder(run) if job.recording else None
         self._lines = _Lines()
         self._trace = Trace(run.hal_data, self._lines)  # type: ignore[arg-type]
@@ -375,7 +374,7 @@ class Session:
         """Called for every second packet: where the robot has gone, in which mode."""
         if not self._run.alive:
             raise Ended
-        self._mode_packets[modes.mode_name()] += _FOLLOW_PACKETS
+        self._mode_packets[modes.mode_name() if modes.is_attached() else "disabled"] += _FOLLOW_PACKETS
         if (note := self._refresh.look()) is not None:
             self._notes.append(note)
         self._mark_position()

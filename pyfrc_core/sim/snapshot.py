@@ -38,6 +38,7 @@ class Snapshot:
     :param values: inputs and outputs by their paths in `hal_data`: ``pwm[0].value``, ``joysticks[0].axes`` (a tuple),
         ``custom["My Label"]``, ``event.game_specific_message``, ``user_program_state``, ...; of devices, only those
         that the robot has made
+    :param station_attached: whether there is a driver station; without one, the robot is disabled and gets no packets
     :param practice_since: when the practice match began that goes on now, in seconds
     :param match_left: the seconds left in its period, as told to the robot
     :param distance: how far the robot has driven since its start, in feet
@@ -50,6 +51,7 @@ class Snapshot:
     values: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     choosers: tuple[Chooser, ...] = ()
     emergency_stopped: bool = False
+    station_attached: bool = True
     practice_since: float | None = None
     match_left: float = 0.0
     distance: float = 0.0
@@ -58,7 +60,8 @@ class Snapshot:
     @property
     def enabled(self) -> bool:
         """Whether the driver station lets the robot move."""
-        return not self.mode.startswith("disabled") and not self.emergency_stopped
+        stopped = self.emergency_stopped or not self.station_attached
+        return not self.mode.startswith("disabled") and not stopped
 
     @property
     def chosen_mode(self) -> str:

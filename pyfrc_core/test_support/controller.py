@@ -50,8 +50,11 @@ class TestController:
     # -- modes ------------------------------------------------------------------------------------------------
 
     def get_mode(self) -> modes.Mode:
-        """The mode that the robot is in: 'autonomous', 'teleop', 'test', or 'disabled'."""
-        return modes.get_mode()
+        """The mode that the robot is in: 'autonomous', 'teleop', 'test', or 'disabled'.
+
+        While the driver station is lost, it is 'disabled'.
+        """
+        return modes.get_mode() if modes.is_attached() else "disabled"
 
     def set_autonomous(self, enabled: bool = True) -> None:
         """Puts the robot in autonomous mode, with the next packet."""

@@ -11,6 +11,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 import ntcore
@@ -58,10 +59,12 @@ class Targets:
     """Writes to one run's targets.
 
     :param hal_data: the run's inputs and outputs
+    :param deliver: delivers a packet
     """
 
-    def __init__(self, hal_data: HalData) -> None:
+    def __init__(self, hal_data: HalData, deliver: Callable[[], object] = deliver_packet) -> None:
         self._hal_data = hal_data
+        self._deliver = deliver
         self._entries: dict[str, ntcore.NetworkTableEntry] = {}
         self._countdown = Countdown()
 
@@ -78,7 +81,7 @@ class Targets:
             self._countdown.start(value, now_us)
             modes.set_match_time(value)
         elif target == PACKET:
-            deliver_packet()
+            self._deliver()
             wpilib.DriverStation.refreshData()
         elif target.startswith(NETWORK):
             self._write_entry(target.removeprefix(NETWORK), value)

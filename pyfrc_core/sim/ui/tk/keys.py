@@ -38,10 +38,16 @@ class Keys:
             "f5": time_bar.toggle,
             "f6": simulation.step,
             "f9": simulation.restart,
+            "f8": self._lose_or_attach,
         }
         root.bind("<KeyPress>", self._press)
         root.bind("<KeyRelease>", self._release)
         root.bind("<FocusOut>", self._lost)
+
+    def _lose_or_attach(self) -> None:
+        snapshot = self._simulation.snapshot
+        if snapshot is not None:
+            self._simulation.attach_driver_station(not snapshot.station_attached)
 
     def _press(self, event: tk.Event[tk.Misc]) -> None:
         if self._is_typed_into(event.widget):

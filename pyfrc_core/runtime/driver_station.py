@@ -1,0 +1,128 @@
+"""WPILib's functions for driver-station data, replaced where its simulation differs from a robot.
+
+In the simulation, match information is read directly from what the driver station sends, without a packet; a packet
+that a test delivers attaches a driver station that was lost; and waiting for a connection waits in wall time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import hal
+import hal.simulation
+import wpilib
+import wpilib.simulation
+
+from . import cooperative
+from .clock import to_us
+
+if TYPE_CHECKING:
+    from .robot import RobotRun
+    from .threads import RobotThread
+
+_CurrentRun = Callable[[], "RobotRun | None"]
+_Replacement = tuple[Any, str, Any]
+
+
+def replacements(current_run: _CurrentRun) -> list[_Replacement]:
+    """What to set where: (module or class, name, value).
+
+    :param current_run: returns the run that is active in this process
+    """
+    return [*_match_information(current_run), _waiting(current_run), *_packets(current_run), *_resets(current_run)]
+
+
+def _text(characters: memoryview) -> str:
+    return characters.tobytes().partition(b"\0")[0].decode(errors="replace")
+
+
+def _match_information(current_run: _CurrentRun) -> list[_Replacement]:
+    def held_back(name: str, read: Callable[[hal.MatchInfo], Any]) -> _Replacement:
+        real = getattr(wpilib.DriverStation, name)
+
+        def get() -> Any:
+            run = current_run()
+            held = None if run is None else run.connection.held
+            return real() if held is None else read(held)
+
+        return wpilib.DriverStation, name, get
+
+    return [
+        held_back("getEventName", lambda info: _text(info.eventName)),
+        held_back(
+            "getGameSpecificMessage",
+            lambda info: info.gameSpecificMessage.tobytes()[: info.gameSpecificMessageSize].decode(errors="replace"),
+        ),
+        held_back("getMatchType", lambda info: wpilib.DriverStation.MatchType(int(info.matchType))),
+        held_back("getMatchNumber", lambda info: info.matchNumber),
+        held_back("getReplayNumber", lambda info: info.replayNumber),
+    ]
+
+
+def _waiting(current_run: _CurrentRun) -> _Replacement:
+    real = wpilib.DriverStation.waitForDsConnection
+
+    def wait_for_connection(timeout: float) -> bool:
+        __tracebackhide__ = True
+        threads, run = cooperative.scope.taking_part(), current_run()
+        if threads is None or run is None:
+            return bool(real(timeout))
+        timeout_us = to_us(timeout) if timeout > 0 else None  # 0: for as long as it takes
+        waiters: list[RobotThread] = []
+
+        def wake() -> None:
+            threads.notify(waiters)
+
+        run.connection.when_connected.append(wake)
+        try:
+            return threads.wait(waiters, lambda: run.connection.connected, timeout_us)
+        finally:
+            run.connection.when_connected.remove(wake)
+
+    return wpilib.DriverStation, "waitForDsConnection", wait_for_connection
+
+
+def _packets(current_run: _CurrentRun) -> list[_Replacement]:
+    """Packets that a test delivers out of turn; a recorder has to know of them."""
+
+    def delivering(owner: Any, name: str, refreshes: bool) -> _Replacement:
+        real = getattr(owner, name)
+
+        def notify() -> None:
+            run = current_run()
+            if run is None:
+                real()
+                return
+            if run.recorder is not None:
+                run.recorder.on_packet_out_of_turn()
+            run.connection.packet()
+            if refreshes:
+                wpilib.DriverStation.refreshData()
+
+        return owner, name, notify
+
+    return [
+        delivering(wpilib.simulation.DriverStationSim, "notifyNewData", refreshes=True),
+        delivering(hal.simulation, "notifyDriverStationNewData", refreshes=False),
+    ]
+
+
+def _resets(current_run: _CurrentRun) -> list[_Replacement]:
+    """A test that resets the driver station's data does not mean to lose the connection."""
+
+    def resetting(owner: Any, name: str) -> _Replacement:
+        real = getattr(owner, name)
+
+        def reset() -> None:
+            real()
+            if current_run() is not None:
+                hal.simulation.setDriverStationDsAttached(True)
+
+        return owner, name, reset
+
+    return [
+        resetting(wpilib.simulation.DriverStationSim, "resetData"),
+        resetting(hal.simulation, "resetDriverStationData"),
+        resetting(hal.simulation, "resetAllSimData"),
+    ]
