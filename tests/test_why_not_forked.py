@@ -43,6 +43,43 @@ PLUGIN = """
         threading.Thread(target=server.accept, name="server", daemon=True).start()
 """
 
+#: As pytest-rerunfailures, which expects to have seen each test that is reported run in this process.
+PLUGIN_WITH_A_PROTOCOL = """
+    import pytest
+
+
+    def pytest_runtest_protocol(item):
+        return None  # nothing is to be repeated
+
+
+    def pytest_runtest_setup(item):
+        item.seen = True
+
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(item):
+        assert item.seen
+        return (yield)
+"""
+
+FAILING_TEARDOWN = """
+    import pytest
+
+
+    @pytest.fixture(scope="session")
+    def field():
+        yield
+        raise OSError("the field is stuck")
+
+
+    def test_first(control, field):
+        pass
+
+
+    def test_second(control, field):
+        pass
+"""
+
 #: A library with a thread of its own, from its import on.
 LIBRARY = """
     import threading
@@ -67,7 +104,12 @@ def run(project: RobotProject, *options: str) -> tuple[list[str], dict[str, str]
     """Run the project's tests with modules of other people's at hand; return what pyfrc explains, and the outcomes."""
     others = project.path.parent / "others"
     others.mkdir()
-    for name, text in {"serving": PLUGIN, "vision_library": LIBRARY, "no_fork": NO_FORK}.items():
+    for name, text in {
+        "serving": PLUGIN,
+        "protocol": PLUGIN_WITH_A_PROTOCOL,
+        "vision_library": LIBRARY,
+        "no_fork": NO_FORK,
+    }.items():
         RobotProject(others, others).write({f"{name}.py": text})
     result = project.run("test", "--", "-v", *options, env={"PYTHONPATH": str(others)})
     outcomes = {name.rpartition("::")[2]: outcome for name, outcome in result.outcomes().items()}
@@ -78,6 +120,11 @@ def run(project: RobotProject, *options: str) -> tuple[list[str], dict[str, str]
 def test_a_plugin_with_a_thread_of_its_own_changes_nothing(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_a.py": TESTS})
     assert run(project, "-p", "serving") == ([], {"test_forked": "PASSED", "test_another": "PASSED"})
+
+
+def test_a_plugin_with_a_protocol_of_its_own_changes_nothing(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": FAILING_TEARDOWN})
+    assert run(project, "-p", "protocol") == ([], {"test_first": "PASSED", "test_second": "ERROR"})
 
 
 def test_a_thread_that_the_robot_starts_on_import_is_named_with_its_line(make_project: MakeProject) -> None:

@@ -262,8 +262,17 @@ def _tear_down_shared(session: pytest.Session, last: pytest.Item | None, nextite
         return
     call = pytest.CallInfo.from_call(lambda: session._setupstate.teardown_exact(nextitem), when="teardown")
     if call.excinfo is not None:
-        report = last.ihook.pytest_runtest_makereport(item=last, call=call)
+        # Plugins with a protocol of their own (pytest-rerunfailures) have seen the test in its own process only.
+        plugins = session.config.pluginmanager
+        strangers = {hook.plugin for hook in plugins.hook.pytest_runtest_protocol.get_hookimpls() if _is_foreign(hook)}
+        make_report = plugins.subset_hook_caller("pytest_runtest_makereport", strangers)
+        report = make_report(item=last, call=call)
         last.ihook.pytest_runtest_logreport(report=report)
+
+
+def _is_foreign(hook: Any) -> bool:
+    """Return whether a hook is neither pytest's nor pyfrc's."""
+    return not hook.function.__module__.startswith(("_pytest.", "pyfrc_core."))
 
 
 @contextlib.contextmanager
