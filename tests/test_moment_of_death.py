@@ -50,6 +50,7 @@ def test_in_a_simulation(make_project: MakeProject, death: str) -> None:
     project = make_project({"robot.py": robot(death)})
     result = project.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "5")
     assert result.code == 1, result.output
+    assert "simulated 1.52 s" in result.output
     assert "failed at 1.52 s" in result.output
     assert DEATHS[death][1] in result.output
     assert MOMENT in result.output

@@ -8,7 +8,7 @@ from typing import Literal
 
 from ...errors import UsageError
 from ...physics.pose import METRES_PER_FOOT
-from ...runtime.clock import to_us
+from ...runtime.clock import PACKET_US, to_us
 from ...runtime.match import MatchPeriods
 from ..commands import ChosenMode
 from ..simulation import Simulation
@@ -47,7 +47,12 @@ class Summary:
         snapshot = self.snapshot
         if snapshot is not None:
             speed = f", at {self.speed:.0f} times real time" if self.speed else ""
-            found.append(f"simulated {snapshot.time:.2f} s of robot time{speed}")
+            seconds = snapshot.time
+            if self.failure is not None and self.failure.time > seconds + PACKET_US / 1_000_000:
+                # A process that is killed sends no last update.
+                speed = f"; the figures below are of the first {seconds:.2f} s, the last that the robot reported"
+                seconds = self.failure.time
+            found.append(f"simulated {seconds:.2f} s of robot time{speed}")
             times = (f"{mode} {seconds:.1f} s" for mode, seconds in snapshot.mode_seconds.items())
             found.append(f"modes: {', '.join(times) or 'none'}")
             if snapshot.scene.robot is None:
