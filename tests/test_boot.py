@@ -165,6 +165,7 @@ def test_code_that_needs_the_alliance_at_boot_fails_everywhere(make_project: Mak
     assert f"{place}: KeyError: None" in result.output
     simulated = project.run("sim", "--ui", "none", "--seconds", "1")
     assert simulated.code == 1, simulated.output
+    assert f"{place}: KeyError: None" in simulated.output
     fuzzed = project.run("fuzz", "--runs", "1", "-j1")
     assert fuzzed.code == 1, fuzzed.output
     assert place in fuzzed.output
