@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import threading
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -96,14 +96,11 @@ class RobotRun:
         """Make the robot. Its `robotInit` runs with `start`."""
         __tracebackhide__ = True
         try:
-            with self._failing():
+            with self._failing(), _without_first_alarm():
                 self.robot = robot_class()
         except TypeError as error:
             raise _missing_super_init(robot_class, error) or error from None
-        if isinstance(self.robot, wpilib.TimedRobot):
-            # Its constructor has set an alarm that nobody will wait for, and the HAL would wait for somebody to.
-            endCompetition(self.robot)
-        elif self.initializes and self.when_initialized:
+        if not isinstance(self.robot, wpilib.TimedRobot) and self.initializes and self.when_initialized:
             self._listen_for_initialization()
         gate_robot(self)
         for listener in self.when_constructed:
@@ -328,6 +325,27 @@ class RobotRun:
             self.in_motion = before
             if self.recorder is not None:
                 self.recorder.begin_outside()
+
+
+@contextlib.contextmanager
+def _without_first_alarm() -> Iterator[None]:
+    """Cancel the alarm that `wpilib.TimedRobot`'s constructor sets, as soon as it has set it.
+
+    The HAL lets no time pass before a thread waits for that alarm, and none does: a robot whose own constructor
+    waits after ``super().__init__()`` would hang.
+    """
+    original = wpilib.TimedRobot.__init__
+
+    def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
+        __tracebackhide__ = True
+        original(self, *args, **kwargs)
+        endCompetition(self)
+
+    wpilib.TimedRobot.__init__ = __init__  # type: ignore[method-assign]
+    try:
+        yield
+    finally:
+        wpilib.TimedRobot.__init__ = original  # type: ignore[method-assign]
 
 
 def _missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:
