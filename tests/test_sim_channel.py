@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -181,3 +183,32 @@ def test_the_host_is_killed(make_project: MakeProject) -> None:
     with failed(make_project, robot) as simulation:
         assert simulation.status.failure is not None
         assert "signal 9" in simulation.status.failure.headline
+
+
+@pytest.mark.parametrize("socket_in_file_system", [True, False])
+@pytest.mark.parametrize("fork", BOTH_WAYS)
+def test_the_robot_fails_with_commands_unread(
+    fork: bool,
+    socket_in_file_system: bool,
+    make_project: MakeProject,
+    exit_reported: Gate,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:
+    """Over TCP, the end of such a process reset the connection, and its last message was lost."""
+    if socket_in_file_system:  # whose name would be too long
+        directory = tmp_path / ("long" * 20)
+        directory.mkdir()
+        monkeypatch.setattr(tempfile, "tempdir", str(directory))
+    else:
+        listener = processes.Listener
+        monkeypatch.setattr(processes, "Listener", lambda address, **key: listener(("127.0.0.1", 0), **key))
+    monkeypatch.setattr(robot_channel, "receive", late(robot_channel.receive, exit_reported))
+    project = Project(make_project({"robot.py": FAILS}).path / "robot.py")
+    with Simulation(project, SimOptions(speed=0, fork=fork)) as simulation:
+        for _ in range(20):
+            simulation.enable()
+        wait(simulation, lambda: simulation.status.state == "failed")
+        see_the_users_error(simulation)
+        assert simulation._processes is not None
+        assert isinstance(simulation._processes._listener.address, str) is socket_in_file_system

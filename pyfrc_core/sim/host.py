@@ -182,7 +182,7 @@ def _end_robot(signum: int, frame: object) -> None:
 def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
     """Never returns."""
     from ..runtime.own_process import LastWords, end_processes_of_the_robot, exit_now
-    from .robot_channel import close_in_forks
+    from .robot_channel import close_in_forks, end_of_output
     from .robot_process import run_robot
 
     status = 1
@@ -195,6 +195,7 @@ def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
             close_in_forks(connection)
             connection.send(launch.number)
             run_robot(pickle.loads(launch.job), connection, words)
+            end_of_output(connection)
             status = 0
         except BaseException:
             import traceback

@@ -24,6 +24,9 @@ from .robot_channel import RobotChannel
 
 #: Where no module of the user's is in Python's way.
 _BESIDE_OUR_PACKAGE = Path(__file__).resolve().parents[2]
+_PREFIX = "pyfrc-sim-"
+#: The most bytes in the name of a directory for a socket, and where it is when that of TMPDIR has more.
+_LONGEST_DIRECTORY, _SHORT = 80, "/tmp"
 #: How long a process is given to end when it has been told to, in seconds.
 _PATIENCE = 1.0
 
@@ -50,13 +53,13 @@ class RobotProcesses:
         self._forks = FORK_IS_SAFE if fork is None else fork
         self._lock = threading.RLock()
         self._closed = False
-        self._temporary = TemporaryDirectory(prefix="pyfrc-sim-")
+        self._temporary = _temporary_directory()
         self._key = os.urandom(32)
         try:
             # Not where multiprocessing would put it: in a directory of its own, which stays when this is killed.
             beside = str(Path(self._temporary.name, "listener")) if os.name == "posix" else None
             self._listener = Listener(beside, authkey=self._key)
-        except OSError:  # a socket's name may have only some hundred characters, and that of TMPDIR counts
+        except OSError:  # a file system without sockets
             self._listener = Listener(("127.0.0.1", 0), authkey=self._key)
         self._number = 0
         self._host: subprocess.Popen[bytes] | None = None
@@ -291,6 +294,15 @@ class RobotProcesses:
         with suppress(OSError):
             return self._words(number).read_bytes().decode(errors="surrogateescape")
         return ""
+
+
+def _temporary_directory() -> TemporaryDirectory[str]:
+    """Return a new directory that a socket can be in: the name of a socket has at most some hundred bytes."""
+    directory = TemporaryDirectory(prefix=_PREFIX)
+    if os.name == "posix" and len(os.fsencode(directory.name)) > _LONGEST_DIRECTORY and Path(_SHORT).is_dir():
+        directory.cleanup()
+        directory = TemporaryDirectory(prefix=_PREFIX, dir=_SHORT)
+    return directory
 
 
 def introduced(connection: Connection) -> object:

@@ -75,6 +75,17 @@ def end_of_input(connection: Connection) -> None:
             ours.shutdown(socket.SHUT_RD)
 
 
+def end_of_output(connection: Connection) -> None:
+    """Have everything that was sent reach the other side before this process ends.
+
+    Over TCP, a process that ends with unread commands takes back what it has not transmitted yet: the last message,
+    while the one before it is not acknowledged.
+    """
+    if os.name == "posix":
+        with suppress(OSError), socket.socket(fileno=os.dup(connection.fileno())) as ours:
+            ours.shutdown(socket.SHUT_WR)
+
+
 def close_in_forks(connection: Connection) -> None:
     """Have no fork of this process hold a connection open."""
     if hasattr(os, "register_at_fork"):
