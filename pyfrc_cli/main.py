@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import io
 import os
 import re
 import sys
@@ -93,6 +94,7 @@ def cli() -> None:
 
 def run() -> None:
     """Run the command line; errors that pyfrc knows are told in a sentence, with exit code 1 or 2."""
+    _escape_unknown_letters()
     told = Loudness()
     # None: by whether it goes to a terminal.
     color = False if os.environ.get("NO_COLOR") else None
@@ -119,6 +121,12 @@ def run() -> None:
         else:
             click.secho(f"error: {_told(error)}", fg="red", err=True, color=color)
         sys.exit(getattr(error, "exit_code", 1))
+
+
+def _escape_unknown_letters() -> None:
+    """Have letters that the output's encoding lacks written as escapes, where Python would raise an exception."""
+    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _remedy(error: click.ClickException) -> str:

@@ -142,11 +142,12 @@ class Project:
             raise ProjectError("this is not a Python file", where=where)
         module = importlib.util.module_from_spec(specification)
         sys.modules[name] = module
+        from .runtime.own_process import explained_exit
         from .runtime.watchdog import importing
 
         refuse_keyboard_input(self.files)
         try:
-            with importing(self.files, self.settings.test.hang_seconds):
+            with importing(self.files, self.settings.test.hang_seconds), explained_exit(self.files):
                 specification.loader.exec_module(module)
         except (SyntaxError, UnicodeDecodeError, ValueError) as error:
             del sys.modules[name]

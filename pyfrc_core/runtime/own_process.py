@@ -10,7 +10,7 @@ import re
 import signal
 import struct
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import takewhile
@@ -81,12 +81,14 @@ class LastWords:
             return
 
         def note_mode(name: str = "", value: Any = None) -> None:
-            moment[1] = modes.MODES.index(modes.mode_name())
+            # Before its first packet, a robot is disabled whatever mode is asked for.
+            moment[1] = modes.MODES.index(modes.mode_name() if run.connection.connected else "disabled")
 
         note_mode()
         moment[0] = run.clock.now_us
         run.clock.moment = moment
         self._listening = modes.when_mode_changes(note_mode)
+        run.connection.when_connected.append(note_mode)
 
     def leave_on_crash(self, before_exit: Callable[[], object] = lambda: None) -> None:
         """From now on, have a fault in C code and `os._exit` say where they were, and `follow` when.
@@ -109,6 +111,37 @@ class LastWords:
             exit_now(status)
 
         os._exit = telling_exit  # type: ignore[assignment]
+
+
+@contextlib.contextmanager
+def explained_exit(files: RobotFiles) -> Iterator[None]:
+    """While robot code is imported in this process, have `os._exit` name its line, and a fault in C print the stack.
+
+    A process that leaves last words does so already.
+    """
+    if os._exit is not exit_now:
+        yield
+        return
+
+    def exit_with_line(status: int) -> None:
+        frame = sys._getframe(1)
+        place = f"{files.relative(frame.f_code.co_filename)}:{frame.f_lineno}"
+        print(f"error: {place}: os._exit({status}) was called while the robot's code was imported", file=sys.stderr)
+        sys.stderr.flush()
+        call_before_sudden_end()
+        exit_now(status or 1)
+
+    faults = not faulthandler.is_enabled()
+    if faults:
+        with suppress(OSError, ValueError, AttributeError):  # standard error is no file
+            faulthandler.enable(all_threads=False)
+    os._exit = exit_with_line  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        os._exit = exit_now
+        if faults:
+            faulthandler.disable()
 
 
 def call_before_sudden_end() -> None:

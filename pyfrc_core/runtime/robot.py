@@ -74,6 +74,8 @@ class RobotRun:
         self.in_motion = False
         #: The thread of a robot that has a loop of its own.
         self.own_loop: RobotThread | None = None
+        #: Whether `start` runs the robot's own initialisation, which may wait.
+        self.starting = False
         self._started = self._ended = False
         self._closing = contextlib.ExitStack()
 
@@ -159,7 +161,7 @@ class RobotRun:
     def start(self) -> None:
         """Begin the robot program: `robotInit`, then whatever its loop does at time 0."""
         __tracebackhide__ = True
-        with self._failing():
+        with self._failing(), self._while_starting():
             self._started = True
             if _has_loop_of_its_own(self.robot):
                 thread = threading.Thread(target=self._compete, name="robot", daemon=True)
@@ -171,6 +173,14 @@ class RobotRun:
             else:
                 self.timed_loop.begin(self.robot)
                 self.timed_loop.run_in_place()
+
+    @contextlib.contextmanager
+    def _while_starting(self) -> Iterator[None]:
+        self.starting = True
+        try:
+            yield
+        finally:
+            self.starting = False
 
     def do(self, action: Callable[[], object]) -> None:
         """Call code of the user's that takes part in the run."""

@@ -153,7 +153,7 @@ class RobotProcesses:
             stdout=output.writing_end,
             stderr=subprocess.STDOUT,
             cwd=_BESIDE_OUR_PACKAGE,
-            env=os.environ | {"PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1"},
+            env=os.environ | {"PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8"},
             start_new_session=os.name == "posix",
         )
         self._host = host

@@ -100,6 +100,11 @@ class TestController:
                 run.recorder.begin_outside(stepping=True)
             answers = [on_step(now) for on_step in steps]  # each of them is to see every packet
             if not all(answers):
+                if run.starting:
+                    raise RuntimeError(
+                        f"the test ended at {now:.2f} s of robot time, while robotInit still waited: "
+                        "let the robot run for longer, or count from when control.robot_is_starting is false"
+                    )
                 run.clock.halted = True
                 raise TestEnded
             if not run.alive and run.started:
@@ -201,6 +206,11 @@ class TestController:
     def robot_is_alive(self) -> bool:
         """True while the robot program runs: it has started, and has neither ended nor failed."""
         return self._run.alive
+
+    @property
+    def robot_is_starting(self) -> bool:
+        """True while the `robotInit` of a robot with WPILib's loop runs: one that waits lets robot time pass."""
+        return self._run.starting
 
     def _begin(self, how: str) -> None:
         __tracebackhide__ = True
