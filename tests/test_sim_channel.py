@@ -185,18 +185,18 @@ def test_the_host_is_killed(make_project: MakeProject) -> None:
         assert "signal 9" in simulation.status.failure.headline
 
 
-@pytest.mark.parametrize("socket_in_file_system", [True, False])
+@pytest.mark.parametrize("local_socket", [True, False])
 @pytest.mark.parametrize("fork", BOTH_WAYS)
 def test_the_robot_fails_with_commands_unread(
     fork: bool,
-    socket_in_file_system: bool,
+    local_socket: bool,
     make_project: MakeProject,
     exit_reported: Gate,
     monkeypatch: pytest.MonkeyPatch,
     tmp_path: Path,
 ) -> None:
     """Over TCP, the end of such a process reset the connection, and its last message was lost."""
-    if socket_in_file_system:  # whose name would be too long
+    if local_socket:  # the name of a file would be too long
         directory = tmp_path / ("long" * 20)
         directory.mkdir()
         monkeypatch.setattr(tempfile, "tempdir", str(directory))
@@ -211,4 +211,4 @@ def test_the_robot_fails_with_commands_unread(
         wait(simulation, lambda: simulation.status.state == "failed")
         see_the_users_error(simulation)
         assert simulation._processes is not None
-        assert isinstance(simulation._processes._listener.address, str) is socket_in_file_system
+        assert isinstance(simulation._processes._listener.address, tuple) is not local_socket

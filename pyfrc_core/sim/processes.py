@@ -24,9 +24,8 @@ from .robot_channel import RobotChannel
 
 #: Where no module of the user's is in Python's way.
 _BESIDE_OUR_PACKAGE = Path(__file__).resolve().parents[2]
-_PREFIX = "pyfrc-sim-"
-#: The most bytes in the name of a directory for a socket, and where it is when that of TMPDIR has more.
-_LONGEST_DIRECTORY, _SHORT = 80, "/tmp"
+#: The most bytes that the name of a socket may have on every system.
+_LONGEST_NAME = 100
 #: How long a process is given to end when it has been told to, in seconds.
 _PATIENCE = 1.0
 
@@ -53,13 +52,11 @@ class RobotProcesses:
         self._forks = FORK_IS_SAFE if fork is None else fork
         self._lock = threading.RLock()
         self._closed = False
-        self._temporary = _temporary_directory()
+        self._temporary = TemporaryDirectory(prefix="pyfrc-sim-")
         self._key = os.urandom(32)
         try:
-            # Not where multiprocessing would put it: in a directory of its own, which stays when this is killed.
-            beside = str(Path(self._temporary.name, "listener")) if os.name == "posix" else None
-            self._listener = Listener(beside, authkey=self._key)
-        except OSError:  # a file system without sockets
+            self._listener = Listener(_address(self._temporary.name), authkey=self._key)
+        except OSError:  # a file system without sockets, or a name that is too long
             self._listener = Listener(("127.0.0.1", 0), authkey=self._key)
         self._number = 0
         self._host: subprocess.Popen[bytes] | None = None
@@ -296,13 +293,17 @@ class RobotProcesses:
         return ""
 
 
-def _temporary_directory() -> TemporaryDirectory[str]:
-    """Return a new directory that a socket can be in: the name of a socket has at most some hundred bytes."""
-    directory = TemporaryDirectory(prefix=_PREFIX)
-    if os.name == "posix" and len(os.fsencode(directory.name)) > _LONGEST_DIRECTORY and Path(_SHORT).is_dir():
-        directory.cleanup()
-        directory = TemporaryDirectory(prefix=_PREFIX, dir=_SHORT)
-    return directory
+def _address(directory: str) -> str | None:
+    """Return where to listen; None for where multiprocessing chooses.
+
+    A file in a directory of our own stays when this process is killed, for the host to tidy away.
+    """
+    if os.name != "posix":
+        return None
+    file = str(Path(directory, "listener"))
+    if sys.platform == "linux" and len(os.fsencode(file)) > _LONGEST_NAME:
+        return f"\0pyfrc-sim-{os.urandom(16).hex()}"  # no file: it is gone with the process
+    return file
 
 
 def introduced(connection: Connection) -> object:
