@@ -73,7 +73,7 @@ class RobotProcesses:
         #: What is to be sent to the host as soon as it is there; likewise to the robot.
         self._for_host: list[object] = []
         self._for_robot: list[object] = []
-        _thread(self._accept, "pyfrc sim: listener")
+        self._accepting = _thread(self._accept, "pyfrc sim: listener")
 
     def launch(self, job: Job) -> int:
         """Begin another robot's process, ending the one before; answers the launch's number."""
@@ -132,8 +132,9 @@ class RobotProcesses:
                 self._end_host()
         if output is not None:  # what was printed until now is not lost
             output.close()
-        # In a thread: where the listener's has left its loop already, nobody answers, until the listener is closed.
-        _thread(self._wake_the_listener, "pyfrc sim: wake").join(_PATIENCE)
+        # In a thread of its own: when the listener has left its loop already, this waits until the listener is closed.
+        _thread(self._wake_the_listener, "pyfrc sim: wake")
+        self._accepting.join(_PATIENCE)
         self._listener.close()
         self._temporary.cleanup()
 
