@@ -126,7 +126,7 @@ def test_the_two_views_agree_after_any_moves(moves: list[tuple[float, float, flo
     for forward, right, turn in moves:
         feet.distance_drive(forward, right, turn)
         metres.move_robot(Transform2d(forward * FOOT, -right * FOOT, Rotation2d(-turn)))
-    # A turn by less than a billionth of a radian is no move in metres, and one in feet: far away it makes some nanometres.
+    # In metres, a turn by less than a billionth of a radian is no move: far away, that is some nanometres.
     assert same(feet.get_pose(), metres.get_pose(), tolerance=1e-6)
     x, y, angle = feet.get_position()
     assert same(feet.get_pose(), Pose2d(x * FOOT, (HEIGHT_FT - y) * FOOT, Rotation2d(-angle)))

@@ -186,9 +186,7 @@ def test_the_host_is_killed(make_project: MakeProject) -> None:
 
 
 @pytest.mark.parametrize("local_socket", [True, False])
-@pytest.mark.parametrize("fork", BOTH_WAYS)
 def test_the_robot_fails_with_commands_unread(
-    fork: bool,
     local_socket: bool,
     make_project: MakeProject,
     exit_reported: Gate,
@@ -205,7 +203,7 @@ def test_the_robot_fails_with_commands_unread(
         monkeypatch.setattr(processes, "Listener", lambda address, **key: listener(("127.0.0.1", 0), **key))
     monkeypatch.setattr(robot_channel, "receive", late(robot_channel.receive, exit_reported))
     project = Project(make_project({"robot.py": FAILS}).path / "robot.py")
-    with Simulation(project, SimOptions(speed=0, fork=fork)) as simulation:
+    with Simulation(project, SimOptions(speed=0)) as simulation:
         for _ in range(20):
             simulation.enable()
         wait(simulation, lambda: simulation.status.state == "failed")
