@@ -380,7 +380,8 @@ def test_the_older_name_wraps_a_replay(make_project: MakeProject) -> None:
     assert "The trace equals the recorded one." in result.stdout
     assert re.search(r"^  the whole loop +\d+ ", result.stdout, re.MULTILINE)
     assert "and 1 more function (--top 2)" in result.stdout
-    assert re.search(r"^What measuring has cost: .* µs a call.*samples?; \d+% of the ", result.stdout, re.MULTILINE)
+    # Of so small a robot, a busy machine takes longer for the samples than for the robot: then there is no share of it.
+    assert re.search(r"^What measuring has cost: .* µs a call.*samples?[;.]", result.stdout, re.MULTILINE)
 
 
 def test_a_failing_command_is_reported_with_its_exit_code(make_project: MakeProject) -> None:
