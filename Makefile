@@ -7,10 +7,10 @@ WORKERS ?= $(shell expr 1 + $$(getconf _NPROCESSORS_ONLN))
 
 .PHONY: demo test check docs clean
 
-demo: $(VENV)/installed  ## make a robot project in demo/, run its tests, deploy it to a look-alike of a roboRIO
+demo: $(VENV)/installed  ## make a robot project in demo/, run its tests, deploy it to a virtual robot, change it, go back
 	test -d demo || $(RUN) pyfrc init demo
 	$(RUN) pyfrc test --project demo --coverage
-	$(RUN) tests.roborio -- $(VENV)/bin/pyfrc deploy --project demo --robot
+	$(RUN) pyfrc virtual-robot --directory demo/.pyfrc/virtual-robot --fresh -- $(VENV)/bin/python tests/demo.py demo
 
 test: $(VENV)/installed-dev  ## run this project's own tests; ARGS go to pytest
 	$(RUN) pytest -n $(WORKERS) --dist worksteal $(ARGS)
@@ -23,14 +23,18 @@ check: $(VENV)/installed-dev  ## the style and the types
 docs: $(VENV)/installed-dev  ## these pages, and the API reference from the docstrings, in build/docs
 	$(RUN) sphinx -q -E -W --keep-going docs build/docs
 
+# An environment without pip, as Debian's Python makes it when python3-venv is missing, must not be taken for a whole one.
 $(VENV)/bin/python:
-	$(PYTHON) -m venv $(VENV)
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10) and "pyfrc needs Python 3.10 or newer; if you have one: make PYTHON=python3.13")'
+	$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }
 
 $(VENV)/installed: pyproject.toml | $(VENV)/bin/python
+	@echo "Installing pyfrc and WPILib in $(VENV), from the network: this may take a few minutes."
 	$(RUN) pip install --quiet --editable .
 	touch $@
 
 $(VENV)/installed-dev: pyproject.toml | $(VENV)/bin/python
+	@echo "Installing pyfrc, WPILib and the tools for pyfrc's tests in $(VENV), from the network: this may take a few minutes."
 	$(RUN) pip install --quiet --editable ".[dev]"
 	touch $@ $(VENV)/installed
 

@@ -169,8 +169,8 @@ def make_cases(sides: list[Side], stack: ExitStack, ours: Environment, todays: E
 
 
 if __name__ == "__main__":
-    if (missing := missing_here()) is not None:
-        sys.exit(f"error: {missing}")
+    if missing := missing_here():
+        sys.exit(f"error: a look-alike of a roboRIO needs {', '.join(missing)}")
     with ExitStack() as stack:
         sides: list[Side] = []
         compare((__doc__ or "").partition("\n")[0], 3, partial(make_cases, sides, stack))

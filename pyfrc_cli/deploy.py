@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import chosen_project, project_options
-from .robot_options import conversation, json_option, project_if_any, robot_options, told_as_json
+from .robot_options import conversation, errors_shown, json_option, project_if_any, robot_options
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.reach import RobotChoice
@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 @click.option("--skip-tests", is_flag=True, help="Run no tests before.")
 @click.option("--large", is_flag=True, help="Upload files over 250,000 bytes, too.")
 @click.option(
-    "-n", "--no-version-check", is_flag=True, help="Deploy to a robot with another wpilib, or with an old image, too."
+    "-n",
+    "--no-version-check",
+    is_flag=True,
+    help="Deploy to a robot with another wpilib, Python or image, or without packages that the program needs, too.",
 )
 @click.option("--nonstandard", is_flag=True, help="Let the main file have another name than robot.py.")
 @click.option("--debug", is_flag=True, help="Start the program with debugging on: asserts run, and it logs more.")
@@ -31,7 +34,11 @@ if TYPE_CHECKING:
     help="Overwrite the files of the program that runs; delete nothing, do not restart. Cannot be rolled back.",
 )
 @click.option("--dry-run", is_flag=True, help="Only show what would be added, changed and removed.")
-@click.option("--auto-rollback", is_flag=True, help="Go back to the program before if the new one ends at once.")
+@click.option(
+    "--auto-rollback",
+    is_flag=True,
+    help="Go back to the program before if the new one ends at its start.",
+)
 @click.option(
     "--rollback",
     metavar="[ID]",
@@ -67,8 +74,9 @@ def command(
     whole. Whatever happens on the way, the robot has a whole program to start.
 
     \b
-    Exit codes: 0 it is there and runs, 1 it is not (the robot has the program it had),
-    2 wrong usage or no project, 3 it is there, but ended as soon as it was started.
+    Exit codes: 0 deployed, and the program runs; 1 not deployed, the robot has the program it had;
+    2 wrong usage or no project, or Ctrl-C; 3 deployed, but the program ended while its start was watched;
+    4 deployed or perhaps deployed, but not seen to run: the message says what is so.
     """
     if (netconsole or nc_ds) and (as_json or dry_run):
         raise click.UsageError(f"--netconsole and {'--json' if as_json else '--dry-run'} cannot both be.")
@@ -78,13 +86,13 @@ def command(
         raise click.UsageError("--rollback deploys nothing: it takes no --in-place, --dry-run or --auto-rollback.")
     if rollback and not rollback.isdecimal():
         raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
-    with told_as_json(as_json):
+    with errors_shown(choice, as_json):
         from pyfrc_core.deploy import session
 
-        talk = conversation(as_json)
+        talk = conversation(choice, as_json)
         if rollback is not None:
             release = int(rollback) if rollback else None
-            host = session.rollback(project_if_any(directory, main, robot_class, choice), choice, release, talk)
+            address = session.rollback(project_if_any(directory, main, robot_class, choice), choice, release, talk)
         else:
             project = chosen_project(directory, main, robot_class)
             options = session.DeployOptions(
@@ -99,8 +107,12 @@ def command(
                 dry_run=dry_run,
                 auto_rollback=auto_rollback,
             )
-            host = session.deploy(project, options, talk)
+            address = session.deploy(project, options, talk)
     if netconsole or nc_ds:
         from pyfrc_core.deploy.console import follow_console
+        from pyfrc_core.deploy.errors import NoConsoleError
 
-        follow_console(host, without_driver_station=nc_ds, quiet=talk.progress.quiet)
+        try:
+            follow_console(address, without_driver_station=nc_ds, quiet=talk.progress.quiet)
+        except NoConsoleError as error:  # exit code 1 would say that the robot has its old program
+            talk.progress.warning(str(error))

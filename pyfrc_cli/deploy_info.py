@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import project_options
-from .robot_options import conversation, json_option, project_if_any, robot_options, told_as_json
+from .robot_options import conversation, errors_shown, json_option, project_if_any, robot_options
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.reach import RobotChoice
@@ -26,7 +26,7 @@ def command(
     \b
     Exit codes: 0 shown, 1 the robot cannot be asked, 2 wrong usage or no project.
     """
-    with told_as_json(as_json):
+    with errors_shown(choice, as_json):
         from pyfrc_core.deploy.telling import show_info
 
-        show_info(project_if_any(directory, main, robot_class, choice), choice, conversation(as_json))
+        show_info(project_if_any(directory, main, robot_class, choice), choice, conversation(choice, as_json))

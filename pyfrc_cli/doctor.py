@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import json
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import click
 
 from .loudness import hint, loudness
 from .project_options import project_options
+from .robot_options import refuse_option_as_value
 
 _COLOURS = {"ok": "green", "hint": "cyan", "problem": "red"}
 
 
 @click.command("doctor", context_settings={"help_option_names": ["-h", "--help"]})
 @project_options
-@click.option("--robot", metavar="HOST[:PORT]", help="The robot's address, instead of your team's addresses.")
+@click.option(
+    "--robot",
+    metavar="HOST[:PORT]",
+    callback=refuse_option_as_value,
+    help="The robot's address, instead of your team's addresses.",
+)
 @click.option("--team", type=click.IntRange(min=1), metavar="N", help="Your team's number.")
 @click.option("--no-robot", is_flag=True, help="Do not look for the robot.")
 @click.option("--json", "as_json", is_flag=True, help="For tools: all findings as one JSON object.")
@@ -42,11 +48,13 @@ def command(
         raise click.UsageError("Only one of --robot, --team and --no-robot can be.")
     # With `python -m pyfrc`, Python looks for modules here first: those of the project are not to be in our way.
     sys.path[:] = [place for place in sys.path if place and Path(place) != Path.cwd()]
+    from pyfrc_core.deploy.robot_commands import naming_robot
     from pyfrc_core.doctor import Examination, examine
     from pyfrc_core.wording import counted
 
     findings = []
     for finding in examine(Examination(directory, main, robot_class, not no_robot, robot, team)):
+        finding = replace(finding, remedy=finding.remedy and naming_robot(finding.remedy, robot, team))
         findings.append(finding)
         if not as_json and (finding.status == "problem" or not loudness().quiet):
             click.secho(f"{finding.status:<8}", fg=_COLOURS[finding.status], nl=False)

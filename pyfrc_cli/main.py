@@ -37,6 +37,7 @@ COMMANDS = {
     "deploy-info": ("pyfrc_cli.deploy_info", "Show what is on the robot, and which earlier releases."),
     "undeploy": ("pyfrc_cli.undeploy", "Stop the robot program and remove it from the robot."),
     "console": ("pyfrc_cli.console", "Show what the robot program prints."),
+    "virtual-robot": ("pyfrc_cli.virtual_robot", "Start a robot on this computer, to deploy to."),
     "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
     "doctor": ("pyfrc_cli.doctor", "Find out what is missing here, or does not fit together."),
     "completion": ("pyfrc_cli.completion", "Print the script for completion in your shell."),
@@ -101,6 +102,7 @@ def run() -> None:
     if COMPLETE_VARIABLE in os.environ:
         from . import completion  # noqa: F401 - it knows a shell more than click does
     from pyfrc_core.errors import PyfrcError
+    from pyfrc_core.terminal_text import visible
 
     try:
         sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color, obj=told))
@@ -117,9 +119,9 @@ def run() -> None:
         sys.exit(error.exit_code)
     except (PyfrcError, OSError) as error:
         if told.verbose:
-            traceback.print_exc()
+            click.echo(visible(traceback.format_exc()), err=True, nl=False)
         else:
-            click.secho(f"error: {_told(error)}", fg="red", err=True, color=color)
+            click.secho(f"error: {visible(_told(error))}", fg="red", err=True, color=color)
         sys.exit(getattr(error, "exit_code", 1))
 
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from pyfrc_core._version import requirement
+
 from .loudness import loudness
 from .wrapping import WRAPPING, wrapped_command
 
@@ -23,7 +25,7 @@ from .wrapping import WRAPPING, wrapped_command
     "--html",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help='Draw where the time went as a web page, with: pip install "pyfrc[profile]"',
+    help=f'Draw where the time went as a web page, with: pip install "{requirement("profile")}"',
 )
 @click.option(
     "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Write all that was measured as JSON."

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -13,8 +15,6 @@ import click
 from .loudness import loudness
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from pyfrc_core.deploy.progress import Conversation
     from pyfrc_core.deploy.reach import RobotChoice
     from pyfrc_core.project import Project
@@ -24,33 +24,94 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 json_option = click.option("--json", "as_json", is_flag=True, help="For tools: one JSON object a line. Asks nothing.")
 
 
+def refuse_option_as_value(context: click.Context, option: click.Parameter, value: Any) -> Any:
+    """Check that the value of an option is not the next option, as in ``--robot --skip-tests``.
+
+    :raises click.BadParameter: when it begins with a dash
+    """
+    if value is not None and str(value).startswith("-"):
+        raise click.BadParameter(f"{str(value)!r} begins with '-': the value is missing.", context, option)
+    return value
+
+
 def robot_options(command: Function) -> Function:
-    """Adds ``--robot``, ``--team``, ``--no-resolve`` and ``--accept-host-key``, which become ``choice``."""
+    """Add the options of commands that log in to a robot, which become ``choice``: about its address and about keys."""
 
     @wraps(command)
-    def with_choice(
-        *, robot: str | None, team: int | None, no_resolve: bool, accept_host_key: str | None, **others: Any
+    def with_keys(
+        *,
+        choice: RobotChoice,
+        accept_host_key: str | None,
+        robot_name: str | None,
+        identity: Path | None,
+        ssh_agent: bool,
+        **others: Any,
     ) -> Any:
-        if robot is not None and team is not None:
-            raise click.UsageError("--robot and --team cannot both be.")
-        from pyfrc_core.deploy.reach import RobotChoice
+        from pyfrc_core.deploy.credentials import Credentials
 
-        choice = RobotChoice(robot=robot, team=team, resolve=not no_resolve, accepted_key=accept_host_key)
+        choice = replace(
+            choice,
+            accepted_key=accept_host_key,
+            robot_name=robot_name,
+            credentials=Credentials(identity, ssh_agent),
+        )
         return command(choice=choice, **others)
 
-    wrapped: Any = with_choice
-    for option in (
-        click.option(
-            "--accept-host-key",
-            metavar="SHA256:...",
-            help="Accept the robot's changed key, by the fingerprint that the refusal has shown.",
-        ),
-        click.option("--no-resolve", is_flag=True, help="Try addresses only: look no names up."),
-        click.option("--team", type=int, metavar="N", help="Your team's number."),
-        click.option("--robot", metavar="HOST[:PORT]", help="The robot's address, instead of your team's addresses."),
-    ):
-        wrapped = option(wrapped)
-    return wrapped  # type: ignore[no-any-return]
+    return address_options(_with_options(with_keys, _KEY_OPTIONS))  # type: ignore[no-any-return]
+
+
+def address_options(command: Function) -> Function:
+    """Add the options about a robot's address, which become ``choice``."""
+
+    @wraps(command)
+    def with_address(*, robot: str | None, team: int | None, no_resolve: bool, **others: Any) -> Any:
+        if robot is not None and team is not None:
+            raise click.UsageError("--robot and --team are mutually exclusive.")
+        from pyfrc_core.deploy.reach import RobotChoice
+
+        return command(choice=RobotChoice(robot=robot, team=team, resolve=not no_resolve), **others)
+
+    return _with_options(with_address, _ADDRESS_OPTIONS)  # type: ignore[no-any-return]
+
+
+_KEY_OPTIONS = (
+    click.option("--ssh-agent", is_flag=True, help="Offer the robot the keys of your SSH agent."),
+    click.option(
+        "--identity",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        callback=refuse_option_as_value,
+        help="Offer the robot the private key in this file.",
+    ),
+    click.option(
+        "--robot-name",
+        metavar="NAME",
+        callback=refuse_option_as_value,
+        help="Keep this name with the robot's key, and show it.",
+    ),
+    click.option(
+        "--accept-host-key",
+        metavar="SHA256:...",
+        callback=refuse_option_as_value,
+        help="Accept the robot's changed key, by the fingerprint that the refusal has shown.",
+    ),
+)
+_ADDRESS_OPTIONS = (
+    click.option("--no-resolve", is_flag=True, help="Try addresses only: look no names up."),
+    click.option("--team", type=int, metavar="N", help="Your team's number."),
+    click.option(
+        "--robot",
+        metavar="HOST[:PORT]",
+        callback=refuse_option_as_value,
+        help="The robot's address, instead of your team's addresses.",
+    ),
+)
+
+
+def _with_options(command: Any, options: Iterable[Callable[[Any], Any]]) -> Any:
+    for option in options:
+        command = option(command)
+    return command
 
 
 def project_if_any(
@@ -71,9 +132,10 @@ def project_if_any(
         raise ProjectError(error.message, where=error.where, remedy=remedy.strip()) from error
 
 
-def conversation(as_json: bool = False) -> Conversation:
-    """How a command tells what it does, and asks; it asks nothing where there is no terminal."""
+def conversation(choice: RobotChoice, as_json: bool = False) -> Conversation:
+    """Return how a command shows what it does, and asks; without a terminal it asks nothing."""
     from pyfrc_core.deploy.progress import Conversation, Questions, progress_for
+    from pyfrc_core.deploy.robot_commands import naming_robot
 
     ask = None
     if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
@@ -81,17 +143,23 @@ def conversation(as_json: bool = False) -> Conversation:
             text=lambda question: str(click.prompt(question, prompt_suffix=" ")),
             yes=lambda question: click.confirm(question),
         )
-    return Conversation(progress_for(as_json, loudness().quiet), ask)
+    progress = progress_for(as_json, loudness().quiet)
+    progress.name_robot = lambda text: naming_robot(text, choice.robot, choice.team)
+    return Conversation(progress, ask)
 
 
 @contextmanager
-def told_as_json(as_json: bool) -> Iterator[None]:
-    """Tells errors as JSON, too, where that is wanted."""
+def errors_shown(choice: RobotChoice, as_json: bool = False) -> Iterator[None]:
+    """Name the robot that was typed in the commands that errors suggest; write errors as JSON, too, where asked for."""
     from pyfrc_core.errors import PyfrcError, UsageError
 
     try:
         yield
     except (PyfrcError, OSError, KeyboardInterrupt) as error:
+        if isinstance(error, PyfrcError) and error.remedy is not None:
+            from pyfrc_core.deploy.robot_commands import naming_robot
+
+            error.remedy = naming_robot(error.remedy, choice.robot, choice.team)
         if as_json:
             from pyfrc_core.deploy.progress import JsonProgress
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import project_options
-from .robot_options import conversation, json_option, project_if_any, robot_options, told_as_json
+from .robot_options import conversation, errors_shown, json_option, project_if_any, robot_options
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.reach import RobotChoice
@@ -17,17 +17,27 @@ if TYPE_CHECKING:
 @click.command("undeploy", context_settings={"help_option_names": ["-h", "--help"]})
 @project_options
 @robot_options
+@click.option(
+    "--java-cpp", is_flag=True, help="Remove programs in Java and C++ and their libraries instead; Python's stays."
+)
 @click.option("-y", "--yes", is_flag=True, help="Do not ask.")
 @json_option
 def command(
-    directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice, yes: bool, as_json: bool
+    directory: Path | None,
+    main: Path | None,
+    robot_class: str | None,
+    choice: RobotChoice,
+    java_cpp: bool,
+    yes: bool,
+    as_json: bool,
 ) -> None:
     """Stop the robot program and remove it from the robot, with all its earlier releases.
 
     \b
-    Exit codes: 0 removed, 1 not removed, 2 wrong usage or no project.
+    Exit codes: 0 removed, 1 not removed, 2 wrong usage or no project, 4 perhaps removed in part: the message says so.
     """
-    with told_as_json(as_json):
-        from pyfrc_core.deploy.session import undeploy
+    with errors_shown(choice, as_json):
+        from pyfrc_core.deploy import session
 
-        undeploy(project_if_any(directory, main, robot_class, choice), choice, conversation(as_json), sure=yes)
+        remove = session.undeploy_other_languages if java_cpp else session.undeploy
+        remove(project_if_any(directory, main, robot_class, choice), choice, conversation(choice, as_json), sure=yes)

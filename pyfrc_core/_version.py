@@ -1,3 +1,13 @@
 """The version: the season's year, then the release within it, as WPILib and robotpy number theirs."""
 
 __version__ = "2026.1.0"
+
+
+def requirement(*extras: str) -> str:
+    """Return what pip is asked for, such as ``pyfrc[picture]>=2026.1``.
+
+    Always with the version: the index has older packages of this name, which are another program.
+    """
+    release = ".".join(__version__.split(".")[:2])
+    chosen = f"[{','.join(extras)}]" if extras else ""
+    return f"pyfrc{chosen}>={release}"

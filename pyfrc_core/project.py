@@ -124,7 +124,7 @@ class Project:
         :raises RobotCodeError: when the user's code fails, naming the user's line
         :raises ProjectError: when there is not exactly one robot class to choose
         """
-        return self._choose_class(self.import_file(self.main_file))
+        return self.choose_class(self.import_file(self.main_file))
 
     def import_file(self, file: Path) -> ModuleType:
         """Import one of the program's files, as the module of its name.
@@ -202,7 +202,7 @@ class Project:
                 place = self.files.relative(str(suspect)) + (f":{wrong.line}" if wrong.line else "")
                 raise RobotCodeError(wrong.message, where=place, remedy=wrong.remedy) from error
 
-    def _choose_class(self, module: ModuleType) -> type[Any]:
+    def choose_class(self, module: ModuleType) -> type[Any]:
         import wpilib
 
         where = self.main_file.name

@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from string import Template as Text
 from typing import TYPE_CHECKING
 
+from ._version import requirement
 from .errors import UsageError
 from .text_files import write_whole
 
@@ -143,16 +144,16 @@ def _values(template: Template, team: int | None) -> Mapping[str, str]:
     if team is None:
         number = "# team_number = 9999  # your team's, for: pyfrc deploy"
     else:
-        from .deploy.team import MOST
+        from .deploy.discovery import MOST_TEAM
 
-        if not 1 <= team <= MOST:
-            raise UsageError(f"{team} is no team number: one is from 1 to {MOST}", where="--team")
+        if not 1 <= team <= MOST_TEAM:
+            raise UsageError(f"{team} is no team number: one is from 1 to {MOST_TEAM}", where="--team")
         number = f"team_number = {team}"
     by_extras = template.packages if template.extras else ()
     return {
         "components": _toml_array(template.extras),
         "requires": _toml_array([package for package in template.packages if package not in by_extras]),
-        "packages": "\n".join(("pyfrc", *template.packages)),
+        "packages": "\n".join((requirement(), *template.packages)),
         "team_number": number,
     }
 

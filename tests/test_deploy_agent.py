@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import io
+import json
 import os
 import socket
 import sys
+import tokenize
 import zlib
 from pathlib import Path
 
@@ -17,7 +20,7 @@ from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_memory, project_of
 
 from pyfrc_core.deploy import agent
-from pyfrc_core.deploy.agent import program, wire
+from pyfrc_core.deploy.agent import console, wire
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
 from pyfrc_core.deploy.robot import COMMAND, DeployRequest, Watched, agent_package
 
@@ -63,7 +66,31 @@ def test_nothing_of_the_user_stands_in_the_command() -> None:
     assert COMMAND.startswith("/usr/local/bin/python3 -X utf8 -u -c '")
     assert COMMAND.count("'") == 2
     assert not set("$`\\!{%") & set(COMMAND)
-    assert len(agent_package()) < 20_000, "it is sent with each deploy"
+    assert len(agent_package()) < 22_500, "it is sent with each deploy"
+
+
+def test_the_agent_is_sent_without_docstrings_and_comments_and_is_the_same_program() -> None:
+    """Lines keep their numbers: a traceback from the robot names those of our files."""
+    sent = json.loads(zlib.decompress(agent_package()[8:]))
+    assert "pyfrc_core.deploy.agent.serve" in dict(sent)
+    for name, source in sent:
+        original = Path(str(importlib.import_module(name).__file__)).read_text("utf-8")
+        assert code_of(source) == code_of(original), name
+        tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+        assert not [each for each in tokens if each.type == tokenize.COMMENT], name
+        assert not any(ast.get_docstring(node) for node in ast.walk(ast.parse(source)) if isinstance(node, DOCUMENTED))
+
+
+DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef)
+
+
+def code_of(source: str) -> list[tuple[str, int]]:
+    """All of a module's statements without docstrings, and their lines."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, DOCUMENTED) and ast.get_docstring(node, clean=False) is not None:
+            node.body[:1] = []
+    return [(ast.dump(node), node.lineno) for node in ast.walk(tree) if isinstance(node, ast.stmt)]
 
 
 def test_memory(robot: LocalRobot, tmp_path: Path) -> None:
@@ -145,8 +172,8 @@ def test_what_it_does_not_understand_is_told(
 ) -> None:
     session = robot.start(agents)
     robot.channel.sendall(wire.said_frame(request_))
-    with pytest.raises(DeployError, match=rf"the agent on the robot has failed: .*{told}.*\n.*old program or the new"):
-        session._answer(20)
+    with pytest.raises(DeployError, match=rf"the agent on the robot has failed: .*{told}.*\n.*left half written"):
+        session._stream.answer(lambda told: None)
     assert session.info().current is None
     session.close()
 
@@ -171,18 +198,26 @@ def test_the_link_is_cut_while_the_agent_is_sent(robot: LocalRobot) -> None:
 
 
 def test_console_messages() -> None:
-    """Framed as pynetconsole takes them; each is a line."""
+    """Each message of a robot's console is a line."""
     text = b"\x0c" + bytes(6) + "Größe".encode()
     error = b"\x0b" + bytes(13) + b"\0\x05wrong" + b"\0\0" + b"\0\x05stack"
-    assert program.console_text(text) == "Größe\n"
-    assert program.console_text(error) == "wrong stack\n"
-    assert program.console_text(b"\x0d...") == ""
-    assert program.console_text(b"") == ""
+    assert console.console_text(text) == "Größe\n"
+    assert console.console_text(error) == "wrong stack\n"
+    assert console.console_text(b"\x0d...") == ""
+    assert console.console_text(b"") == ""
 
 
 def test_the_last_traceback_counts() -> None:
     first = 'Traceback (most recent call last):\n  File "a.py", line 1, in a\nZeroDivisionError: division by zero\n'
     second = 'Traceback (most recent call last):\n  File "b.py", line 2, in b\n    b()\nKeyError: 1\n'
-    watched = Watched(alive=False, started=False, output=f"{first}\nDuring this:\n\n{second}The end\n")
+    watched = Watched("ended", f"{first}\nDuring this:\n\n{second}The end\n")
     assert watched.traceback == second.rstrip()
-    assert Watched(alive=False, started=False, output="no\n").traceback is None
+    assert Watched("ended", "no\n").traceback is None
+
+
+def test_a_traceback_that_is_cut_off_is_shown_only_without_a_whole_one() -> None:
+    """A program that crashes in a loop is in the middle of its next crash when the watch ends."""
+    whole = 'Traceback (most recent call last):\n  File "a.py", line 1, in a\nZeroDivisionError: division by zero\n'
+    cut = 'Traceback (most recent call last):\n  File "a.py", line 1, in a\n'
+    assert Watched("ended", f"{whole}starting again\n{cut}").traceback == whole.rstrip()
+    assert Watched("ended", cut).traceback == cut.rstrip()

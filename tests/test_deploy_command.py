@@ -21,8 +21,10 @@ from pathlib import Path
 import pytest
 from at_terminal import run_at_terminal
 from roborio import Proxy, Roborio, require_roborio
+from skips import missing_programs, require
 
 from pyfrc_core.deploy import session
+from pyfrc_core.deploy.preparing import image_problem
 from pyfrc_core.deploy.progress import Conversation, Phase, Progress
 from pyfrc_core.deploy.reach import RobotChoice
 from pyfrc_core.deploy.session import DeployOptions
@@ -121,7 +123,7 @@ def driver_station(robot: Roborio) -> Iterator[None]:
 
 def test_a_new_user_comes_to_a_running_program_with_one_command_and_one_question(robot: Roborio, make_project) -> None:
     if robot.port != 22:
-        pytest.skip("a Driver Station's robot answers on port 22, which this computer's own SSH server has")
+        require("deploying through the Driver Station", ["port 22, which this computer's own SSH server has"])
     project = make_project({})
     assert project.run("init").code == 0
     with driver_station(robot):
@@ -153,6 +155,7 @@ def test_a_deploy_tells_a_line_a_phase_and_the_program_runs(robot: Roborio, make
 
 
 def test_what_was_deployed_from_a_checkout_says_which_commit(robot: Roborio, make_project) -> None:
+    require("which commit was deployed", missing_programs("git"))
     project = make_project(program())
     git = ["git", "-C", str(project.path), "-c", "user.name=x", "-c", "user.email=x@example.org"]
     for arguments in (["init", "-q", "-b", "main"], ["add", "robot.py"], ["commit", "-qm", "it works"]):
@@ -239,8 +242,10 @@ def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot:
     result = deploy(project, robot)
     assert result.code == 3
     assert "| RuntimeError: no such gyro" in result.stdout
-    assert "--rollback" in result.stderr
+    assert f"Go back to the program before with: pyfrc deploy --robot {robot.where} --rollback" in result.stderr
     assert "number 2" in code_on(robot)
+    error = events(deploy(project, robot, "--json"))[-1]
+    assert f"pyfrc deploy --robot {robot.where} --rollback" in error["remedy"]
     result = deploy(project, robot, "--auto-rollback")
     assert result.code == 3
     assert "release 1 runs again" in result.stderr
@@ -385,10 +390,11 @@ OURS = version("wpilib")
     [
         ({"password": "secret"}, "refuses lvuser with an empty password", "passwd -d lvuser"),
         ({"image": None}, "this is no roboRIO", "--robot HOST"),
-        ({"python": None}, "there is no Python on the robot", "install-python"),
-        ({"wpilib": None}, "there is no wpilib", f"install wpilib=={OURS}"),
+        ({"python": None}, "there is no Python on the robot", "python -m robotpy sync"),
+        ({"wpilib": None}, "there is no wpilib", "python -m robotpy deploy"),
         ({"wpilib": "2026.1.1"}, f"the robot has wpilib 2026.1.1, this computer has {OURS}", "--no-version-check"),
         ({"image": "FRC_roboRIO_2024_v2.1"}, "the robot's image is of 2024", "roboRIO Imaging Tool"),
+        ({"image": "FRC_roboRIO_2026_v1.1"}, "the robot's image is 2026_v1.1", "image 2026_v1.2"),
         ({"disk_size": "700k"}, "the robot's disk is full", "Remove what the project does not need"),
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else None,
@@ -404,38 +410,85 @@ def test_what_is_wrong_with_a_robot_is_told_with_what_to_do(how, what, remedy, n
     assert not (robot.home / "py").exists()
 
 
+def test_the_second_model_s_image_is_accepted() -> None:
+    assert image_problem("FRC_roboRIO2_2026_v1.2", OURS) is None
+
+
 @pytest.mark.parametrize("how", [{"wpilib": "2026.1.1"}, {"image": "FRC_roboRIO_2024_v2.1"}], ids=["wpilib", "image"])
 def test_versions_are_not_checked_when_the_user_says_so(how, new_robot, make_project) -> None:
     result = deploy(make_project(program()), new_robot(**how), "-n")
     assert result.code == 0, result.output
 
 
-def test_a_key_is_taken_from_the_agent_when_the_robot_wants_one(new_robot, make_project, tmp_path: Path) -> None:
+@pytest.fixture
+def user_keys(tmp_path: Path) -> Path:
+    """A directory with two of the user's keys: the one that the robot wants, and another."""
     for name in ("right", "wrong"):
         subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", str(tmp_path / name)], check=True)
-    robot = new_robot(authorized_key=(tmp_path / "right.pub").read_text().strip())
+    return tmp_path
+
+
+def test_a_key_is_taken_from_the_agent_when_the_user_says_so(new_robot, make_project, user_keys: Path) -> None:
+    robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
     project = make_project(program())
-    result = deploy(project, robot)
-    assert result.code == 1
-    assert "only with a key, and there is none in your SSH agent" in result.stderr
-    agent_socket = tmp_path / "agent"
+    agent_socket = user_keys / "agent"
     agent = subprocess.Popen(["ssh-agent", "-D", "-a", str(agent_socket)], stdout=subprocess.PIPE, text=True)
     try:
         assert agent.stdout is not None
         agent.stdout.readline()
-        environment = {**os.environ, "SSH_AUTH_SOCK": str(agent_socket)}
-        args = ["deploy", "--skip-tests", "--robot", robot.where]
-        for name, code in (("wrong", 1), ("right", 0)):
-            subprocess.run(["ssh-add", "-q", str(tmp_path / name)], env=environment, check=True)
-            result = project.run(*args, env={"SSH_AUTH_SOCK": str(agent_socket)})
-            assert result.code == code, result.output
-            if code:
-                assert "refuses what was offered: 1 of your SSH agent's keys" in result.stderr
-                assert "ssh-add FILE" in result.stderr
+        environment = {"SSH_AUTH_SOCK": str(agent_socket)}
+        args = ["deploy", "--skip-tests", "--robot", robot.where, "--ssh-agent"]
+        for name, refusal in (
+            ("", "only with a key, and there is none in your SSH agent"),
+            ("wrong", "refuses lvuser with 1 of your SSH agent's keys"),
+            ("right", ""),
+        ):
+            if name:
+                subprocess.run(["ssh-add", "-q", str(user_keys / name)], env=os.environ | environment, check=True)
+            result = project.run(*args, env=environment)
+            assert result.code == (1 if refusal else 0), result.output
+            assert refusal in result.stderr
+            assert ("ssh-add FILE" in result.stderr) is bool(refusal)
     finally:
         agent.terminate()
         agent.wait()
         agent.stdout.close()
+
+
+def test_a_key_is_taken_from_a_file_when_the_user_says_so(new_robot, make_project, user_keys: Path) -> None:
+    robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
+    project = make_project(program())
+    subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "secret", "-f", str(user_keys / "locked")], check=True)
+    for file, refusal in (
+        ("wrong", f"the robot refuses lvuser with {user_keys / 'wrong'}"),
+        ("locked", f"{user_keys / 'locked'}: this key has a passphrase"),
+        ("right.pub", f"{user_keys / 'right.pub'}: this is no private key"),
+        ("none", f"{user_keys / 'none'}: this key cannot be read"),
+    ):
+        result = deploy(project, robot, "--identity", str(user_keys / file))
+        assert result.code == 1
+        assert refusal in result.first_error
+        assert "Traceback" not in result.output
+    assert deploy(project, robot, "--identity", str(user_keys / "right")).code == 0
+
+
+def test_the_users_keys_are_offered_to_no_robot_otherwise(new_robot, make_project, user_keys: Path) -> None:
+    """Nor is the agent asked for them; nor is anything read from ~/.ssh."""
+    robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
+    home = user_keys / "home"
+    (home / ".ssh").mkdir(parents=True)
+    (user_keys / "right").rename(home / ".ssh/id_ed25519")
+    with socket.socket(socket.AF_UNIX) as agent:
+        agent.bind(str(user_keys / "agent"))
+        agent.listen()
+        agent.setblocking(False)
+        names = {"HOME": str(home), "SSH_AUTH_SOCK": str(user_keys / "agent")}
+        result = make_project(program()).run("deploy", "--skip-tests", "--robot", robot.where, env=names)
+        assert result.code == 1
+        assert "the robot lets lvuser in only with a key, and none was offered" in result.stderr
+        assert "--identity FILE" in result.stderr
+        with pytest.raises(BlockingIOError):
+            agent.accept()
 
 
 def test_a_changed_host_key_is_refused_until_it_is_accepted(robot: Roborio, make_project) -> None:
@@ -449,9 +502,26 @@ def test_a_changed_host_key_is_refused_until_it_is_accepted(robot: Roborio, make
     assert "the robot's key has changed" in result.stderr
     option = result.stderr.split()[-2:]
     assert option[0] == "--accept-host-key"
-    assert deploy(project, robot, *option).code == 0
+    accepted = deploy(project, robot, *option, "--robot-name", "practice")
+    assert accepted.code == 0
+    assert "a key not seen before, now pinned for" in accepted.stdout
     info = deploy(project, robot, command="deploy-info")
     assert info.code == 0, info.output
+    assert "its key is the known one (practice)" in info.stdout
+    assert "name       practice" in info.stdout
+    told = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
+    assert told["robot_name"] == "practice"
+    assert told["host_key"].startswith("SHA256:")
+
+
+def test_a_directory_that_the_robot_s_key_cannot_be_written_to_is_not_called_a_bad_link(
+    robot: Roborio, make_project
+) -> None:
+    result = deploy(make_project({**program(), ".pyfrc": "no directory"}), robot)
+    assert result.code == 1
+    assert ".pyfrc: cannot write the file with the keys of robots: file exists" in result.stderr
+    assert "log in" not in result.stderr
+    assert "link" not in result.stderr
 
 
 def test_a_lost_link_is_told_and_the_next_deploy_needs_no_help(robot: Roborio, make_project) -> None:
@@ -537,6 +607,7 @@ def test_two_deploys_at_once_one_wins_and_the_other_says_so(robot: Roborio, make
 
 def test_on_a_competition_field_nothing_is_deployed(make_project) -> None:
     require_roborio()  # for its namespaces: the port of the Driver Station is one for the whole computer
+    require("deploying on a competition field", missing_programs("ip"))
     project = make_project(program())
     code = """
 import json, socket, subprocess, sys, threading
@@ -567,7 +638,8 @@ def test_without_a_robot_it_is_told_what_was_tried(make_project) -> None:
     result = make_project(program()).run("deploy", "--skip-tests", "--robot", "127.0.0.1:1")
     assert result.code == 1
     assert "127.0.0.1:1  by the command  refused" in result.stderr
-    assert "Is that the right address?" in result.stderr
+    assert "refused: no virtual robot runs there" in result.stderr
+    assert "Is that the right address? Start a virtual robot in another terminal: pyfrc virtual-robot" in result.stderr
 
 
 def test_without_a_project_it_is_told_how_to_begin(make_project) -> None:
@@ -587,6 +659,10 @@ def test_without_a_project_it_is_told_how_to_begin(make_project) -> None:
         ["--robot", "127.0.0.1", "--team", "1"],
         ["--robot", "127.0.0.1:x"],
         ["--robot", "lvuser@127.0.0.1"],
+        ["--robot", "--skip-tests"],
+        ["--skip-tests", "--robot-name", "--dry-run"],
+        ["--skip-tests", "--identity", "--dry-run"],
+        ["--skip-tests", "--accept-host-key", "--dry-run"],
         ["--robot", "robot.local", "--no-resolve"],
         ["--team", "0"],
     ],

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import contextlib
+import random
+import re
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 from roborio import Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
 
 import pyfrc_core.deploy.console
+from pyfrc_core.deploy.discovery import Address
+from pyfrc_core.deploy.errors import NoConsoleError
+from pyfrc_core.deploy.imitated_driver_station import imitated_driver_station
+
+Follow = Callable[..., NoConsoleError]
 
 ROBOT = """
 import wpilib
@@ -60,13 +69,13 @@ def wait_for(process: subprocess.Popen[str], text: str) -> None:
 def test_the_console_shows_what_the_program_prints_and_connects_again(option, robot: Roborio, make_project) -> None:
     project = make_project({"robot.py": ROBOT})
     with running(project, "console", "--robot", robot.where, *option) as console:
-        wait_for(console, "OK")
+        wait_for(console, "connected to")
         assert project.run("deploy", "--skip-tests", "--robot", robot.where).code == 0
         wait_for(console, "the words of our robot")
         robot.power_off()
-        wait_for(console, ":(")
+        wait_for(console, "the connection was lost")
         robot.power_on()
-        wait_for(console, "OK")
+        wait_for(console, "connected to")
         assert project.run("deploy", "--skip-tests", "--robot", robot.where).code == 0
         wait_for(console, "the words of our robot")
     assert console.returncode == 0
@@ -76,32 +85,173 @@ def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> No
     project = make_project({"robot.py": ROBOT})
     for option in ([], ["--nc-ds"]):
         with running(project, "console", "--robot", "127.0.0.1", *option) as console:
-            wait_for(console, "waiting for 127.0.0.1" if option else "Connecting to 127.0.0.1")
+            port = 1740 if option else 1741
+            wait_for(console, f"nothing listens at 127.0.0.1:{port}: is it a robot, and is it on?")
         assert console.returncode == 0
 
 
-@pytest.mark.parametrize("quiet", [False, True])
-def test_a_quiet_console_tells_only_what_the_program_prints(
-    quiet: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    import netconsole
+class ConsoleServer:
+    """A local stand-in for a robot's console; an SSH greeting names its port, as a virtual robot's does.
 
-    tries = []
+    :param connections: what each connection sends, in order; None: its port is closed. The connection is closed then,
+                        unless the bytes are sent `for_ever`.
+    """
 
-    def run(host: str, fakeds: bool) -> None:
-        print(f"Connecting to {host}...", file=sys.stderr)
-        if not tries:
-            tries.append(host)
-            raise ConnectionRefusedError
-        print("the words of our robot")
-        raise KeyboardInterrupt
+    def __init__(self, *connections: bytes | None, for_ever: bool = False) -> None:
+        self._connections, self._for_ever = connections, for_ever
+        self._ssh = socket.create_server(("127.0.0.1", 0))
+        self.address = Address("127.0.0.1", self._ssh.getsockname()[1])
+        self.sent = 0
+        self._thread = threading.Thread(target=self._serve)
 
-    monkeypatch.setattr(netconsole, "run", run)
+    def __enter__(self) -> ConsoleServer:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._thread.join(30)
+        self._ssh.close()
+        assert not self._thread.is_alive()
+
+    def _serve(self) -> None:
+        for content in self._connections:
+            with socket.create_server(("127.0.0.1", 0)) as console:
+                if content is None:
+                    console.close()
+                port = None if content is None else console.getsockname()[1]
+                asked, _ = self._ssh.accept()
+                with asked:
+                    asked.sendall(b"SSH-2.0-pyfrc_virtual_robot console=%d\r\n" % (port or closed_port()))
+                if content is not None:
+                    listener, _ = console.accept()
+                    with listener, contextlib.suppress(OSError):
+                        self._send(listener, content)
+
+    def _send(self, listener: socket.socket, content: bytes) -> None:
+        listener.sendall(content)
+        self.sent += len(content)
+        while self._for_ever:
+            listener.sendall(content)
+            self.sent += len(content)
+        listener.shutdown(socket.SHUT_WR)
+        while listener.recv(1 << 16):
+            pass
+
+
+def closed_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port: int = server.getsockname()[1]
+    return port
+
+
+def framed(body: bytes) -> bytes:
+    return struct.pack(">H", len(body)) + body
+
+
+def info(text: str) -> bytes:
+    return framed(struct.pack(">BfH", 12, 1.5, 7) + text.encode())
+
+
+def error(*parts: str) -> bytes:
+    texts = b"".join(framed(part.encode()) for part in parts)
+    return framed(struct.pack(">BfHHiB", 11, 2.5, 8, 1, -44, 0) + texts)
+
+
+EMPTY_INFO = b"\0\x01\x0c"
+
+
+@pytest.fixture
+def follow(monkeypatch: pytest.MonkeyPatch) -> Follow:
     monkeypatch.setattr(pyfrc_core.deploy.console, "_SECONDS_BETWEEN_TRIES", 0.0)
-    pyfrc_core.deploy.console.follow_console("10.12.34.2", without_driver_station=True, quiet=quiet)
-    told, connection = capsys.readouterr()
-    assert told.splitlines()[-1] == "the words of our robot"
-    assert (told.count("\n"), connection.count("Connecting")) == ((1, 0) if quiet else (2, 2))
+
+    def follow_to_nonsense(*connections: bytes | None, for_ever: bool = False, quiet: bool = False) -> NoConsoleError:
+        with ConsoleServer(*connections, for_ever=for_ever) as server, pytest.raises(NoConsoleError) as caught:
+            pyfrc_core.deploy.console.follow_console(server.address, quiet=quiet)
+        follow_to_nonsense.sent = server.sent  # type: ignore[attr-defined]
+        return caught.value
+
+    return follow_to_nonsense
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        EMPTY_INFO,
+        framed(b"\x0c" + bytes(5)),
+        framed(b"\x0b" + bytes(5)),
+        framed(b"\x0b" + bytes(13) + b"\xff\xffshort"),
+        framed(b"\x0b" + bytes(13) + b"\0\x05wrong\0\x01"),
+        b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n",
+        b"SSH-2.0-OpenSSH_9.6\r\n",
+        b"\xff" * 5000,
+        random.Random(1).randbytes(1 << 20),
+    ],
+    ids=["empty info", "short info", "short error", "long text", "cut text", "HTTP", "SSH", "ones", "random"],
+)
+def test_what_is_no_console_is_named_in_one_sentence(content: bytes, follow: Follow) -> None:
+    error = follow(info("before") + content)
+    assert error.exit_code == 1
+    assert re.match(r"127\.0\.0\.1:\d+: what listens there is not a robot's console: .+\n  \S", str(error)), str(error)
+
+
+@pytest.mark.parametrize("content", [bytes(1 << 16), b"HTTP/1.1 200 OK\r\n" * 4000], ids=["empty frames", "HTTP"])
+def test_nonsense_without_end_takes_no_memory(content: bytes, follow: Follow) -> None:
+    follow(content, for_ever=True)
+    assert follow.sent < 1 << 24  # type: ignore[attr-defined]  # what both sockets buffer
+
+
+def test_the_command_ends_with_exit_code_1_and_no_traceback(make_project) -> None:
+    with ConsoleServer(EMPTY_INFO) as server:
+        result = make_project({}).run("console", "--robot", str(server.address))
+    assert result.code == 1
+    assert "error: 127.0.0.1:" in result.stderr
+    assert "is not a robot's console: it sends a text message of 1 bytes" in result.stderr
+    assert "Traceback" not in result.output
+
+
+def test_frames_are_lines_whatever_else_comes(follow: Follow, capsys: pytest.CaptureFixture[str]) -> None:
+    hello = info("Größe\u202e")
+    follow(b"\0\0" + hello + framed(b"\x0dother") + bytes(200) + error("wrong", "here", "") + EMPTY_INFO)
+    assert capsys.readouterr().out == "[1.50] Größe\\u202e\n[2.50] -44 wrong here \n"
+
+
+def test_after_a_loss_it_connects_again(follow: Follow, capsys: pytest.CaptureFixture[str]) -> None:
+    follow(info("one") + info("cut")[:-1], None, None, None, info("two"), EMPTY_INFO)
+    printed = capsys.readouterr()
+    assert printed.out == "[1.50] one\n[1.50] two\n"
+    assert printed.err.count("nothing listens at 127.0.0.1:") == 1
+    assert printed.err.count("is it a robot, and is it on?") == 1
+    assert printed.err.count("the connection was lost") == 2
+
+
+def test_connections_that_end_at_once_are_not_reported_each(follow: Follow, capsys: pytest.CaptureFixture[str]) -> None:
+    follow(*[b""] * 20, EMPTY_INFO)
+    assert len(capsys.readouterr().err.splitlines()) == 2
+
+
+def test_a_quiet_console_shows_only_what_the_program_prints(follow: Follow, capsys: pytest.CaptureFixture[str]) -> None:
+    follow(None, info("one"), info("two"), EMPTY_INFO, quiet=True)
+    assert capsys.readouterr() == ("[1.50] one\n[1.50] two\n", "")
+
+
+def test_options_about_keys_are_not_taken(make_project) -> None:
+    listed = make_project({}).run("console", "--help").stdout
+    assert "--robot HOST" in listed
+    assert not [each for each in ("--accept-host-key", "--robot-name", "--identity", "--ssh-agent") if each in listed]
+
+
+def test_the_imitated_driver_station_stays_disabled_and_survives_a_closed_connection() -> None:
+    with (
+        socket.create_server(("127.0.0.1", 0)) as tcp,
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp,
+    ):
+        udp.bind(("127.0.0.1", 0))
+        udp.settimeout(30)
+        with imitated_driver_station("127.0.0.1", tcp.getsockname()[1], udp.getsockname()[1]):
+            robot, _ = tcp.accept()
+            robot.close()
+            packets = [udp.recv(100) for _ in range(5)]
+    assert packets == [bytes([number, 0, 1, 0, 0, 0]) for number in range(1, 6)]
 
 
 @pytest.mark.parametrize("option", ["--netconsole", "--nc-ds"])
@@ -109,7 +259,7 @@ def test_a_deploy_may_end_in_the_console(option: str, robot: Roborio, make_proje
     project = make_project({"robot.py": ROBOT})
     with running(project, "deploy", "--skip-tests", "--robot", robot.where, option) as deploying:
         wait_for(deploying, "Deployed.")
-        wait_for(deploying, "OK")
+        wait_for(deploying, "connected to")
         robot.run("/usr/local/frc/bin/frcKillRobot.sh", "-t", "-r")
         wait_for(deploying, "the words of our robot")
     assert deploying.returncode == 0

@@ -213,7 +213,7 @@ def test_a_laptop_that_says_nothing_while_the_lock_is_held_loses_its_turn(robot:
         ):
             ours.sendall(said)
         ours.shutdown(socket.SHUT_WR)
-        serve.Agent(Listening(source, io.BytesIO()), Places(str(robot.root)), "somebody").serve()
+        serve.Agent(Listening(source, io.BytesIO()), Places(str(robot.root)), {}).serve()
     assert impatient == [False, True, True, False]
 
 

@@ -107,6 +107,7 @@ def test_nothing_found_is_told_as_a_table(servers: Servers) -> None:
         assert why in line
     assert "--team" in lines[5]
     assert "--robot" in lines[5]
+    assert lines[5].endswith("To try without a robot: pyfrc virtual-robot")
     assert [tried.address for tried in caught.value.tried] == [nobody, nowhere, mail, mute]
 
 
@@ -166,8 +167,48 @@ def test_addresses_are_read_and_shown_alike(text: str, address: Address) -> None
 
 
 @pytest.mark.parametrize(
+    ("text", "address"),
+    [
+        ("::ffff:10.12.34.2", Address("10.12.34.2")),
+        ("[::ffff:10.12.34.2]:22", Address("10.12.34.2")),
+        ("[::FFFF:0a0c:2202]:2222", Address("10.12.34.2", 2222)),
+        ("FE80:0:0::0001%eth0", Address("fe80::1%eth0")),
+        ("10.12.34.2.", Address("10.12.34.2")),
+        ("roboRIO-1234-FRC.local.", Address("roboRIO-1234-FRC.local")),
+        ("10.12.34.2:022", Address("10.12.34.2")),
+    ],
+)
+def test_an_address_has_one_form(text: str, address: Address) -> None:
+    """Keys are pinned for addresses: another spelling must not be another address."""
+    assert parse_address(text) == address
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("10.12.34.02", "Write 10.12.34.2"),
+        ("010.12.34.2:22", "Write 10.12.34.2"),
+        ("10.12.8706", "Write 10.12.34.2"),
+        ("10.795138", "Write 10.12.34.2"),
+        ("168567298", "Write 10.12.34.2"),
+        ("0x0a0c2202", "Write 10.12.34.2"),
+        ("0XA.12.34.2", "Write 10.12.34.2"),
+        ("10.12.34.300", "as in 10.12.34.2"),
+        ("0x", "as in 10.12.34.2"),
+        ("9" * 30, "as in 10.12.34.2"),
+        ("1234", "--team 1234"),
+    ],
+)
+def test_an_old_spelling_of_an_address_is_refused_with_the_right_one(text: str, remedy: str) -> None:
+    with pytest.raises(UsageError, match="not how an address is written") as caught:
+        parse_address(text)
+    assert remedy in str(caught.value)
+
+
+@pytest.mark.parametrize(
     "text",
     [
+        *("\uff11\uff10.12.34.2", "10\u300212\u300234\u30022", "10.12.34.*", "a,b", "|1|a|b", "!robot", "a;b"),
         *("", ":22", "robot:", "robot:0", "robot:70000", "robot:ssh", "[::1]x:3"),
         *("lvuser@10.12.34.2", "http://10.12.34.2", "10.12.34.2/", "my robot", "[]"),
     ],

@@ -66,7 +66,7 @@ try:
     run()
 except SystemExit:
     pass
-big = {{"wpilib", "hal", "pytest", "pydantic", "paramiko", "rich", "netconsole"}}
+big = {{"wpilib", "hal", "pytest", "pydantic", "paramiko", "rich"}}
 assert not big & set(sys.modules), big & set(sys.modules)
 """
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
@@ -78,7 +78,7 @@ import importlib, pkgutil, sys
 import pyfrc_core.deploy
 for module in pkgutil.walk_packages(pyfrc_core.deploy.__path__, "pyfrc_core.deploy."):
     importlib.import_module(module.name)
-big = {"wpilib", "hal", "pytest", "pydantic", "paramiko", "rich", "netconsole"}
+big = {"wpilib", "hal", "pytest", "pydantic", "paramiko", "rich"}
 assert not big & set(sys.modules), big & set(sys.modules)
 """
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

@@ -11,7 +11,7 @@ import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import LocalRobot
 
-from pyfrc_core.deploy.agent import places, serve, wire
+from pyfrc_core.deploy.agent import places, releases, serve, wire
 from pyfrc_core.deploy.agent.places import Lock, Places, Refusal
 
 
@@ -61,9 +61,12 @@ def test_an_undeploy_holds_the_lock_until_all_is_removed_and_the_agent_is_patien
         held[path] = is_held(there.lock)
         remove(path)
 
-    monkeypatch.setattr(serve, "remove", watched_remove)
+    for module in (serve, releases):
+        monkeypatch.setattr(module, "remove", watched_remove)
     answers = io.BytesIO()
-    serve.Agent(wire.Wire(NeverWaitedFor(wire.said_frame({"op": "undeploy"})), answers), there, "somebody").serve()
+    serve.Agent(
+        wire.Wire(NeverWaitedFor(wire.said_frame({"op": "undeploy"})), answers), there, {"who": "somebody"}
+    ).serve()
     answers.seek(0)
     wire.read_frame(answers.read)  # the facts
     assert wire.said_in(*wire.read_frame(answers.read)) == {"done": {"removed": True}}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import random
+import re
 from collections.abc import Generator
 from itertools import pairwise
 from pathlib import Path
@@ -67,7 +68,7 @@ def test_a_program_is_deployed_and_runs(roborio: Roborio, tmp_path: Path) -> Non
     with agent(roborio) as robot:
         facts = robot.facts
         assert (facts.not_roborio, facts.python, facts.wpilib, facts.user) == (None, "3.14.0", "2026.2.2", "lvuser")
-        assert (facts.image, facts.startup_dlls) == ("FRC_roboRIO_2026_v2.0", True)
+        assert (facts.image, facts.startup_dlls) == ("FRC_roboRIO_2026_v1.2", True)
         assert (facts.current, facts.command, facts.running, facts.releases) == (None, None, False, ())
         assert robot.deploy(project, DeployRequest("robot.py", {"git-hash": "1234"})).release == 1
         printed: list[str] = []
@@ -109,6 +110,23 @@ def test_a_program_that_dies_at_once_is_told_with_its_traceback(roborio: Roborio
         watched = started(robot)
         assert watched.started
         assert watched.traceback is None
+
+
+def test_the_robot_starts_a_program_that_has_ended_again_at_once(tmp_path: Path) -> None:
+    require_roborio()
+    body = """\
+def robotInit(self):
+        import os, pathlib
+        starts = pathlib.Path(__file__).with_name("starts")
+        starts.write_text(starts.read_text() + "x" if starts.exists() else "x")
+        print(f"start {len(starts.read_text())} in process {os.getpid()}")
+        raise RuntimeError
+"""
+    with Roborio() as roborio:
+        deploy(roborio, program(tmp_path, "crashing", body))
+        roborio.power_off()
+        roborio.power_on()
+        assert len(set(re.findall(r"in process \d+", roborio.said("start 5 in process ")))) >= 4
 
 
 def test_a_program_that_does_not_say_that_it_has_started(roborio: Roborio, tmp_path: Path) -> None:
@@ -300,7 +318,7 @@ def test_no_python_on_the_robot() -> None:
     require_roborio()
     with (
         Roborio(python=None) as roborio,
-        pytest.raises(RefusedError, match=r"no Python on the robot.*\n.*install-python"),
+        pytest.raises(RefusedError, match=r"no Python on the robot.*\n.*python -m robotpy sync"),
     ):
         deploy(roborio, Manifest(()))
 

@@ -7,7 +7,8 @@ import re
 
 import pytest
 
-from pyfrc_core.deploy.team import MOST, Target, find_target
+from pyfrc_core.deploy.discovery import MOST_TEAM
+from pyfrc_core.deploy.team import Target, find_target
 from pyfrc_core.errors import PyfrcError, SettingsError, UsageError
 from pyfrc_core.project import find_project
 
@@ -82,7 +83,7 @@ def test_an_editors_word_for_no_team_is_none(none: int, target_of) -> None:
 
 def test_the_user_is_asked_until_the_answer_is_one_and_it_is_kept(make_project) -> None:
     project = make_project({"robot.py": "", PREFERENCES: '{"currentLanguage": "python"}'})
-    answers = iter(["", "12a", "0", str(MOST + 1), " 1234 "])
+    answers = iter(["", "12a", "0", str(MOST_TEAM + 1), " 1234 "])
     questions = []
 
     def ask(question: str) -> str:
@@ -133,5 +134,5 @@ def test_preferences_that_cannot_be_read_are_not_overwritten(make_project) -> No
 
 def test_the_range_in_the_messages_is_that_of_the_addresses(target_of) -> None:
     with pytest.raises(SettingsError) as caught:
-        target_of({}, team=MOST + 1)
-    assert re.search(rf"--team: {MOST + 1}: a team number is from 1 to {MOST}", str(caught.value))
+        target_of({}, team=MOST_TEAM + 1)
+    assert re.search(rf"--team: {MOST_TEAM + 1}: a team number is from 1 to {MOST_TEAM}", str(caught.value))

@@ -209,10 +209,11 @@ def test_another_tool_deploys_after_us(robot: LocalRobot, project: Project, agen
 def test_where_names_cannot_be_exchanged(robot: LocalRobot, project: Project, monkeypatch: pytest.MonkeyPatch) -> None:
     """An old kernel: the directory is moved away before the link takes its place; the start command leads past that."""
     from pyfrc_core.deploy.agent import releases
+    from pyfrc_core.deploy.agent.activity import Activity
     from pyfrc_core.deploy.agent.places import Places
 
     other_tools_program(robot, "env LD_LIBRARY_PATH=/usr/local/frc/lib/ x --main /home/lvuser/py/robot.py run")
-    ours = releases.Releases(Places(str(robot.root)))
+    ours = releases.Releases(Places(str(robot.root)), Activity(lambda **said: None))
     ours.take_over(1)
     ours.directory(2).mkdir()
     (ours.directory(2) / "robot.py").write_text("# ours\n")
@@ -275,6 +276,64 @@ def test_what_the_new_program_writes_is_not_undone(robot: LocalRobot, project: P
     assert (py / "state").read_text() == "new"
     assert (py / "late").read_text() == "late"
     assert not (py / "removed").exists()
+
+
+def test_rollback_keeps_what_the_program_wrote_in_either_release(
+    robot: LocalRobot, project: Project, agents: Agents
+) -> None:
+    robot.deploy(agents, project.manifest)
+    py, first = robot.home / "py", robot.home / ".pyfrc/releases/1"
+    for name in ("log.txt", "same.txt", "one.txt"):
+        (py / name).write_text(f"1: {name}" if name != "same.txt" else "same")
+    robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
+    for name in ("log.txt", "same.txt"):  # as programs write that log to a new file each time
+        (py / name).unlink()
+        (py / name).write_text(f"2: {name}" if name != "same.txt" else "same")
+    for times in (1, 2):
+        session = robot.start(agents)
+        assert session.rollback(1).release.number == 1
+        session.close()
+        written = {name: text for name, text in contents(py).items() if name.split(".")[0] in ("log", "same", "one")}
+        assert written == {
+            "log.txt": b"2: log.txt",
+            "log.txt.release-1": b"1: log.txt",
+            "same.txt": b"same",
+            "one.txt": b"1: one.txt",
+        }, times
+    (first / "log.txt").unlink()
+    (first / "log.txt").write_text("3")
+    session = robot.start(agents)
+    session.rollback(2)
+    session.close()
+    assert (py / "log.txt").read_text() == "3"
+    assert (py / "log.txt.release-2").read_text() == "2: log.txt"
+    assert (py / "log.txt.release-1").read_text() == "1: log.txt"
+    (py / "log.txt").unlink()
+    (py / "log.txt").write_text("4")
+    session = robot.start(agents)
+    session.rollback(1)
+    session.close()
+    assert (py / "log.txt").read_text() == "4"
+    assert (py / "log.txt.release-1-2").read_text() == "3"
+
+
+def test_the_kill_script_finds_the_robots_commands(robot: LocalRobot, agents: Agents) -> None:
+    """Both files of the image that set the path are read, and each may be missing."""
+    bin_directory, profile = robot.root / "usr/local/frc/bin", robot.root / "etc/profile.d"
+    for name in ("FRC_ConsoleTee", "natinst_command"):
+        (robot.root / name).mkdir()
+        (robot.root / name / name).write_text(f"#!/bin/sh\necho {name} >> {robot.root}/found\n")
+        (robot.root / name / name).chmod(0o755)
+    (bin_directory / "frcKillRobot.sh").write_text("#!/bin/sh\nFRC_ConsoleTee; natinst_command; exit 0\n")
+    (profile / "frc-path.sh").write_text(f'export PATH="$PATH:{robot.root}/FRC_ConsoleTee"\n')
+    (profile / "natinst-path.sh").write_text(f'export PATH="$PATH:{robot.root}/natinst_command"\n')
+    for missing in (None, "natinst-path.sh", "frc-path.sh"):
+        if missing is not None:
+            (profile / missing).unlink()
+        session = robot.start(agents)
+        session.restart()
+        session.close()
+    assert (robot.root / "found").read_text().split() == ["FRC_ConsoleTee", "natinst_command", "FRC_ConsoleTee"]
 
 
 def test_files_of_the_same_content_do_not_become_one(robot: LocalRobot, project: Project, agents: Agents) -> None:
@@ -361,10 +420,10 @@ def test_undeploy(robot: LocalRobot, project: Project, agents: Agents) -> None:
 
 
 def test_two_at_once(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    first, second = robot.start(agents), robot.start(agents)
+    first, second = robot.start(agents, all_signs=True), robot.start(agents)
 
     def meanwhile(phase: str, done: int, total: int) -> None:
-        if phase == "send" and done == total and not refused:
+        if phase == "receive" and done < total and not refused:
             with pytest.raises(RefusedError, match="is deploying to this robot right now") as caught:
                 second.deploy(project.manifest, DeployRequest("robot.py", {"who": "second"}))
             refused.append(caught.value)
@@ -373,11 +432,7 @@ def test_two_at_once(robot: LocalRobot, project: Project, agents: Agents) -> Non
     # So large that it is not all sent before the other one asks.
     project.write("data.bin", os.urandom(2_000_000))
 
-    def at_first(phase: str, done: int, total: int) -> None:
-        if phase == "send" and done < total:
-            meanwhile(phase, total, total)
-
-    first.deploy(dataclasses.replace(project.manifest), DeployRequest("robot.py", {"who": "first"}), at_first)
+    first.deploy(dataclasses.replace(project.manifest), DeployRequest("robot.py", {"who": "first"}), meanwhile)
     assert len(refused) == 1
     assert json.loads((robot.home / "py/deploy.json").read_text()) == {"who": "first"}
     first.close()

@@ -18,7 +18,7 @@ from conftest import MakeProject, RobotProject
 ROBOTS = Path(__file__).parent / "robots"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
 
-#: Interpreters started anew, and how often each tests the robot.
+#: Interpreters, and how often each tests the robot: a new one, and one that is forked from another where that can be.
 SESSIONS, TESTED_IN_EACH = 2, 4
 
 #: One more has a busy machine: for a robot that runs in place, and for one with threads and a loop of its own.
@@ -86,7 +86,7 @@ def test_tested_again_and_again_it_does_the_same(name: str, project: RobotProjec
     seen: dict[str, set[str]] = defaultdict(set)
     tested = 0
     for session in range(SESSIONS):
-        pyfrc_test(project, "--trace", str(tmp_path / f"traces{session}"), cold=True)
+        pyfrc_test(project, "--trace", str(tmp_path / f"traces{session}"), cold=session == 0)
     if name in TESTED_BUSY:
         with busy_processes(BUSY):
             pyfrc_test(project, "--trace", str(tmp_path / "traces-busy"), "--", "tests/run0_test.py", cold=False)

@@ -297,16 +297,17 @@ def server(says: bytes) -> Iterator[str]:
         thread.join()
 
 
-def test_a_robot_that_answers() -> None:
+def test_a_robot_that_does_not_let_us_in() -> None:
     with server(b"SSH-2.0-robot\r\n") as address:
-        finding = RobotSearch(None, robot=address).finding()
-    assert finding.status == "ok"
+        finding, why = RobotSearch(None, robot=address).findings()
+    assert (finding.status, why.status) == ("ok", "problem")
     assert address in finding.text
+    assert why.text.startswith(f"{address}: could not log in to the robot")
 
 
 def test_something_else_that_answers() -> None:
     with server(b"HTTP/1.1 400\r\n") as address:
-        finding = RobotSearch(None, robot=address).finding()
+        (finding,) = RobotSearch(None, robot=address).findings()
     assert finding.status == "problem"
 
 

@@ -177,7 +177,7 @@ def test_a_deploy_and_its_kin(robot: Roborio, make_project: MakeProject) -> None
     assert "the words of a test" in told
     project.write({"robot.py": ROBOT + DIES})
     code, told, errors = quiet("deploy", "--skip-tests")
-    assert (code, errors.startswith("error: the new program ended at once")) == (3, True)
+    assert (code, errors.startswith("error: the new program ended after ")) == (3, True)
     assert all(line.startswith("  | ") for line in told.splitlines())
     assert "RuntimeError: no such gyro" in told
     assert quiet("deploy", "--rollback") == (0, "", "")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import platform
 import signal
 import subprocess
@@ -14,14 +13,9 @@ from pathlib import Path
 import pytest
 from conftest import MakeProject, RobotProject
 from sim_robots import PATIENCE
-from virtual_display import VirtualDisplay, missing, virtual_display
+from virtual_display import VirtualDisplay, virtual_display
 
-from pyfrc_core.sim.interruption import ending_like_ctrl_c
-
-if "PYFRC_NO_SKIPS" not in os.environ:
-    pytest.importorskip("tkinter", reason="this Python has no tkinter")
-
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the display is a part of the system there")
+from pyfrc_core.interruption import ending_like_ctrl_c
 
 ROBOT = """
     import sys
@@ -69,8 +63,6 @@ def simulated(project: RobotProject, display: VirtualDisplay) -> Iterator[tuple[
 @pytest.fixture
 def screen() -> Iterator[VirtualDisplay]:
     """A display of the test's own, which it may end."""
-    if absent := missing():
-        pytest.skip(f"the window is tested on a virtual display: install {' and '.join(absent)}")
     with virtual_display() as screen:
         yield screen
 
@@ -90,8 +82,6 @@ def files_written(project: RobotProject, output: str) -> None:
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="only the GNU C library calls Python")
 def test_the_display_vanishes(make_project: MakeProject) -> None:
     """Xlib ends the process by C's `exit`."""
-    if absent := missing():
-        pytest.skip(f"the window is tested on a virtual display: install {' and '.join(absent)}")
     project = make_project({"robot.py": ROBOT})
     with virtual_display() as screen, simulated(project, screen) as (running, shown):
         screen.end()

@@ -17,10 +17,10 @@ import pytest
 from conftest import RobotProject
 from sim_robots import FILES, PATIENCE, wait
 
+from pyfrc_core.interruption import ending_like_ctrl_c
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.interruption import ending_like_ctrl_c
 
 SIGNALS = [
     pytest.param(name, marks=pytest.mark.skipif(not hasattr(signal, name), reason="this system has no such signal"))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 import socket
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Iterator
 from dataclasses import FrozenInstanceError, replace
 
@@ -345,6 +347,22 @@ def test_new_code_is_brought_to_the_same_moment(simulation: Simulation, project:
     assert simulation.snapshot.scene.robot == pytest.approx(before.scene.robot)
 
 
+def test_a_file_that_is_saved_twice_in_a_second(simulation: Simulation, project: Project) -> None:
+    """Python would take the first one's compiled form for the second's: time, in seconds, and size are the same."""
+    robot = project.root / "robot.py"
+    text = robot.read_text()
+    second = int(time.time()) * 1_000_000_000
+    reached = []
+    for speed in ("0.5", "1.0"):
+        robot.write_text(text.replace("SPEED = 1.0", f"SPEED = {speed}"))
+        os.utime(robot, ns=(second, second))
+        simulation.restart()
+        drive_forward(simulation)
+        run(simulation, 2)
+        reached.append(simulation.snapshot.scene.robot.x)
+    assert reached[1] > reached[0] + 1
+
+
 def test_new_code_gets_what_was_commanded_in_a_pause(simulation: Simulation) -> None:
     run(simulation, 0.1)
     drive_forward(simulation)
@@ -400,6 +418,7 @@ def test_a_long_name_of_the_temporary_directory(project: Project, tmp_path, monk
 @pytest.mark.parametrize(
     "fork", [False, pytest.param(True, marks=pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork"))]
 )
+@pytest.mark.usefixtures("cold_hosts")
 def test_closed_right_after_the_start(fork: bool, project: Project, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[subprocess.Popen[bytes]] = []
 

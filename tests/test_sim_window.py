@@ -18,17 +18,18 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from conftest import MakeProject, RobotProject
-from virtual_display import VirtualDisplay, missing, virtual_display
+from skips import missing_tkinter
+from virtual_display import VirtualDisplay, require_window, virtual_display
 
-if "PYFRC_NO_SKIPS" not in os.environ:
-    pytest.importorskip("tkinter", reason="this Python has no tkinter")
+if missing_tkinter():  # some imports below need it
+    require_window()
 
 from pyfrc_core.errors import SettingsError, UsageError
+from pyfrc_core.interruption import ending_like_ctrl_c
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.interruption import ending_like_ctrl_c
 from pyfrc_core.sim.scene import Tag, Target
 from pyfrc_core.sim.snapshot import Chooser, Failure
 from pyfrc_core.sim.ui.choose import default_name, window
@@ -125,8 +126,6 @@ ROBOT = {
 # Tk keeps a display that it has seen, and ends the process when that goes: it stays as long as the process.
 @pytest.fixture(scope="session")
 def display() -> Iterator[VirtualDisplay]:
-    if absent := missing():
-        pytest.skip(f"the window is tested on a virtual display: install {' and '.join(absent)}")
     with virtual_display() as display:
         yield display
 

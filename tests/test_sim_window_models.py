@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import replace
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from skips import missing_tkinter, require
+from virtual_display import WINDOW
 
-if "PYFRC_NO_SKIPS" not in os.environ:
-    pytest.importorskip("tkinter", reason="this Python has no tkinter")
+if missing_tkinter():  # some imports below need it
+    require(WINDOW, missing_tkinter())
 
 from pyfrc_core.config.sim import SimConfig
 from pyfrc_core.physics.pose import Pose
@@ -429,7 +430,7 @@ def test_gamepads_go_where_the_user_says() -> None:
     second.reading = Reading((0.3, 0.0))
     router.poll()
     assert told.calls == [("set_axis", 0, 0, 0.3)]
-    assert "pyfrc[gamepads]" in HINT
+    assert "pyfrc[gamepads]>=2026.1" in HINT
 
 
 def test_hats() -> None:

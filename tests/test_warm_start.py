@@ -74,6 +74,7 @@ WORDS = {
     "sim": ["--ui", "none", "--mode", "auto", "--seconds", "0.5", "--record", "auto.jsonl"],
     "test": ["--trace", "traces", "--", "-v"],
     "undeploy": ["--yes", "--robot", "127.0.0.1:1"],
+    "virtual-robot": ["--directory", "disk", "--", "echo"],
 }
 
 #: What may be measured, and so differ from run to run: numbers, and lines that are drawn to their width.

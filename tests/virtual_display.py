@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-#: What it takes: Debian's packages xvfb and xdotool.
-PROGRAMS = ("Xvfb", "xdotool")
+from skips import missing_programs, missing_tkinter, require
+
+#: What the tests of the window are about.
+WINDOW = "the simulator's window"
 
 
-def missing() -> list[str]:
-    """The programs that are not here."""
-    return [program for program in PROGRAMS if shutil.which(program) is None]
+def require_window() -> None:
+    """Skip the test, or at the top of a module all of its tests, where no window can be tested."""
+    if sys.platform != "linux":
+        require(WINDOW, ["Linux"])  # elsewhere, Tk draws on no X server
+    require(WINDOW, [*missing_programs("Xvfb", "xdotool"), *missing_tkinter()])
 
 
 class VirtualDisplay:
@@ -44,7 +48,11 @@ class VirtualDisplay:
 
 @contextmanager
 def virtual_display(width: int = 1366, height: int = 768, dpi: int = 96) -> Iterator[VirtualDisplay]:
-    """A display of its own number, which the server chooses: others may be made at the same time."""
+    """A display of its own number, which the server chooses: others may be made at the same time.
+
+    Where there can be none, the test that asks for it is skipped.
+    """
+    require_window()
     read, write = os.pipe()
     command = ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{width}x{height}x24", "-dpi", str(dpi)]
     server = subprocess.Popen(

@@ -23,13 +23,13 @@ import types
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 #: Whether commands can start warm here: where Linux tells of the end of a process by a descriptor.
 POSSIBLE = hasattr(os, "pidfd_open") and "PYFRC_COLD_STARTS" not in os.environ
 
 #: What a new interpreter reads, and a fork does not.
-_READ_AT_START = ("PYTHON", "LC_", "LANG", "LD_", "COVERAGE_")
+READ_AT_START = ("PYTHON", "LC_", "LANG", "LD_", "COVERAGE_")
 
 #: What most commands import, sooner or later; but nothing that takes a name that measuring has to replace before
 #: (`exit_now`, in `pyfrc_core.fuzz.forked_work` and `pyfrc_core.test_support.isolation`).
@@ -60,13 +60,15 @@ _IMPORTED = (
     "pyfrc_core.config.sim_file",
     "pyfrc_core.physics.engine",
     "pyfrc_core.deploy.session",
+    "pyfrc_core.sim.simulate",
+    "pyfrc_core.sim.ui.headless",
 )
 
 #: Whatever robot code's is made to do.
 _exit_now = os._exit
 
 #: A message is one packet: more bytes than any has.
-_LARGEST = 1 << 17
+LARGEST = 1 << 17
 
 
 class WarmStarts:
@@ -88,7 +90,7 @@ class WarmStarts:
             )
         atexit.register(process.communicate)
         atexit.register(self._server.close)  # comes first, and ends the process
-        imported = self._server.recv(_LARGEST)
+        imported = self._server.recv(LARGEST)
         if not imported:
             raise RuntimeError("what commands import cannot be imported: its traceback is on standard error")
         self._modules = frozenset(json.loads(imported))
@@ -96,18 +98,25 @@ class WarmStarts:
     def fit(self, directory: Path, environment: Mapping[str, str]) -> bool:
         """Whether in this directory a fork does the same as a new interpreter."""
         if any(
-            name.startswith(_READ_AT_START) and self._environment.get(name) != environment[name] for name in environment
+            name.startswith(READ_AT_START) and self._environment.get(name) != environment[name] for name in environment
         ):
             return False
         # The user's modules come before others of their names; here, the others are imported already.
         return not any(path.stem in self._modules for path in directory.rglob("*") if path.suffix in ("", ".py"))
 
     def run(
-        self, program: str, arguments: list[str], directory: Path, environment: Mapping[str, str], stdin: str | None
+        self,
+        program: str,
+        arguments: list[str],
+        directory: Path,
+        environment: Mapping[str, str],
+        stdin: str | None,
+        address: str | None = None,
     ) -> tuple[int, str, str]:
         """Run ``python -m program arguments``, and wait for its end.
 
         :param stdin: what fits into a pipe; None is no input at all
+        :param address: of `warm_processes.WarmProcesses`; without it, what the command starts are new interpreters
         :return: the exit code (a signal's number, negative), and what was printed, on standard output and of errors
         """
         (out, their_out), (err, their_err) = os.pipe(), os.pipe()
@@ -118,7 +127,7 @@ class WarmStarts:
             with os.fdopen(told, "w", encoding="utf-8") as file:
                 file.write(stdin)
         word, their_word = socket.socketpair()
-        job = json.dumps([program, arguments, str(directory), dict(environment)]).encode()
+        job = json.dumps([program, arguments, str(directory), dict(environment), address]).encode()
         streams = (their_in, their_out, their_err)
         with their_word:
             socket.send_fds(self._server, [job], [their_word.fileno(), *streams])
@@ -132,13 +141,13 @@ class WarmStarts:
         ):
             errors = beside.submit(stderr.read)
             printed = stdout.read()
-            return int(word.recv(_LARGEST)), printed, errors.result()
+            return int(word.recv(LARGEST)), printed, errors.result()
 
 
 class _Job(NamedTuple):
     """A command to become: what `WarmStarts.run` was given, and descriptors of its three streams."""
 
-    given: tuple[str, list[str], str, dict[str, str]]
+    given: tuple[str, list[str], str, dict[str, str], str | None]
     streams: list[int]
 
 
@@ -148,7 +157,7 @@ def _serve(server: socket.socket) -> _Job | None:
     :return: in a fork, its job; otherwise None, when there are no more
     """
     while True:
-        message, descriptors, _, _ = socket.recv_fds(server, _LARGEST, 4)
+        message, descriptors, _, _ = socket.recv_fds(server, LARGEST, 4)
         if not message:
             return None
         with socket.socket(fileno=descriptors[0]) as word:
@@ -171,7 +180,11 @@ def _become(job: _Job) -> None:
     for target, descriptor in enumerate(job.streams):
         os.dup2(descriptor, target)
         os.close(descriptor)
-    program, arguments, directory, environment = job.given
+    program, arguments, directory, environment, address = job.given
+    if address is not None:
+        import warm_processes
+
+        warm_processes.start_warm(lambda: address)
     os.chdir(directory)
     os.environ.clear()
     os.environ.update(environment)
@@ -186,7 +199,11 @@ def _become(job: _Job) -> None:
         if not isinstance(end.code, int):
             raise
         code = end.code
-    # As Python ends, but for taking apart all that was imported, which would take 30 ms.
+    end_like_python(code)
+
+
+def end_like_python(code: int) -> NoReturn:
+    """End this process as Python does, but for taking apart all that was imported, which would take 30 ms."""
     threading._shutdown()  # type: ignore[attr-defined]
     atexit._run_exitfuncs()
     sys.stdout.flush()
@@ -202,6 +219,8 @@ def _fix_the_seed() -> None:
 def main() -> None:
     """The process that forks."""
     server = socket.socket(fileno=int(sys.argv[1]))
+    import warm_processes  # noqa: F401 - not to be found without the path's first entry
+
     del sys.path[0]
     interrupted = signal.signal(signal.SIGINT, signal.SIG_IGN)
     for name in _IMPORTED:

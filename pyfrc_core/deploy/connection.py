@@ -7,26 +7,31 @@ import logging
 import socket
 import sys
 import threading
+from collections.abc import Callable
+from functools import partial
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from .credentials import NONE_OFFERED, Credentials
 from .discovery import CONNECT_SECONDS, Address
-from .errors import ConnectionFailedError
-from .host_keys import HostKey, HostKeys
+from .errors import ConnectionFailedError, DeployError
+from .host_keys import HostKey, Recognized, RobotKeys
 
 if TYPE_CHECKING:
     import paramiko
 
 PROGRAM_USER = "lvuser"
 ADMINISTRATOR = "admin"
+#: With this begins the greeting of a virtual robot's SSH server.
+VIRTUAL_ROBOT_GREETING = "SSH-2.0-pyfrc_virtual_robot"
 
 #: Seconds for each step of the way in: a roboRIO takes some for the first key exchange after its start.
 _STEP_SECONDS = 15.0
 #: Seconds between signs of life, and until a link without any counts as lost.
 _ALIVE_SECONDS = 5
 _LOST_SECONDS = 20
-#: An SSH server gives up after about so many keys.
-_MOST_KEYS = 5
+#: Bytes that a command of ours prints at most.
+_MOST_PRINTED = 100_000
 
 _CHECK_LINK = "Check the link (radio, cable, power of the robot) and run the command again."
 
@@ -53,13 +58,48 @@ class Connection:
     """An SSH connection, open until `close`.
 
     :param transport: authenticated
+    :param key: the robot's
+    :param recognized: what is known of the key
     """
 
-    def __init__(self, transport: paramiko.Transport, address: Address, new_key: HostKey | None) -> None:
+    def __init__(
+        self,
+        transport: paramiko.Transport,
+        address: Address,
+        key: HostKey,
+        recognized: Recognized,
+        again: Callable[[str], Connection],
+    ) -> None:
         self._transport = transport
+        self._again = again
         self.address = address
-        #: The robot's key, where the project has seen it for the first time.
-        self.new_key = new_key
+        self.key = key
+        self.recognized = recognized
+
+    def as_user(self, user: str) -> Connection:
+        """Connect to the same robot once more, as another user.
+
+        :raises HostKeyError: when another robot is at the address now
+        :raises ConnectionFailedError: when it does not let that user in
+        """
+        return self._again(user)
+
+    def administer(self, command: str) -> str | None:
+        """Run a command as the administrator, over a connection of its own.
+
+        :return: what went wrong; none: nothing
+        """
+        try:
+            with self.as_user(ADMINISTRATOR) as administrator:
+                status, printed = administrator.run(command)
+        except (DeployError, OSError) as error:
+            return str(error)
+        return None if status == 0 else printed.strip() or f"exit code {status}"
+
+    @property
+    def is_virtual_robot(self) -> bool:
+        """Whether its greeting says that it is one of ours."""
+        return str(self._transport.remote_version).startswith(VIRTUAL_ROBOT_GREETING)
 
     @property
     def host(self) -> str:
@@ -89,9 +129,10 @@ class Connection:
             channel.set_combine_stderr(True)
             printed = bytearray()
             try:
-                while data := channel.recv(65536):
+                while len(printed) < _MOST_PRINTED and (data := channel.recv(65536)):
                     printed += data
-                return channel.recv_exit_status(), printed.decode(errors="replace")
+                known = channel.status_event.wait(_LOST_SECONDS)
+                return channel.recv_exit_status() if known else -1, printed.decode(errors="replace")
             except (OSError, EOFError) as error:
                 raise link_lost(self.address, error) from error
 
@@ -109,17 +150,24 @@ class Connection:
 
 def connect(
     address: Address,
-    keys: HostKeys,
+    keys: RobotKeys,
     *,
     user: str = PROGRAM_USER,
     connected: socket.socket | None = None,
     accepted_key: str | None = None,
+    robot_name: str | None = None,
+    pin: bool = True,
+    credentials: Credentials = NONE_OFFERED,
 ) -> Connection:
-    """Connect, compare the robot's key, and log in.
+    """Connect, compare the robot's key, log in, and pin the key if it is new.
 
+    :param keys: that the robot may have
     :param connected: to the address already
     :param accepted_key: the fingerprint of a changed host key that the user accepts
-    :raises HostKeyError: when the robot's key is not the one that the project knows
+    :param robot_name: a name to be kept with the robot's key
+    :param pin: whether a key that is seen for the first time is pinned
+    :param credentials: the user's own keys, offered to a robot that wants one
+    :raises HostKeyError: when the robot's key is not one that it may have
     :raises ConnectionFailedError: when it does not let us in
     """
     import paramiko
@@ -134,15 +182,23 @@ def connect(
     _suit_a_radio(connected)
     transport = paramiko.Transport(connected)
     try:
-        new_key = _greet(transport, address, keys, accepted_key)
-        _log_in(transport, address, user)
+        key = _greet(transport, keys)
+        keys.check(key, accepted_key, robot_name, pin=False)
+        _log_in(transport, address, user, credentials)
+        # Only now: a stranger's server at a robot's address does not let us in, and its key must not become the team's.
+        recognized = keys.check(key, accepted_key, robot_name, pin)
     except BaseException as error:
         transport.close()
         if isinstance(error, (paramiko.SSHException, OSError, EOFError)):
             raise _not_let_in(address, error) from error
         raise
     transport.set_keepalive(_ALIVE_SECONDS)
-    return Connection(transport, address, new_key)
+    again = partial(_connect_again, address, keys, key, credentials)
+    return Connection(transport, address, key, recognized, again)
+
+
+def _connect_again(address: Address, keys: RobotKeys, key: HostKey, credentials: Credentials, user: str) -> Connection:
+    return connect(address, keys, user=user, accepted_key=key.fingerprint, pin=False, credentials=credentials)
 
 
 def _suit_a_radio(connected: socket.socket) -> None:
@@ -151,24 +207,23 @@ def _suit_a_radio(connected: socket.socket) -> None:
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _LOST_SECONDS * 1000)
 
 
-def _greet(transport: paramiko.Transport, address: Address, keys: HostKeys, accepted_key: str | None) -> HostKey | None:
-    """Agree on encryption; answer the server's key where it is new."""
+def _greet(transport: paramiko.Transport, keys: RobotKeys) -> HostKey:
+    """Agree on encryption; return the server's key."""
     transport.banner_timeout = transport.handshake_timeout = transport.auth_timeout = _STEP_SECONDS
     options = transport.get_security_options()
-    pinned = {key.kind for key in keys.known(address)}
+    pinned = {known.key.kind for known in keys.known()}
     # The server has keys of several kinds: asked for one that is pinned, it shows that.
     options.key_types = sorted(options.key_types, key=lambda kind: _kind_of_key(kind) not in pinned)
     transport.start_client(timeout=_STEP_SECONDS)
     shown = transport.get_remote_server_key()
-    key = HostKey(shown.get_name(), shown.asbytes())
-    return key if keys.check(address, key, accepted_key) else None
+    return HostKey(shown.get_name(), shown.asbytes())
 
 
 def _kind_of_key(algorithm: str) -> str:
     return "ssh-rsa" if algorithm.startswith("rsa-sha2-") else algorithm
 
 
-def _log_in(transport: paramiko.Transport, address: Address, user: str) -> None:
+def _log_in(transport: paramiko.Transport, address: Address, user: str, credentials: Credentials) -> None:
     import paramiko
 
     try:
@@ -183,37 +238,36 @@ def _log_in(transport: paramiko.Transport, address: Address, user: str) -> None:
             return
     offered = 0
     if "publickey" in allowed:
-        for key in paramiko.Agent().get_keys()[:_MOST_KEYS]:
+        for key in credentials.load():
             offered += 1
             with contextlib.suppress(paramiko.AuthenticationException):
                 transport.auth_publickey(user, key)
                 return
-    raise _refused(address, user, allowed, offered)
+    raise _refused(address, user, allowed, offered, credentials)
 
 
-def _refused(address: Address, user: str, allowed: Any, offered: int) -> ConnectionFailedError:
-    if "password" in allowed:
-        return ConnectionFailedError(
-            f"the robot refuses {user} with an empty password, which robots come with",
-            where=str(address),
-            remedy=f"Somebody has set one. Take it away as admin, on the robot: passwd -d {user}; or image the robot "
-            "anew. Or is this another computer than the robot? Name the robot with --robot HOST.",
-        )
+def _refused(
+    address: Address, user: str, allowed: list[str], offered: int, credentials: Credentials
+) -> ConnectionFailedError:
     if offered:
-        what, remedy = f"{offered} of your SSH agent's keys", "Add the right one to your agent: ssh-add FILE"
+        what = f"the robot refuses {user} with {credentials.offered(offered)}"
+        remedy = "Offer the right key: --identity FILE, or ssh-add FILE and --ssh-agent."
+    elif "password" in allowed:
+        what = f"the robot refuses {user} with an empty password, which robots come with"
+        remedy = (
+            f"Remove the password that was set as admin, on the robot: passwd -d {user}; or image the robot again. Or "
+            "is this another computer than the robot? Name the robot with --robot HOST."
+        )
     else:
-        what, remedy = "there is none in your SSH agent", "Start an agent and add the robot's key to it: ssh-add FILE"
-    return ConnectionFailedError(
-        f"the robot lets {user} in only with a key, and refuses what was offered: {what}"
-        if offered
-        else f"the robot lets {user} in only with a key, and {what}",
-        where=str(address),
-        remedy=remedy,
-    )
+        what = f"the robot lets {user} in only with a key, and {credentials.offered(0)}"
+        remedy = "Offer a key of yours: --identity FILE; or ssh-add FILE and --ssh-agent."
+    return ConnectionFailedError(what, where=str(address), remedy=remedy)
 
 
 def _not_let_in(address: Address, error: BaseException) -> ConnectionFailedError:
-    what = str(error) or type(error).__name__
+    what = str(error)
+    if isinstance(error, EOFError) or what.startswith("Invalid packet"):
+        what = "it began as an SSH server does, and then closed the connection or sent something else"
     return ConnectionFailedError(f"could not log in to the robot: {what}", where=str(address), remedy=_CHECK_LINK)
 
 

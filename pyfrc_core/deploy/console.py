@@ -4,34 +4,136 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
+import re
+import socket
 import sys
 import time
-from pathlib import Path
+from collections.abc import Iterator
+
+from ..terminal_text import VisibleStream, visible
+from .agent.console import KEEP_ALIVE, PORTS
+from .connection import VIRTUAL_ROBOT_GREETING
+from .console_frames import ConsoleFrames, NonsenseError
+from .discovery import CONNECT_SECONDS, Address
+from .errors import NoConsoleError
+from .imitated_driver_station import TCP_PORT, imitated_driver_station
 
 _SECONDS_BETWEEN_TRIES = 1.0
+_KEEP_ALIVE_SECONDS = 2.0
+_WAKE_SECONDS = 0.5
+#: A connection that lasts this long is an ordinary one, although no line has come: its loss is reported again.
+_STABLE_SECONDS = 5.0
+#: Bytes.
+_MOST_AT_ONCE = 1 << 16
 
 
-def follow_console(host: str, without_driver_station: bool = False, quiet: bool = False) -> None:
+def console_port(address: Address) -> int | None:
+    """Return the port of the console that the SSH server's greeting names, as virtual robots' do; none: a robot's own.
+
+    :raises OSError: when the server cannot be reached
+    """
+    with socket.create_connection((address.host, address.port), timeout=CONNECT_SECONDS) as server:
+        server.settimeout(CONNECT_SECONDS)
+        with server.makefile("rb") as greeting:
+            named = re.match(
+                rb"%s console=([0-9]{1,5})\r\n" % re.escape(VIRTUAL_ROBOT_GREETING.encode()), greeting.readline(256)
+            )
+    return int(named[1]) if named and int(named[1]) < 65536 else None
+
+
+def follow_console(address: Address, without_driver_station: bool = False, quiet: bool = False) -> None:
     """Print what the robot program prints, until Ctrl-C; connect again whenever the robot goes away.
 
     :param without_driver_station: have the robot send it although no Driver Station is connected to it
-    :param quiet: do not tell of waiting and connecting
+    :param quiet: do not report waiting and connecting
+    :raises NoConsoleError: when something else than a robot's console listens there
     """
-    import netconsole  # type: ignore[import-untyped]
-
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(line_buffering=True)  # each line when it comes, into a pipe as well
-    waiting = False
-    with contextlib.ExitStack() as telling, contextlib.suppress(KeyboardInterrupt):
-        if quiet:  # that is all that it prints there
-            telling.enter_context(contextlib.redirect_stderr(telling.enter_context(Path(os.devnull).open("w"))))
+    output = VisibleStream(sys.stdout)
+    report = _Reports(quiet)
+    with contextlib.suppress(KeyboardInterrupt):
         while True:
-            try:
-                # It connects again by itself; only the Driver Station's part has to succeed at once.
-                netconsole.run(host, fakeds=without_driver_station)
-            except OSError as error:
-                if not waiting and not quiet:
-                    print(f"waiting for {host} ({error.strerror or error})")
-                waiting = True
-                time.sleep(_SECONDS_BETWEEN_TRIES)
+            for line in _lines_of_one_connection(address, without_driver_station, report):
+                output.write(f"{line}\n")
+            time.sleep(_SECONDS_BETWEEN_TRIES)
+
+
+class _Reports:
+    """Reports of the connection on standard error, each once until the robot has sent a line or stayed connected."""
+
+    def __init__(self, quiet: bool) -> None:
+        self._quiet = quiet
+        self._made: set[str] = set()
+
+    def __call__(self, kind: str, text: str) -> None:
+        if not self._quiet and kind not in self._made:
+            print(visible(text), file=sys.stderr, flush=True)
+        self._made.add(kind)
+
+    def reset(self) -> None:
+        """Make each report again when it is due."""
+        self._made.clear()
+
+
+def _lines_of_one_connection(address: Address, without_driver_station: bool, report: _Reports) -> Iterator[str]:
+    """Yield the lines of one connection until it is lost. What the caller does with them raises no errors here."""
+    where = address
+    with contextlib.ExitStack() as open_now:
+        try:
+            port = None if address.port == 22 else console_port(address)
+            if port is None and without_driver_station:
+                where = Address(address.host, TCP_PORT)
+                open_now.enter_context(imitated_driver_station(address.host))
+            where = Address(address.host, port or PORTS[0])
+            console = open_now.enter_context(
+                socket.create_connection((where.host, where.port), timeout=CONNECT_SECONDS)
+            )
+            console.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        except ConnectionRefusedError:
+            report("refused", f"nothing listens at {where}: is it a robot, and is it on?")
+            return
+        except OSError as error:
+            why = error.strerror or error
+            report(
+                "unreachable", f"{where} cannot be reached ({why}): is the robot on, and this computer connected to it?"
+            )
+            return
+        report("connected", f"connected to {where}")
+        frames = ConsoleFrames()
+        try:
+            for received in _pieces(console, frames, report):
+                for line in frames.lines(received):
+                    yield line
+                    report.reset()
+        except NonsenseError as error:
+            raise NoConsoleError(
+                f"what listens there is not a robot's console: {error}",
+                where=str(where),
+                remedy="Check the address; --robot HOST names another.",
+            ) from error
+        report("lost", f"the connection was lost; connecting to {where} again")
+
+
+def _pieces(console: socket.socket, frames: ConsoleFrames, report: _Reports) -> Iterator[bytes]:
+    """Yield what the console sends, until the connection is lost, and keep the connection alive."""
+    console.settimeout(_WAKE_SECONDS)  # on Windows, Ctrl-C does not interrupt waiting for a socket
+    connected = kept_alive = time.monotonic()
+    while True:
+        received = None
+        try:
+            with contextlib.suppress(TimeoutError):
+                received = console.recv(_MOST_AT_ONCE)
+            now = time.monotonic()
+            if now - kept_alive >= _KEEP_ALIVE_SECONDS:
+                kept_alive = now
+                frames.rest()
+                console.sendall(KEEP_ALIVE)
+        except OSError:
+            return
+        if received == b"":
+            return
+        if now - connected >= _STABLE_SECONDS:
+            report.reset()
+        if received is not None:
+            yield received

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ipaddress
 import json
 import queue
 import re
@@ -26,6 +27,9 @@ CONNECT_SECONDS = 5.0
 RESOLVE_SECONDS = 5.0
 #: Seconds that the Driver Station gets to answer; Windows takes long to say that nobody listens.
 DRIVER_STATION_SECONDS = 1.0
+
+#: The highest team number: 10.TE.AM.2 has room for no more.
+MOST_TEAM = 25_599
 
 #: A robot's at the other end of a USB cable, whoever's it is.
 USB_CABLE = "172.22.11.2"
@@ -80,9 +84,9 @@ class Found:
 
 
 def parse_address(text: str) -> Address:
-    """``HOST``, ``HOST:PORT``, ``[IPV6]:PORT``.
+    """Return the address in ``HOST``, ``HOST:PORT`` or ``[IPV6]:PORT``; a numeric one in its one normal form.
 
-    :raises UsageError: when it is neither
+    :raises UsageError: when it is neither, or a number in a form that systems read in different ways
     """
     host, port = text.strip(), ""
     if host.startswith("["):
@@ -90,9 +94,37 @@ def parse_address(text: str) -> Address:
         port = port.removeprefix(":")
     elif host.count(":") == 1:
         host, _, port = host.partition(":")
-    if not re.fullmatch(r"[^\s/@\[\]]+", host) or (port and not (port.isdecimal() and 1 <= int(port) <= 65535)):
+    # No other characters: some of them are digits or dots for the system that looks names up.
+    if not re.fullmatch(r"[A-Za-z0-9_.:%-]+", host) or (port and not (port.isdecimal() and 1 <= int(port) <= 65535)):
         raise UsageError(f"{text!r} is no address of a robot", remedy="Write HOST or HOST:PORT, as in 10.12.34.2")
-    return Address(host, int(port or 22))
+    return Address(_normal(host.removesuffix(".")), int(port or 22))
+
+
+def _normal(host: str) -> str:
+    """Return the host as keys are pinned for it: another spelling must not be another robot."""
+    try:
+        number = ipaddress.ip_address(host)
+    except ValueError:
+        if re.fullmatch(r"(0x[0-9a-f]*|[0-9]+)(\.(0x[0-9a-f]*|[0-9]+))*", host, re.IGNORECASE):
+            raise UsageError(f"{host!r} is not how an address is written", remedy=_right_spelling(host)) from None
+        return host
+    return str(getattr(number, "ipv4_mapped", None) or number)
+
+
+def _right_spelling(host: str) -> str:
+    if host.isdecimal() and len(host) <= 5 and 1 <= int(host) <= MOST_TEAM:
+        return f"For a team's robot, write --team {int(host)}; for an address, four numbers, as in 10.12.34.2"
+    try:
+        # Zeros before a number make it octal for some systems; people who write them mean decimal numbers.
+        decimal = re.fullmatch(r"[0-9]{1,3}(\.[0-9]{1,3}){3}", host)
+        plain = ".".join(str(int(part)) for part in host.split(".")) if decimal else _dotted(host)
+        return f"Write {ipaddress.ip_address(plain)}"
+    except (OSError, ValueError):
+        return "Write four numbers from 0 to 255, as in 10.12.34.2"
+
+
+def _dotted(host: str) -> str:
+    return socket.inet_ntoa(socket.inet_aton(host))
 
 
 def addresses_of(team: int, resolve: bool = True) -> list[tuple[Address, str]]:
@@ -110,6 +142,21 @@ def addresses_of(team: int, resolve: bool = True) -> list[tuple[Address, str]]:
         (Address(f"{name}.frc-field.local"), "name, on a field"),
     ]
     return [(address, kind) for address, kind in every if resolve or not address.is_name]
+
+
+def team_of(address: Address) -> int | None:
+    """Return the team among whose addresses this one is; none: no team's, or each team's (the USB cable)."""
+    if address.port != 22:
+        return None
+    if named := re.fullmatch(
+        r"roborio-([0-9]{1,5})-frc(?:\.local|\.lan|\.frc-field\.local)?", address.host, re.IGNORECASE
+    ):
+        team = int(named[1])
+    elif numbers := re.fullmatch(r"10\.([0-9]{1,3})\.([0-9]{1,2})\.2", address.host):
+        team = int(numbers[1]) * 100 + int(numbers[2])
+    else:
+        return None
+    return team if 1 <= team <= MOST_TEAM else None
 
 
 def find_robot(
@@ -153,12 +200,18 @@ def not_found(whose: str, tried: Sequence[Tried]) -> RobotNotFoundError:
     )
     named = len(tried) == 1 and str(tried[0].address) == whose
     which = "address?" if named else "team? (--team NUMBER; or name the robot's address with --robot HOST)"
-    error = RobotNotFoundError(
-        f"no robot found for {whose}; tried:{table}",
-        remedy=f"Is the robot on, and this computer on its network or at its USB cable? Is that the right {which}",
-    )
+    remedy = f"Is the robot on, and this computer on its network or at its USB cable? Is that the right {which}"
+    if named and _is_this_computer(tried[0].address.host):
+        remedy = "Is that the right address? Start a virtual robot in another terminal: pyfrc virtual-robot"
+    else:
+        remedy += " To try without a robot: pyfrc virtual-robot"
+    error = RobotNotFoundError(f"no robot found for {whose}; tried:{table}", remedy=remedy)
     error.tried = tuple(tried)
     return error
+
+
+def _is_this_computer(host: str) -> bool:
+    return host in ("localhost", "::1") or re.fullmatch(r"127(?:\.[0-9]{1,3}){3}", host) is not None
 
 
 def _row(tried: Tried) -> tuple[str, str, str]:
@@ -248,7 +301,7 @@ class _Race:
             banner = connected.recv(len(_BANNER), socket.MSG_PEEK)
         except OSError as error:
             connected.close()
-            return Tried(address, kind, _why(error))
+            return Tried(address, kind, _why(error, address.host))
         if banner and _BANNER.startswith(banner):
             return Found(address, kind, connected)
         connected.close()
@@ -263,18 +316,20 @@ class _Race:
                     said = json.loads(lines.readline(10_000))
             self.on_field = said.get("FMS Connected") is True
             robot = said.get("robotIP")
-            if take_its_robot and isinstance(robot, int) and 0 < robot < 1 << 32:
+            if take_its_robot and type(robot) is int and 0 < robot < 1 << 32:
                 address = Address(socket.inet_ntoa(struct.pack("!I", robot)))
                 following = [partial(self.enter, address, "the Driver Station's robot")]
-        except (OSError, ValueError, AttributeError):
+        except (OSError, ValueError, AttributeError, RecursionError):
             pass  # mostly there is none on this computer
         self._station_answered = True
         return following
 
 
-def _why(error: OSError) -> str:
+def _why(error: OSError, host: str) -> str:
     if isinstance(error, TimeoutError):
         return f"no answer within {CONNECT_SECONDS:g} s"
+    if isinstance(error, ConnectionRefusedError) and _is_this_computer(host):
+        return "refused: no virtual robot runs there"
     if isinstance(error, ConnectionRefusedError):
         return "refused: a computer is there, but no SSH server"
     if isinstance(error, ConnectionError):

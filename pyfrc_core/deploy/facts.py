@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
+
+from ..terminal_text import one_line
+from .agent import watching
+
+if TYPE_CHECKING:
+    from .answers import Fields
+
+_TRACEBACK = re.compile(r"^Traceback \(most recent call last\):\n(?:[ \t].*\n|\n)*(?P<error>\S.*\n?)?", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -20,6 +27,8 @@ class Release:
     :param files:       how many it came with
     :param previous:    the release it has replaced
     :param deploy_json: who has deployed it, when, from where
+    :param ran:         whether a watch has seen it run, at any of its starts
+    :param ended:       whether it ended at the last of its starts that was watched
     """
 
     number: int
@@ -29,18 +38,22 @@ class Release:
     files: int
     previous: int | None
     deploy_json: Mapping[str, str]
+    ran: bool = False
+    ended: bool = False
 
     @classmethod
-    def of(cls, told: Mapping[str, Any]) -> Release:
-        """From what the agent tells."""
+    def of(cls, fields: Fields) -> Release:
+        """From what the agent sends."""
         return cls(
-            number=int(told["release"]),
-            taken=bool(told["taken"]),
-            main=told["main"],
-            debug=bool(told["debug"]),
-            files=int(told["files"]),
-            previous=told["from"],
-            deploy_json=_texts(told["deploy"]),
+            number=fields.count("release"),
+            taken=fields.flag("taken"),
+            main=fields.line_or_none("main"),
+            debug=bool(fields.flag_or_none("debug")),
+            files=fields.count("files"),
+            previous=fields.count_or_none("from"),
+            deploy_json=fields.record("deploy"),
+            ran=fields.flag("ran"),
+            ended=fields.flag("ended"),
         )
 
 
@@ -62,6 +75,12 @@ class RobotFacts:
     :param command:      the line that starts the program at boot; none: nothing is started
     :param debug:        whether the program is started for debugging
     :param running:      whether a program runs
+    :param packages:     the versions of what is installed for its Python, by normalized names
+    :param missing_modules: of the modules that were asked for, those that its Python cannot find
+    :param extension_suffixes: with which the names of its Python's extension modules end
+    :param machine:      its processor
+    :param other_languages: files and directories of programs in Java and C++
+    :param program_age:  seconds for which the program has run; none: not known, or no program runs
     """
 
     not_roborio: str | None
@@ -78,36 +97,45 @@ class RobotFacts:
     command: str | None
     debug: bool
     running: bool
+    packages: Mapping[str, str]
+    missing_modules: tuple[str, ...]
+    extension_suffixes: tuple[str, ...]
+    machine: str
+    other_languages: tuple[str, ...]
+    program_age: float | None = None
 
     @classmethod
-    def of(cls, told: Mapping[str, Any]) -> RobotFacts:
-        """From what the agent tells."""
+    def of(cls, fields: Fields) -> RobotFacts:
+        """From what the agent sends."""
+        image = fields.line_or_none("image")
         why = None
-        if told["image"] is None:
+        if image is None:
             why = "there is no roboRIO image on it"
-        elif not told["home"]:
+        elif not fields.flag("home"):
             why = "there is no /home/lvuser on it"
-        elif not told["kill_script"]:
+        elif not fields.flag("kill_script"):
             why = "there is no frcKillRobot.sh on it"
-        try:
-            deploy_json = _texts(json.loads(told["deploy_json"] or "{}"))
-        except ValueError:
-            deploy_json = {}
         return cls(
             not_roborio=why,
-            python=told["python"],
-            wpilib=told["wpilib"],
-            image=told["image"],
-            startup_dlls=told["startup_dlls"],
-            free_bytes=told["free"],
-            user=told["user"],
-            current=told["current"],
-            releases=tuple(map(Release.of, told["releases"])),
-            other_code=told["other_code"],
-            deploy_json=deploy_json,
-            command=told["command"],
-            debug=told["debug"],
-            running=told["running"],
+            python=fields.line("python"),
+            wpilib=fields.line_or_none("wpilib"),
+            image=image,
+            startup_dlls=fields.flag("startup_dlls"),
+            free_bytes=fields.count("free"),
+            user=fields.line("user"),
+            current=fields.count_or_none("current"),
+            releases=tuple(map(Release.of, fields.objects("releases"))),
+            other_code=fields.flag("other_code"),
+            deploy_json=fields.record_in_text("deploy_json"),
+            command=fields.text_or_none("command"),
+            debug=fields.flag("debug"),
+            running=fields.flag("running"),
+            packages=fields.record("packages"),
+            missing_modules=tuple(map(one_line, fields.texts("missing_modules"))),
+            extension_suffixes=tuple(map(one_line, fields.texts("extension_suffixes"))),
+            machine=fields.line("machine"),
+            other_languages=tuple(map(one_line, fields.texts("other_languages"))),
+            program_age=fields.seconds_or_none("program_age"),
         )
 
 
@@ -121,6 +149,12 @@ class Plan:
     files_to_send: int
     bytes_to_send: int
 
+    @classmethod
+    def of(cls, fields: Fields) -> Plan:
+        """From what the agent sends."""
+        added, changed, removed = (fields.texts(key) for key in ("added", "changed", "removed"))
+        return cls(added, changed, removed, fields.count("files"), fields.count("bytes"))
+
 
 @dataclass(frozen=True)
 class DeployRequest:
@@ -130,12 +164,14 @@ class DeployRequest:
     :param deploy_json: what is kept with it
     :param debug:       whether the robot is to start it for debugging
     :param in_place:    overwrite the files of the program that is there, delete none
+    :param program:     the files that are imported when it starts: the robot's Python has to be able to compile them
     """
 
     main: str
     deploy_json: Mapping[str, str]
     debug: bool = False
     in_place: bool = False
+    program: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -144,6 +180,7 @@ class Deployed:
 
     :param release:    the number of the release that is current now; none: another tool's directory, in place
     :param previous:   the one that was before it
+    :param fallback:   the one that a rollback goes back to: the one before, or the newest that was seen to run
     :param taken:      the release as which another tool's directory was kept
     :param unchanged:  whether the same files were there already
     :param files_sent: whose contents the robot had not
@@ -152,10 +189,24 @@ class Deployed:
 
     release: int | None
     previous: int | None
+    fallback: int | None
     taken: int | None
     unchanged: bool
     files_sent: int
     bytes_sent: int
+
+    @classmethod
+    def of(cls, fields: Fields) -> Deployed:
+        """From what the agent sends."""
+        return cls(
+            release=fields.count_or_none("release"),
+            previous=fields.count_or_none("previous"),
+            fallback=fields.count_or_none("fallback"),
+            taken=fields.count_or_none("taken"),
+            unchanged=fields.flag("unchanged"),
+            files_sent=fields.count("files"),
+            bytes_sent=fields.count("bytes"),
+        )
 
 
 @dataclass(frozen=True)
@@ -170,28 +221,78 @@ class RolledBack:
     previous: int | None
     changed: tuple[str, ...]
 
+    @classmethod
+    def of(cls, fields: Fields) -> RolledBack:
+        """From what the agent sends."""
+        return cls(Release.of(fields.object("about")), fields.count_or_none("previous"), fields.texts("changed"))
+
+
+@dataclass(frozen=True)
+class StartState:
+    """What is seen of a program while it starts.
+
+    :param seconds:        since its start
+    :param age:            seconds for which its process has been seen; 0 without one
+    :param lived:          the same of the process that has ended
+    :param heard:          whether anything that it has printed has arrived
+    :param seen:           whether it ever had a process
+    :param cpu:            processor time that its process has used, in seconds; none: unknown
+    :param network_tables: whether its NetworkTables server listens, which WPILib starts after the imports and before
+        ``robotInit``; none: unknown
+    """
+
+    seconds: float = 0.0
+    age: float = 0.0
+    lived: float = 0.0
+    heard: bool = False
+    seen: bool = False
+    cpu: float | None = None
+    network_tables: bool | None = None
+
+    @classmethod
+    def of(cls, fields: Fields) -> StartState:
+        """From what the agent sends."""
+        return cls(
+            seconds=fields.seconds("seconds"),
+            age=fields.seconds("age"),
+            lived=fields.seconds("lived") if "lived" in fields else 0.0,
+            heard=fields.flag("heard"),
+            seen=fields.flag("seen"),
+            cpu=fields.seconds_or_none("cpu") if "cpu" in fields else None,
+            network_tables=fields.flag_or_none("network_tables") if "network_tables" in fields else None,
+        )
+
 
 @dataclass(frozen=True)
 class Watched:
-    """How a program that was started is doing.
+    """What came of watching a program that was started.
 
-    :param alive:   whether it ran at the end
-    :param started: whether it has said that it has started
-    :param output:  what it has printed; nothing, where the robot's console tells nothing
+    :param verdict: ``running``, ``ended``, ``starting`` (still, at the end of the watch) or ``unheard``: its process
+        lives, and its console is silent
+    :param output:  the end of what it has printed; nothing, where the robot's console is silent
+    :param state:   how it was at the end
     """
 
-    alive: bool
-    started: bool
+    verdict: str
     output: str
+    state: StartState = StartState()
+
+    @property
+    def alive(self) -> bool:
+        """Whether its process lived at the end."""
+        return self.verdict != watching.ENDED
+
+    @property
+    def started(self) -> bool:
+        """Whether it has reported that it has started, and lived on."""
+        return self.verdict == watching.RUNNING
 
     @property
     def traceback(self) -> str | None:
-        """The last traceback in its output, with the error's line."""
-        found = re.findall(
-            r"^Traceback \(most recent call last\):\n(?:[ \t].*\n|\n)*(?:\S.*\n?)?", self.output, re.MULTILINE
-        )
-        return found[-1].rstrip() if found else None
+        """The last traceback in its output, with the error's line; one that is cut off counts if there is no other.
 
-
-def _texts(about: Any) -> dict[str, str]:
-    return {str(key): str(value) for key, value in about.items()} if isinstance(about, dict) else {}
+        The output of a program that is started again at once ends anywhere in the next crash.
+        """
+        found = list(_TRACEBACK.finditer(self.output))
+        whole = [each for each in found if each["error"]] or found
+        return whole[-1][0].rstrip() if whole else None

@@ -13,11 +13,32 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
+from ..terminal_text import visible
+
 if TYPE_CHECKING:
     from ..errors import PyfrcError
 
 _NAME_WIDTH = 10
 _DETAIL_WIDTH = 58
+
+#: The agent's words for its work, in a terminal's.
+_WORK = {
+    "check": "checking {} files",
+    "link": "linking {} files",
+    "copy": "copying {} files",
+    "compile": "compiling {} files",
+    "sync": "waiting for the robot's disk",
+    "carry": "looking through {} files for what the program has written",
+    "switch": "switching",
+    "remove": "removing old files",
+    "stop": "waiting for the old program to end",
+}
+
+
+def wording_of_work(what: str, done: int, total: int) -> str:
+    """What the robot does, as in ``checking 2,300 of 5,000 files``."""
+    number = f"{done:,} of {total:,}" if done <= total else f"{done:,}"
+    return _WORK.get(what, "working").format(number)
 
 
 @dataclass(frozen=True)
@@ -39,6 +60,21 @@ class Phase:
     def bytes(self, done: int, total: int) -> None:
         """So many bytes of the phase's are done."""
 
+    def doing(self, text: str) -> None:
+        """Show what it does at the moment, where that can be shown."""
+
+    def work(self, what: str, done: int, total: int) -> None:
+        """Show what the robot does in this phase, and how far it is.
+
+        :param what:  the agent's word for it
+        :param done:  files, or bytes of what is received
+        :param total: 0 where it is not known
+        """
+        if what in ("send", "receive"):
+            self.bytes(done, total)
+        else:
+            self.doing(wording_of_work(what, done, total))
+
 
 class Progress:
     """Plain lines: one for each phase, when it is over.
@@ -49,6 +85,8 @@ class Progress:
     def __init__(self, stream: IO[str] | None = None, quiet: bool = False) -> None:
         self._stream = stream or sys.stdout
         self.quiet = quiet
+        #: Names the robot in the commands that a note or a warning suggests.
+        self.name_robot: Callable[[str], str] = str
 
     @property
     def child_output(self) -> IO[str]:
@@ -70,11 +108,11 @@ class Progress:
     def note(self, text: str) -> None:
         """Something to know."""
         if not self.quiet:
-            self._note(text)
+            self._note(self.name_robot(text))
 
     def warning(self, text: str) -> None:
         """Something that may be wrong, but hinders nothing."""
-        self._print(f"warning: {text}")
+        self._print(f"warning: {self.name_robot(text)}")
 
     def output(self, text: str) -> None:
         """What the robot program printed."""
@@ -99,6 +137,9 @@ class Progress:
         self._print(f"{phase.name:<{_NAME_WIDTH}} {phase.detail:<{_DETAIL_WIDTH}} {seconds:6.2f} s")
 
     def _print(self, text: str) -> None:
+        self._write(visible(text))
+
+    def _write(self, text: str) -> None:
         try:
             print(text, file=self._stream, flush=True)
         except BrokenPipeError:
@@ -122,17 +163,25 @@ class TerminalProgress(Progress):
         console = Console(file=self._stream)
         spinning = [SpinnerColumn(), TextColumn("{task.description}")]
         with Bars(*spinning, console=console, transient=True) as spinner:
-            spinner.add_task(phase.name)
+            waiting = spinner.add_task(phase.name)
             bars = Bars(*spinning, BarColumn(), DownloadColumn(), console=console, transient=True)
             task = bars.add_task(phase.name, total=None)
 
-            def show(done: int, total: int) -> None:
-                if not bars.live.is_started:
-                    spinner.stop()
-                    bars.start()
+            def change(old: Bars, new: Bars) -> None:
+                if not new.live.is_started:
+                    old.stop()
+                    new.start()
+
+            def show_bytes(done: int, total: int) -> None:
+                change(spinner, bars)
                 bars.update(task, completed=done, total=total)
 
-            phase.bytes = show  # type: ignore[method-assign]
+            def show_text(text: str) -> None:
+                change(bars, spinner)
+                spinner.update(waiting, description=f"{phase.name}  {text}")
+
+            phase.bytes = show_bytes  # type: ignore[method-assign]
+            phase.doing = show_text  # type: ignore[method-assign]
             try:
                 yield phase
             finally:
@@ -147,7 +196,7 @@ class JsonProgress(Progress):
         return sys.stderr
 
     def warning(self, text: str) -> None:
-        self._event("warning", text=text)
+        self._event("warning", text=self.name_robot(text))
 
     def output(self, text: str) -> None:
         self._event("output", text=text)
@@ -173,7 +222,8 @@ class JsonProgress(Progress):
         self._event("phase", phase=phase.name, detail=phase.detail, seconds=round(seconds, 3))
 
     def _event(self, event: str, **fields: Any) -> None:
-        self._print(json.dumps({"event": event, **fields}))
+        # The one control character that JSON leaves as it is.
+        self._write(json.dumps({"event": event, **fields}).replace("\x7f", "\\u007f"))
 
 
 @dataclass(frozen=True)

@@ -4,30 +4,38 @@ from __future__ import annotations
 
 import getpass
 import json
+import re
 import socket
 import zlib
-from collections.abc import Callable, Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from . import standing
-from .agent import wire
-from .errors import ConnectionFailedError, DeployError, RefusedError
-from .facts import Deployed, DeployRequest, Plan, Release, RobotFacts, RolledBack, Watched
+from .agent import watching, wire
+from .agent_stream import PYTHON, AgentStream, Channel, TimeLimits
+from .answers import AnswerError, Fields
+from .errors import ConnectionFailedError, DeployError, LockedError
+from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
 
 if TYPE_CHECKING:
     from .discovery import Address
     from .manifest import Entry, Manifest
     from .standing import Standing
 
-__all__ = ["DeployRequest", "Deployed", "Plan", "Release", "Robot", "RobotFacts", "RolledBack", "Watched"]
+__all__ = ["DeployRequest", "Deployed", "Plan", "Robot", "RobotFacts", "RolledBack", "StartState", "Watched"]
+
+#: Stands for the start command that we have written.
+_ANY = "any"
+#: Characters of a program's output that are kept while it is watched.
+_OUTPUT_KEPT = 1 << 16
 
 OnProgress = Callable[[str, int, int], None]
+T = TypeVar("T")
 
-_PYTHON = "/usr/local/bin/python3"
 # All that ever stands in a command line; it reads how many bytes follow, and those: the agent's modules.
 _BOOTSTRAP = """
 import json,sys,types,zlib
@@ -45,28 +53,29 @@ for n,s in json.loads(zlib.decompress(g(int(g(8))))):
  exec(compile(s,n,"exec"),m.__dict__)
 m.main(r)
 """
-COMMAND = f"{_PYTHON} -X utf8 -u -c '{_BOOTSTRAP}'"
+COMMAND = f"{PYTHON} -X utf8 -u -c '{_BOOTSTRAP}'"
 #: In the order in which they need each other; the last one's `main` is run.
-_MODULES = ("__init__", "wire", "disk", "places", "releases", "compiling", "deploying", "program", "serve")
-
-#: Seconds without a word from the robot after which the link counts as lost.
-_ANSWER_SECONDS = 20.0
-#: The same while it works: it compiles, and waits for its disk.
-_WORK_SECONDS = 60.0
-
-_WHOLE = "The robot has its old program or the new one, whole. Check the link and run the command again."
-
-
-class Channel(Protocol):
-    """What is needed of `paramiko.Channel`."""
-
-    def sendall(self, data: bytes, /) -> None: ...
-    def recv(self, count: int, /) -> bytes: ...
-    def recv_ready(self) -> bool: ...
-    def recv_stderr(self, count: int, /) -> bytes: ...
-    def recv_exit_status(self) -> int: ...
-    def settimeout(self, seconds: float | None, /) -> None: ...
-    def close(self) -> None: ...
+_MODULES = (
+    "__init__",
+    "system",
+    "virtual",
+    "wire",
+    "disk",
+    "imports",
+    "places",
+    "inventory",
+    "activity",
+    "releases",
+    "compiling",
+    "content_index",
+    "deploying",
+    "console",
+    "watching",
+    "program",
+    "serve",
+)
+_DOCSTRING = re.compile(r'^( *)""".*?"""$', re.MULTILINE | re.DOTALL)
+_COMMENT = re.compile(r"(?:^ *|  )#[: ].*", re.MULTILINE)
 
 
 class Connected(Protocol):
@@ -83,9 +92,19 @@ def agent_package() -> bytes:
     package = wire.__name__.rpartition(".")[0]
     directory = Path(wire.__file__).parent
     names = {each: package if each == "__init__" else f"{package}.{each}" for each in _MODULES}
-    modules = [[name, (directory / f"{each}.py").read_text(encoding="utf-8")] for each, name in names.items()]
+    modules = [[name, _without_prose((directory / f"{each}.py").read_text("utf-8"))] for each, name in names.items()]
     packed = zlib.compress(json.dumps(modules).encode(), 9)
     return b"%08d" % len(packed) + packed
+
+
+def _without_prose(source: str) -> str:
+    """Return a module's source with its docstrings and comments empty: less to send over a slow link.
+
+    Each line keeps its number, for tracebacks. It is done by patterns because `ast.unparse` takes a tenth of a second
+    for the agent. They suit the agent's modules: in these, only a docstring begins a line with three quotes.
+    """
+    source = _DOCSTRING.sub(lambda found: f'{found[1]}""' + "\n" * found[0].count("\n"), source)
+    return _COMMENT.sub("", source)
 
 
 class Robot:
@@ -95,30 +114,36 @@ class Robot:
     asked for, and another `DeployError` when it fails.
     """
 
-    def __init__(self, channel: Channel, where: str) -> None:
-        self._channel = channel
-        self._where = where
+    def __init__(self, stream: AgentStream) -> None:
+        self._stream = stream
         self._planned: Manifest | None = None
+        #: Whether the old program survived the kill script at the last restart; it was ended by signals then.
+        self.program_survived = False
         self._current: int | None = None
         self._previous: int | None = None
+        #: The robot's start command, if there is one; `_ANY` after a change of ours.
+        self._command: str | None = None
+        #: Whether the robot has said how far it is: what was sent may still be in the link's buffers.
+        self._has_signs = False
         #: What is so while the robot's program is being changed.
         self.standing: Standing | None = None
         #: What there was on the robot when the conversation began.
         self.facts: RobotFacts
 
     @classmethod
-    def start(cls, connection: Connected, *, hello: dict[str, str] | None = None) -> Robot:
+    def start(
+        cls, connection: Connected, *, hello: Mapping[str, Any] | None = None, limits: TimeLimits | None = None
+    ) -> Robot:
         """Send the agent to the robot and hear what it finds there.
 
-        :param hello: where the agent is to look for the robot's files, in tests
+        :param hello: further things to send first: ``modules`` that the robot's Python is asked for; in tests, the
+            ``root`` directory with the robot's files
         """
-        robot = cls(connection.open(COMMAND), str(connection.address))
+        robot = cls(AgentStream(connection.open(COMMAND), str(connection.address), limits or TimeLimits()))
         try:
-            try:
-                robot._channel.sendall(agent_package() + wire.said_frame({"who": _who(), **(hello or {})}))
-            except (OSError, EOFError) as error:
-                raise robot._broken(error) from error  # where there is no Python, the command may have ended before
-            robot.facts = RobotFacts.of(robot._answer(_ANSWER_SECONDS))
+            robot._stream.start(agent_package() + wire.said_frame({"who": _who(), **(hello or {})}))
+            robot.facts = robot._stream.answer(RobotFacts.of, silence=robot._stream.limits.start)
+            robot._current, robot._command = robot.facts.current, robot.facts.command
         except BaseException:
             robot.close()
             raise
@@ -126,196 +151,204 @@ class Robot:
 
     def close(self) -> None:
         """End the conversation, and the agent."""
-        with suppress(OSError, EOFError):  # the link may be gone
-            self._channel.close()
+        self._stream.close()
 
     def info(self) -> RobotFacts:
         """What there is on the robot now."""
-        return RobotFacts.of(self._ask("info"))
+        return self._ask(RobotFacts.of, "info")
 
-    def plan(self, manifest: Manifest) -> Plan:
+    def plan(self, manifest: Manifest, on_progress: OnProgress | None = None) -> Plan:
         """What a deploy of these files would do; nothing is written on the robot."""
-        told = self._ask("plan", files=_told(manifest))
+        with self._shown(on_progress):
+            plan = self._ask(Plan.of, "plan", files=_as_lists(manifest))
         self._planned = manifest
-        added, changed, removed = (tuple(told[key]) for key in ("added", "changed", "removed"))
-        return Plan(added, changed, removed, told["files"], told["bytes"])
+        return plan
 
     def deploy(self, manifest: Manifest, request: DeployRequest, on_progress: OnProgress | None = None) -> Deployed:
         """Make these files the robot's current release, or leave it as it was. The program is not restarted.
 
-        :param on_progress: called with the phase (``send``, ``compile``, ``switch``), and for ``send`` how many
-            bytes are done, of how many
+        :param on_progress: called with the phase that the robot is in (``receive``, ``compile``, ``switch``, ...), how
+            many of its steps are done, and how many it has; 0: not known. The steps of ``receive`` are bytes. Until the
+            robot says so for the first time, after a second, ``send`` has the bytes that have left.
         """
-        on_progress = on_progress or (lambda phase, done, total: None)
         # The agent has kept the manifest that was planned with.
-        files = {} if manifest is self._planned else {"files": _told(manifest)}
-        self._say("deploy", **asdict(request), **files)
-        need = self._hear(_WORK_SECONDS)
-        if need["need"]:
-            wanted = set(need["need"])
-            by_path = {entry.path: entry for entry in manifest.entries if entry.path in wanted}
-            self._send_contents([by_path[path] for path in need["need"]], need["bytes"], on_progress)
+        files = {} if manifest is self._planned else {"files": _as_lists(manifest)}
 
-        def heard(said: dict[str, Any]) -> None:
-            if said["phase"] == "switch" and not request.in_place:
-                self.standing = standing.TAKES_OVER
-            on_progress(said["phase"], 0, 0)
+        def heard(said: Fields) -> None:
+            phase = said.line("phase")
+            if phase == "switch":
+                self.standing = standing.OVERWRITES if request.in_place else standing.TAKES_OVER
+            if on_progress is not None:
+                on_progress(phase, 0, 0)
 
-        told = self._answer(_WORK_SECONDS, heard)
-        self._current, self._previous = told["release"], told["previous"]
-        self.standing = None if request.in_place else standing.deployed(told["release"], told["previous"])
-        return Deployed(
-            release=told["release"],
-            previous=told["previous"],
-            taken=told["taken"],
-            unchanged=told["unchanged"],
-            files_sent=told["files"],
-            bytes_sent=told["bytes"],
-        )
+        with self._shown(on_progress):
+            self._say("deploy", **asdict(request), **files)
+            needed = self._stream.next(lambda fields: _needed(fields, manifest))
+            if needed:
+                self._send_contents(needed, on_progress)
+            try:
+                with self._knowing_what_was_changed():
+                    deployed = self._stream.answer(lambda fields: _deployed(fields, request), heard)
+            except ConnectionFailedError:
+                if self.standing is None:  # the report that the switch begins may be lost with the link
+                    self.standing = standing.OVERWRITES if request.in_place else standing.MAY_TAKE_OVER
+                raise
+        self._current, self._previous, self._command = deployed.release, deployed.previous, _ANY
+        if request.in_place or deployed.release is None:
+            self.standing = None
+        else:
+            self.standing = standing.deployed(deployed.release, deployed.previous)
+        return deployed
 
-    def restart(self) -> None:
-        """Stop the program and start what is current; the robot listens to its console from before on."""
-        self._ask("restart")
+    def restart(self) -> bool:
+        """Stop the program and start what is current; the robot listens to its console from before on.
+
+        :return: `program_survived`
+        """
+        self.program_survived = self._ask(lambda fields: fields.flag("survived"), "restart")
         self.standing = standing.started(self._current, self._previous)
+        return self.program_survived
 
-    def watch(self, seconds: float, on_output: Callable[[str], None] | None = None) -> Watched:
-        """See how the program that was just started does: until it has started, has ended, or `seconds` are over.
+    def watch(
+        self,
+        seconds: float,
+        on_output: Callable[[str], None] | None = None,
+        on_state: Callable[[StartState], None] | None = None,
+        unheard: float | None = None,
+    ) -> Watched:
+        """Watch the program that was just started: until it runs, has ended, or `seconds` are over.
 
         :param on_output: called with what the program prints
+        :param on_state:  called about every second with what is seen of it
+        :param unheard:   seconds after which a program whose console is silent is judged by its process alone
         """
-        output: list[str] = []
+        output = ""
 
-        def heard(said: dict[str, Any]) -> None:
-            output.append(said["output"])
+        def heard(said: Fields) -> None:
+            nonlocal output
+            if "watching" in said:
+                state = StartState.of(said.object("watching"))
+                self.standing = standing.started(self._current, self._previous, state)
+                if on_state is not None:
+                    on_state(state)
+                return
+            printed = said.text("output")
+            output = (output + printed)[-_OUTPUT_KEPT:]
             if on_output is not None:
-                on_output(said["output"])
+                on_output(printed)
 
-        self._say("watch", seconds=seconds)
-        told = self._answer(seconds + _ANSWER_SECONDS, heard)
+        self._say("watch", seconds=seconds, unheard=seconds if unheard is None else unheard)
+        verdict, state = self._stream.answer(
+            lambda fields: (fields.one_of("verdict", watching.VERDICTS), StartState.of(fields)),
+            heard,
+            silence=self._stream.limits.start,
+            within=seconds + 2 * self._stream.limits.start,
+        )
         self.standing = None
-        return Watched(told["alive"], told["started"], "".join(output))
+        return Watched(verdict, output, state)
 
-    def rollback(self, release: int | None = None) -> RolledBack:
+    def rollback(self, release: int | None = None, on_progress: OnProgress | None = None) -> RolledBack:
         """Make an earlier release current again: the one with this number, or that before. It is not restarted."""
-        told = self._change(standing.GOES_BACK, "rollback", release=release)
-        self._current, self._previous = told["release"], told["previous"]
-        self.standing = standing.went_back(told["release"])
-        return RolledBack(Release.of(told["about"]), told["previous"], tuple(told["changed"]))
+        with self._shown(on_progress):
+            back = self._change(RolledBack.of, standing.GOES_BACK, "rollback", release=release)
+        # None: to go back from there would lead to what was gone back from.
+        self._current, self._previous, self._command = back.release.number, None, _ANY
+        self.standing = standing.went_back(back.release.number)
+        return back
 
-    def undeploy(self) -> bool:
+    def undeploy(self, on_progress: OnProgress | None = None) -> bool:
         """Stop the program and remove it, with all releases; whether there was one."""
-        removed = bool(self._change(standing.GOES_AWAY, "undeploy")["removed"])
+        with self._shown(on_progress):
+            removed = self._change(lambda fields: fields.flag("removed"), standing.GOES_AWAY, "undeploy")
         self.standing = None
         return removed
 
-    def _change(self, meanwhile: Standing, op: str, **request: Any) -> dict[str, Any]:
-        self.standing = meanwhile
+    def _change(self, parse: Callable[[Fields], T], meanwhile: Standing, op: str, **request: Any) -> T:
+        before, self.standing = self.standing, meanwhile
         try:
-            return self._ask(op, **request)
-        except RefusedError:
-            self.standing = None
+            with self._knowing_what_was_changed():
+                return self._ask(parse, op, **request)
+        except LockedError:
+            self.standing = before  # the releases may have changed, but another computer did that
             raise
 
-    def _ask(self, op: str, **request: Any) -> dict[str, Any]:
+    @contextmanager
+    def _knowing_what_was_changed(self) -> Iterator[None]:
+        """When the robot refuses or fails in the middle of a change, ask it whether anything was changed."""
+        try:
+            yield
+        except ConnectionFailedError:
+            raise
+        except DeployError:
+            if self.standing not in (None, standing.OVERWRITES):
+                with suppress(DeployError):
+                    now = self.info()
+                    command = _ANY if now.command and self._command == _ANY else now.command
+                    if (now.current, command) == (self._current, self._command):
+                        self.standing = None
+                    elif now.current != self._current and now.current is not None:
+                        self.standing = standing.deployed(now.current, self._current)
+            raise
+
+    def _ask(self, parse: Callable[[Fields], T], op: str, **request: Any) -> T:
         self._say(op, **request)
-        return self._answer(_WORK_SECONDS)
+        return self._stream.answer(parse)
 
     def _say(self, op: str, **request: Any) -> None:
-        self._send(wire.said_frame({"op": op, **request}))
+        self._stream.ask({"op": op, **request})
 
-    def _send(self, data: bytes) -> None:
-        try:
-            self._channel.sendall(data)
-        except (OSError, EOFError) as error:
-            raise self._lost(error) from error
-
-    def _send_contents(self, entries: list[Entry], total: int, on_progress: OnProgress) -> None:
+    def _send_contents(self, entries: list[Entry], on_progress: OnProgress | None) -> None:
         packing = zlib.compressobj(6)
-        done = 0
+        done, total = 0, sum(entry.size for entry in entries)
         waiting = b""
         for piece in _pieces(entries):
             done += len(piece)
             waiting += packing.compress(piece)
             if len(waiting) >= wire.PIECE:
-                if self._channel.recv_ready():
+                if self._stream.has_news():
                     return  # the robot does not want more: its answer says why
-                self._send(wire.frame(wire.CONTENT, waiting))
+                self._stream.send(wire.frame(wire.CONTENT, waiting))
                 waiting = b""
-                on_progress("send", done, total)
-        self._send(wire.frame(wire.CONTENT, waiting + packing.flush()))
-        on_progress("send", total, total)
+                if on_progress is not None and not self._has_signs:
+                    on_progress("send", done, total)
+        self._stream.send(wire.frame(wire.CONTENT, waiting + packing.flush()))
 
-    def _answer(self, seconds: float, on_news: Callable[[dict[str, Any]], None] | None = None) -> dict[str, Any]:
-        while True:
-            said = self._hear(seconds)
-            if "done" in said:
-                done: dict[str, Any] = said["done"]
-                return done
-            if on_news is not None:
-                on_news(said)
+    @contextmanager
+    def _shown(self, on_progress: OnProgress | None) -> Iterator[None]:
+        """Pass the robot's signs of life on meanwhile."""
 
-    def _hear(self, seconds: float) -> dict[str, Any]:
-        self._channel.settimeout(seconds)
+        def show(sign: Any) -> None:
+            # What a sign of life says is for show: one that says nothing is a sign all the same.
+            with suppress(AnswerError):
+                fields = Fields(sign)
+                if on_progress is not None:
+                    on_progress(fields.line("phase"), fields.count("count"), fields.count("of"))
+
+        self._has_signs = False
+        self._stream.on_alive = show
         try:
-            said = wire.said_in(*wire.read_frame(self._read))
-        except wire.EndedError as error:
-            raise self._broken(error) from error
-        except wire.WireError as error:
-            raise DeployError(
-                f"what the robot sends is not from our agent: {error}",
-                where=self._where,
-                remedy="Perhaps a login script on it prints something. " + _WHOLE,
-            ) from error
-        if "error" in said:
-            raise self._error(said)
-        return said
-
-    def _read(self, count: int) -> bytes:
-        pieces = []
-        while count:
-            try:
-                piece = self._channel.recv(count)
-            except (OSError, EOFError) as error:
-                raise self._lost(error) from error
-            if not piece:
-                break
-            pieces.append(piece)
-            count -= len(piece)
-        return b"".join(pieces)
-
-    def _lost(self, error: BaseException) -> ConnectionFailedError:
-        what = "no answer" if isinstance(error, TimeoutError) else str(error) or "the robot closed it"
-        return ConnectionFailedError(f"the link to the robot was lost: {what}", where=self._where, remedy=_WHOLE)
-
-    def _broken(self, error: BaseException) -> DeployError:
-        """The stream has ended: what the robot's shell or Python has said tells why."""
-        try:
-            self._channel.settimeout(_ANSWER_SECONDS)
-            status = self._channel.recv_exit_status()
-            said = self._channel.recv_stderr(65536).decode(errors="replace").strip()
-        except (OSError, EOFError):
-            status, said = -1, ""
-        if status in (126, 127):
-            return RefusedError(
-                f"there is no Python on the robot ({_PYTHON})",
-                where=self._where,
-                remedy="Install it with the package robotpy: python -m robotpy installer download-python on the "
-                "internet, then, at the robot: python -m robotpy installer install-python",
-            )
-        if status <= 0:
-            return self._lost(error)
-        last = said.splitlines()[-1] if said else f"exit code {status}"
-        return DeployError(f"the agent on the robot has ended: {last}", where=self._where, remedy=_WHOLE)
-
-    def _error(self, said: dict[str, Any]) -> DeployError:
-        kind, message, remedy = said["error"], said["message"], said["remedy"] or None
-        if kind in ("bug", "protocol"):
-            last = said.get("traceback", "").strip().splitlines()[-1:]
-            return DeployError(": ".join([message, *last]), where=self._where, remedy=_WHOLE)
-        return RefusedError(message, where=self._where, remedy=remedy)
+            yield
+        finally:
+            self._stream.on_alive = None
 
 
-def _told(manifest: Manifest) -> list[list[Any]]:
+def _deployed(fields: Fields, request: DeployRequest) -> Deployed:
+    deployed = Deployed.of(fields)
+    if deployed.release is None and not request.in_place:
+        raise AnswerError("'release' is null")
+    return deployed
+
+
+def _needed(fields: Fields, manifest: Manifest) -> list[Entry]:
+    """The files whose contents the robot asks for: some of those that were offered, each once."""
+    by_path = {entry.path: entry for entry in manifest.entries}
+    paths = fields.texts("need")
+    if not by_path.keys() >= set(paths) or len(set(paths)) < len(paths):
+        raise AnswerError("'need' has files that were not offered, or one of them twice")
+    return [by_path[path] for path in paths]
+
+
+def _as_lists(manifest: Manifest) -> list[list[Any]]:
     return [[each.path, each.size, each.sha256, each.executable] for each in manifest.entries]
 
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import re
 import threading
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
-from .connection import ADMINISTRATOR, connect
-from .errors import DeployError, RefusedError
-from .host_keys import HostKeys
+from .._version import requirement
+from .errors import RefusedError
+from .preparing import IMAGE_IT, PREPARE, Obstacle, image_problem, python_problem, same_version_on_both
 from .progress import Progress
 
 if TYPE_CHECKING:
-    from .discovery import Address
+    from .connection import Connection
     from .facts import RobotFacts
 
-_NO_CHECK = "If you are sure that it works all the same: -n (--no-version-check)."
+NO_CHECK = "If you are sure that it works all the same: -n (--no-version-check)."
 
 # Without it, some services of the image load libraries that robots do not use.
 _MEMORY_SAVER = "sed -i -e 's/^StartupDLLs/;StartupDLLs/' /etc/natinst/share/ni-rt.ini"
@@ -24,36 +24,34 @@ _MEMORY_SAVER = "sed -i -e 's/^StartupDLLs/;StartupDLLs/' /etc/natinst/share/ni-
 
 def refuse_unfit_robot(facts: RobotFacts, where: str, check_versions: bool) -> None:
     """:raises RefusedError: when the program could not run there, or (`check_versions`) might not"""
+    for each in obstacles(facts):
+        if each.certain:
+            raise RefusedError(each.text, where=where, remedy=each.remedy)
+        if check_versions:
+            raise RefusedError(each.text, where=where, remedy=f"{each.remedy} {NO_CHECK}")
+
+
+def obstacles(facts: RobotFacts) -> Iterator[Obstacle]:
+    """Return what is in the way of a deploy, most important first.
+
+    :raises RefusedError: when there is no `wpilib` on this computer to compare with
+    """
     if facts.not_roborio is not None:
-        raise RefusedError(
-            f"this is no roboRIO: {facts.not_roborio}",
-            where=where,
-            remedy="Is that the right address? Name the robot with --robot HOST. A new roboRIO has to be imaged first, "
-            "with the roboRIO Imaging Tool.",
-        )
+        remedy = f"Is that the right address? Name the robot with --robot HOST. Is it a new roboRIO? {IMAGE_IT}"
+        yield Obstacle(f"this is no roboRIO: {facts.not_roborio}", remedy)
+        return
     ours = _our_wpilib()
     if facts.wpilib is None:
-        raise RefusedError(
-            "there is no wpilib for Python on the robot",
-            where=where,
-            remedy=f"Install it with the package robotpy: python -m robotpy installer download wpilib=={ours} on the "
-            f"internet, then at the robot: python -m robotpy installer install wpilib=={ours}",
-        )
-    if not check_versions:
-        return
-    if facts.wpilib != ours:
-        raise RefusedError(
-            f"the robot has wpilib {facts.wpilib}, this computer has {ours}: what passes here may fail there",
-            where=where,
-            remedy=f"Install the same on both. {_NO_CHECK}",
-        )
-    year = _year(facts.image)
-    if year is not None and year < int(ours.partition(".")[0]):
-        raise RefusedError(
-            f"the robot's image is of {year} ({facts.image}), wpilib {ours} needs that of its own year",
-            where=where,
-            remedy=f"Image the robot with this season's roboRIO Imaging Tool. {_NO_CHECK}",
-        )
+        yield Obstacle("there is no wpilib for Python on the robot", PREPARE)
+    wrong_python = python_problem(facts.python, ours)
+    if wrong_python is not None:
+        yield Obstacle(wrong_python, PREPARE, certain=False)
+    if facts.wpilib not in (None, ours):
+        text = f"the robot has wpilib {facts.wpilib}, this computer has {ours}: what passes here may fail there"
+        yield Obstacle(text, same_version_on_both(ours), certain=False)
+    wrong_image = image_problem(facts.image, ours)
+    if wrong_image is not None:
+        yield Obstacle(wrong_image, IMAGE_IT, certain=False)
 
 
 class MemorySaver:
@@ -61,12 +59,11 @@ class MemorySaver:
 
     It needs the administrator, and so a connection of its own, meanwhile; and hinders nothing when it fails.
 
-    :param keys: in which the robot's key is pinned
+    :param connection: to the robot
     """
 
-    def __init__(self, facts: RobotFacts, address: Address, keys: HostKeys) -> None:
-        self._address = address
-        self._keys = keys
+    def __init__(self, facts: RobotFacts, connection: Connection) -> None:
+        self._connection = connection
         self._problem: str | None = None
         self._thread = threading.Thread(target=self._run) if facts.startup_dlls else None
         if self._thread is not None:
@@ -83,13 +80,7 @@ class MemorySaver:
             progress.warning(f"StartupDLLs, which costs 24 MB of memory, could not be switched off: {self._problem}")
 
     def _run(self) -> None:
-        try:
-            with connect(self._address, self._keys, user=ADMINISTRATOR) as administrator:
-                status, printed = administrator.run(_MEMORY_SAVER)
-            if status != 0:
-                self._problem = printed.strip() or f"exit code {status}"
-        except (DeployError, OSError) as error:
-            self._problem = str(error)
+        self._problem = self._connection.administer(_MEMORY_SAVER)
 
 
 def _our_wpilib() -> str:
@@ -97,11 +88,5 @@ def _our_wpilib() -> str:
         return version("wpilib")
     except PackageNotFoundError:  # our own dependency: somebody has removed it
         raise RefusedError(
-            "there is no wpilib on this computer", remedy="Install it: pip install --force-reinstall pyfrc"
+            "there is no wpilib on this computer", remedy=f'Install it: pip install --force-reinstall "{requirement()}"'
         ) from None
-
-
-def _year(image: str | None) -> int | None:
-    """``FRC_roboRIO_2026_v2.0`` is of 2026."""
-    found = re.search(r"_(20[0-9]{2})_", image or "")
-    return int(found[1]) if found else None

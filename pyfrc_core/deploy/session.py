@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 
+from ..config.robotpy import load_robot_packages
 from ..errors import UsageError
 from ..project import Project
 from ..wording import counted
 from .connection import Connection, load_in_background
 from .console import follow_console
 from .deploy_json import deploy_json
+from .discovery import Address
 from .errors import RefusedError
 from .facts import Deployed, DeployRequest, Plan
+from .kill_script import replace_kill_script
 from .local_checks import ImportCheck, go_on_after, refuse_other_main_files, run_tests
 from .manifest import Manifest, ascii_path, survey
+from .other_languages import WHAT, remove_other_languages
+from .preparing import other_languages_notice
 from .progress import Conversation
-from .reach import RobotChoice, address_to_follow, agent_on, chosen_target, connected, find, keys_known_to, robot_of
+from .reach import RobotChoice, address_to_follow, agent_on, chosen_target, connected, find, robot_of
 from .robot import Robot
 from .robot_checks import MemorySaver, refuse_unfit_robot
+from .robot_packages import ImportSearch, check_packages
 from .starting import go_back, start
 
 
@@ -28,12 +35,12 @@ class DeployOptions:
     :param builtin: run the ready-made tests when the project has none
     :param skip_tests: run no tests
     :param large: upload files over 250,000 bytes, too
-    :param check_versions: refuse robots with another wpilib, or an old image
+    :param check_versions: refuse robots with another wpilib, without what the program needs, or with an old image
     :param nonstandard: whether the main file may have another name than robot.py
     :param debug: start the program with debugging on
     :param in_place: overwrite the running program's files, delete nothing, do not restart
     :param dry_run: only say what would be done
-    :param auto_rollback: go back to the program before when the new one ends at once
+    :param auto_rollback: go back to the program before when the new one ends while its start is watched
     """
 
     choice: RobotChoice = field(default_factory=RobotChoice)
@@ -48,8 +55,8 @@ class DeployOptions:
     auto_rollback: bool = False
 
 
-def deploy(project: Project, options: DeployOptions, talk: Conversation) -> str:
-    """Bring the project's program onto the robot, and start it; the robot's host.
+def deploy(project: Project, options: DeployOptions, talk: Conversation) -> Address:
+    """Bring the project's program onto the robot, and start it; the robot's address.
 
     :raises DeployError: when it is not there in the end; the robot has a whole program all the same
     :raises ProgramDiedError: when it is there, and has ended as soon as it was started
@@ -62,33 +69,66 @@ def deploy(project: Project, options: DeployOptions, talk: Conversation) -> str:
     with progress.phase("files") as phase:
         manifest = survey(project.root, project.settings.deploy.exclude, options.large)
         phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
+    packages = load_robot_packages(project.pyproject)
+    imports = ImportSearch(manifest, project.root, project.main_file.name)
     found = find(target, options.choice, progress)
-    with connected(project, found, options.choice, progress) as connection, agent_on(connection, progress) as robot:
+    with (
+        connected(project, target, found, options.choice, progress) as connection,
+        agent_on(connection, progress, imports.modules()) as robot,
+    ):
+        if robot.facts.other_languages:
+            progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
         refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
+        check_packages(imports, packages, robot.facts, talk, dry_run=options.dry_run, refuse=options.check_versions)
         if importing is not None:
             _refuse_unimportable(importing, talk)
         if options.dry_run:
-            plan = robot.plan(manifest)
+            with progress.phase("compare") as phase:
+                plan = robot.plan(manifest, phase.work)
             progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), asked_for=True)
-            return connection.host
-        memory = MemorySaver(robot.facts, connection.address, keys_known_to(project))
-        deployed = _upload(robot, project, manifest, options, talk)
+            return connection.address
+        memory = MemorySaver(robot.facts, connection)
+        deployed = _upload(robot, project, manifest, options, talk, imports.program())
+        verdict = None
         try:
             if not options.in_place:
-                start(robot, talk, _before(robot, deployed), options.auto_rollback)
+                verdict = start(robot, talk, deployed.fallback, options.auto_rollback)
         finally:
+            if robot.program_survived:
+                replace_kill_script(connection, progress)
             memory.tell(progress)  # not before: an administrator who cannot log in may take half a minute
-        _tell_deployed(deployed, connection, options, talk)
-    return connection.host
+        _tell_deployed(deployed, verdict, connection, options, talk)
+    return connection.address
 
 
-def rollback(project: Project | None, choice: RobotChoice, release: int | None, talk: Conversation) -> str:
+def rollback(project: Project | None, choice: RobotChoice, release: int | None, talk: Conversation) -> Address:
     """Start an earlier release again: the one with this number, or that before; the robot's host."""
     with robot_of(project, chosen_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
-        went_back_to = go_back(robot, talk, release)
+        try:
+            went_back_to = go_back(robot, talk, release)
+        finally:
+            if robot.program_survived:
+                replace_kill_script(connection, talk.progress)
         result = {"host": connection.host, "release": went_back_to}
         talk.progress.result(result, f"The robot runs release {went_back_to} again.")
-    return connection.host
+    return connection.address
+
+
+def undeploy_other_languages(project: Project | None, choice: RobotChoice, talk: Conversation, sure: bool) -> None:
+    """Remove programs in Java and C++ from the robot; one in Python stays.
+
+    :param sure: whether the user has said already that this is meant
+    """
+    target = chosen_target(project, choice, talk.ask)
+    _make_sure(f"{WHAT} are removed", talk, sure)
+    found = find(target, choice, talk.progress)
+    with connected(project, target, found, choice, talk.progress) as connection:
+        with talk.progress.phase("remove"):
+            removed = remove_other_languages(connection)
+        text = (
+            "\n".join(["Removed:", *(f"  {each}" for each in removed)]) if removed else "There was nothing to remove."
+        )
+        talk.progress.result({"host": connection.host, "removed": removed}, text)
 
 
 def undeploy(project: Project | None, choice: RobotChoice, talk: Conversation, sure: bool) -> None:
@@ -97,17 +137,22 @@ def undeploy(project: Project | None, choice: RobotChoice, talk: Conversation, s
     :param sure: whether the user has said already that this is meant
     """
     target = chosen_target(project, choice, talk.ask)
-    if not sure:
-        what = "the robot program and all of its releases are removed"
-        if talk.ask is None:
-            raise UsageError(f"{what}: is that meant?", remedy="Say so with --yes.")
-        if not talk.ask.yes(f"{what[:1].upper()}{what[1:]} from the robot. Is that meant?"):
-            raise RefusedError("nothing was removed")
+    _make_sure("the robot program and all of its releases are removed", talk, sure)
     with robot_of(project, target, choice, talk.progress) as (connection, robot):
-        with talk.progress.phase("remove"):
-            removed = robot.undeploy()
+        with talk.progress.phase("remove") as phase:
+            removed = robot.undeploy(phase.work)
         text = "The robot program was removed." if removed else "There was no robot program to remove."
         talk.progress.result({"host": connection.host, "removed": removed}, text)
+
+
+def _make_sure(what: str, talk: Conversation, sure: bool) -> None:
+    """Ask whether it is meant, unless the user has said so."""
+    if sure:
+        return
+    if talk.ask is None:
+        raise UsageError(f"{what}: is that meant?", remedy="Say so with --yes.")
+    if not talk.ask.yes(f"{what[:1].upper()}{what[1:]} from the robot. Is that meant?"):
+        raise RefusedError("nothing was removed")
 
 
 def show_console(
@@ -115,19 +160,26 @@ def show_console(
 ) -> None:
     """Print what the robot program prints, until Ctrl-C."""
     address = address_to_follow(chosen_target(project, choice, talk.ask), choice, talk.progress)
-    follow_console(address.host, without_driver_station, talk.progress.quiet)
+    follow_console(address, without_driver_station, talk.progress.quiet)
 
 
-def _upload(robot: Robot, project: Project, manifest: Manifest, options: DeployOptions, talk: Conversation) -> Deployed:
+def _upload(
+    robot: Robot,
+    project: Project,
+    manifest: Manifest,
+    options: DeployOptions,
+    talk: Conversation,
+    program: Sequence[str],
+) -> Deployed:
     request = DeployRequest(
         main=project.main_file.name,
         deploy_json=deploy_json(project.root),
         debug=options.debug,
         in_place=options.in_place,
+        program=program,
     )
     with talk.progress.phase("upload") as phase:
-        # Compiling and switching, too, are told: without a number of bytes.
-        deployed = robot.deploy(manifest, request, lambda _, done, total: phase.bytes(done, total) if total else None)
+        deployed = robot.deploy(manifest, request, phase.work)
         if deployed.unchanged:
             phase.detail = "nothing has changed"
         else:
@@ -139,17 +191,10 @@ def _upload(robot: Robot, project: Project, manifest: Manifest, options: DeployO
     return deployed
 
 
-def _before(robot: Robot, deployed: Deployed) -> int | None:
-    """The release to go back to from this one."""
-    if not deployed.unchanged:
-        return deployed.previous
-    previous = {each.number: each.previous for each in robot.facts.releases}
-    before = previous.get(deployed.release) if deployed.release is not None else None
-    return before if before in previous else None  # it may have had to make room
-
-
-def _tell_deployed(deployed: Deployed, connection: Connection, options: DeployOptions, talk: Conversation) -> None:
-    result = {"host": connection.host, **asdict(deployed), "in_place": options.in_place}
+def _tell_deployed(
+    deployed: Deployed, verdict: str | None, connection: Connection, options: DeployOptions, talk: Conversation
+) -> None:
+    result = {"host": connection.host, **asdict(deployed), "in_place": options.in_place, "program": verdict}
     text = "Its files were overwritten; the program was not restarted." if options.in_place else "Deployed."
     talk.progress.result(result, text)
 

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from .errors import ConnectionFailedError, StoppedError
+from .errors import CHANGED, ConnectionFailedError, DeployError, StoppedError
+
+if TYPE_CHECKING:
+    from .facts import StartState
 
 
 @dataclass(frozen=True)
@@ -26,6 +29,11 @@ TAKES_OVER = Standing(
     "the new release is taking over: the robot starts it or the one before from now on, and still runs the one before",
     "Deploy again to have it started: pyfrc deploy. To see which it has: pyfrc deploy-info.",
 )
+MAY_TAKE_OVER = Standing(
+    "the robot may have the new release already: it starts that one or the one before when it is switched on, and "
+    "still runs the one before",
+    TAKES_OVER.remedy,
+)
 GOES_BACK = Standing(
     "the robot may have gone back already, but still runs the program from before",
     "Run the command again. To see which release it has: pyfrc deploy-info.",
@@ -36,7 +44,13 @@ GOES_AWAY = Standing(
 )
 
 
-def deployed(release: int, previous: int | None) -> Standing:
+OVERWRITES = Standing(
+    "some of the program's files may have been overwritten already, and others not",
+    "Run the command again, or deploy without --in-place.",
+)
+
+
+def deployed(release: int | None, previous: int | None) -> Standing:
     """It is on the robot, and has not been started there yet."""
     back = "" if previous is None else " Or go back to the one before: pyfrc deploy --rollback."
     return Standing(
@@ -54,11 +68,15 @@ def went_back(release: int) -> Standing:
     )
 
 
-def started(release: int | None, previous: int | None) -> Standing:
-    """It was started a moment ago."""
+def started(release: int | None, previous: int | None, state: StartState | None = None) -> Standing:
+    """It was started, and is being watched.
+
+    :param state: what was seen of it last
+    """
     back = "" if previous is None else " To go back to the one before: pyfrc deploy --rollback."
+    seen = "" if state is None or not state.age else f"; its process has run for {state.age:.0f} s"
     return Standing(
-        f"{f'release {release}' if release else 'the program'} was started, but not seen to run",
+        f"{f'release {release}' if release else 'the program'} was started, but not seen to run{seen}",
         f"To see whether it does: pyfrc deploy-info.{back}",
     )
 
@@ -71,13 +89,19 @@ class Stands(Protocol):
 
 @contextmanager
 def told_what_is_so(robot: Stands) -> Iterator[None]:
-    """Ctrl-C, or a link that breaks, while the robot's program is being changed: the error says what is so now."""
+    """Ctrl-C or a failure while the robot's program is being changed: the error says what is so now.
+
+    Its exit code says that the robot was changed.
+    """
     try:
         yield
-    except (KeyboardInterrupt, ConnectionFailedError) as error:
+    except (KeyboardInterrupt, DeployError) as error:
         now = robot.standing
         if now is None:
             raise
         if isinstance(error, KeyboardInterrupt):
             raise StoppedError(f"interrupted; {now.what}", remedy=now.remedy) from error
-        raise ConnectionFailedError(f"{error.message}; {now.what}", where=error.where, remedy=now.remedy) from error
+        own_remedy = "" if isinstance(error, ConnectionFailedError) or not error.remedy else f"{error.remedy} "
+        told = type(error)(f"{error.message}; {now.what}", where=error.where, remedy=own_remedy + now.remedy)
+        told.exit_code = error.exit_code if error.exit_code != DeployError.exit_code else CHANGED
+        raise told from error

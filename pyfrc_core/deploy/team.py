@@ -15,18 +15,16 @@ from ..config.toml_text import TomlText
 from ..errors import SettingsError, UsageError
 from ..project import Project
 from ..text_files import write_whole
+from .discovery import MOST_TEAM
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
 
-#: 10.TE.AM.2 has room for no more.
-MOST = 25_599
-
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
 _OLD_FILE = ".deploy_cfg"
-_RANGE = f"a team number is from 1 to {MOST}"
+_RANGE = f"a team number is from 1 to {MOST_TEAM}"
 
 
 @dataclass(frozen=True)
@@ -72,6 +70,14 @@ def find_target(
     return Target(number, source=PREFERENCES.as_posix())
 
 
+def team_of_project(project: Project) -> int | None:
+    """Return the team that the project's files name, also beside a robot's own address; none: no team.
+
+    :raises UsageError: with the file and the key of a value that is no team number
+    """
+    return next((found.team for found in _said_in_files(project) if found.team is not None), None)
+
+
 def save_team(file: Path, team: int) -> None:
     """Write the team's number into a ``wpilib_preferences.json``, whose other keys stay."""
     preferences = _read_preferences(file)
@@ -82,7 +88,7 @@ def _asked(ask: Callable[[str], str]) -> int:
     question = "What is your team number?"
     while True:
         answer = ask(question).strip()
-        if re.fullmatch(r"[0-9]{1,5}", answer) and 1 <= int(answer) <= MOST:
+        if re.fullmatch(r"[0-9]{1,5}", answer) and 1 <= int(answer) <= MOST_TEAM:
             return int(answer)
         question = f"{answer!r} is no team number: {_RANGE}. What is yours?"
 
@@ -172,6 +178,6 @@ def _number(value: object, where: str, key: str) -> int:
 
 
 def _in_range(team: int, where: str, key: str | None = None) -> int:
-    if not 1 <= team <= MOST:
+    if not 1 <= team <= MOST_TEAM:
         raise SettingsError(f"{key} = {team}: {_RANGE}" if key else f"{team}: {_RANGE}", where=where)
     return team

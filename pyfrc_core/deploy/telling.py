@@ -10,15 +10,24 @@ from .facts import Release, RobotFacts
 from .progress import Conversation
 from .reach import RobotChoice, chosen_target, robot_of
 
+_ENDED = "ended at its last watched start"
+
 
 def show_info(project: Project | None, choice: RobotChoice, talk: Conversation) -> None:
     """Tell what is on the robot: which program, who has deployed it, and which releases are kept."""
     with robot_of(project, chosen_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
-        talk.progress.result({"host": connection.host, **asdict(robot.facts)}, _as_text(robot.facts), asked_for=True)
+        name, key = connection.recognized.name, connection.key.fingerprint
+        told = {"host": connection.host, "robot_name": name or None, "host_key": key, **asdict(robot.facts)}
+        talk.progress.result(told, info_text(robot.facts, name), asked_for=True)
 
 
-def _as_text(facts: RobotFacts) -> str:
+def info_text(facts: RobotFacts, name: str) -> str:
+    """Return what is on the robot, for people.
+
+    :param name: the robot's name; empty: it has none
+    """
     lines = [
+        *([f"name       {name}"] if name else []),
         f"robot      {facts.image or 'unknown image'}, Python {facts.python}, wpilib {facts.wpilib or 'missing'}",
         f"disk       {facts.free_bytes / 1e6:.1f} MB free",
     ]
@@ -26,16 +35,29 @@ def _as_text(facts: RobotFacts) -> str:
         lines.append("program    none")
     else:
         by_whom = "deployed by another tool" if facts.current is None else f"release {facts.current}"
-        lines.append(f"program    {by_whom}, {'running' if facts.running else 'not running'}")
+        lines.append(f"program    {by_whom}, {_program_state(facts)}")
         lines += [f"  {key:<12} {value}" for key, value in _deployed(facts.deploy_json)]
     lines += [_release_line(release, facts.current) for release in reversed(facts.releases)]
     return "\n".join(lines)
+
+
+def _program_state(facts: RobotFacts) -> str:
+    """What is known of the program: a robot starts one that crashes again and again, so a process alone says little."""
+    age = "" if facts.program_age is None else f"{facts.program_age:.{0 if facts.program_age >= 10 else 1}f} s"
+    if any(each.number == facts.current and each.ended for each in facts.releases):
+        now = f"started again {age} ago" if age else "started again"
+        return f"{_ENDED}; {now if facts.running else 'not running'}"
+    if not facts.running:
+        return "not running"
+    return f"running for {age}" if age else "running"
 
 
 def _release_line(release: Release, current: int | None) -> str:
     told = dict(_deployed(release.deploy_json))
     parts = [told.get("date", "date unknown"), told.get("by"), told.get("commit")]
     parts += ["left by another tool"] if release.taken else []
+    if release.ran or release.ended:
+        parts.append(_ENDED if release.ended else "seen to run")
     mark = "*" if release.number == current else " "
     return f"{mark} release {release.number:<4}" + ", ".join(part for part in parts if part)
 

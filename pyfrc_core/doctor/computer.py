@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from importlib.util import find_spec
 
+from .._version import requirement
 from ..display import GET_TKINTER, has_display, has_tkinter
 from .findings import Finding, hint, ok
 
@@ -32,6 +33,6 @@ def examine_extras() -> Iterator[Finding]:
     """Which of the extras are installed."""
     for extra, (module, use) in EXTRAS.items():
         if find_spec(module) is None:
-            yield hint("extras", f"{use}: not installed", f'If you want it: pip install "pyfrc[{extra}]"')
+            yield hint("extras", f"{use}: not installed", f'If you want it: pip install "{requirement(extra)}"')
         else:
             yield ok("extras", f"{use}: installed")

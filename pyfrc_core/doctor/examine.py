@@ -54,7 +54,7 @@ def examine(wanted: Examination) -> Iterator[Finding]:
     if project is not None:
         yield from examine_project(project, installed)
     if search is not None:
-        yield search.finding()
+        yield from search.findings()
 
 
 def _project(wanted: Examination) -> tuple[Project | None, Finding | None]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from packaging.utils import canonicalize_name
 
-from .._version import __version__
+from .._version import __version__, requirement
 from .findings import Finding, hint, ok, problem
 from .installed import Installed, Package, Unmet
 
@@ -60,7 +60,7 @@ def examine_pyfrc(installed: Installed) -> Iterator[Finding]:
 
 def _mixed_up(copies: Sequence[Package]) -> Iterator[Finding]:
     """Where another pyfrc, or something like it, is in this one's place."""
-    anew = "pip uninstall pyfrc, as often as it finds one; then pip install pyfrc"
+    anew = f'pip uninstall pyfrc, as often as it finds one; then pip install "{requirement()}"'
     if len(copies) > 1:
         places = ", ".join(f"{copy.version} in {copy.place}" for copy in copies)
         yield problem("pyfrc", f"installed {len(copies)} times: {places}", anew)

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from codecs import BOM_UTF8
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from packaging.requirements import InvalidRequirement, Requirement
-
-from ..config.settings import parse_toml, read_toml
+from ..config.robotpy import load_robot_packages
 from ..errors import PyfrcError, SettingsError
 from ..hidden_libraries import find_hidden_libraries
 from ..misspelled_methods import MisspelledMethod, find_misspelled_methods
@@ -61,41 +59,34 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[Finding]:
         return
     name = project.pyproject.name
     try:
-        tools: Any = parse_toml(project.pyproject, read_toml(project.pyproject)).get("tool", {})
+        wanted = load_robot_packages(project.pyproject)
     except SettingsError as malformed:
         yield problem_of("project", malformed, "Correct it there.")
         return
     if project.pyproject.read_bytes().startswith(BOM_UTF8):
         text = f"{name} begins with a byte-order mark, which robotpy and plain pytest do not read"
         yield hint("project", text, "Save it as UTF-8 without a byte-order mark (VS Code: UTF-8, not UTF-8 with BOM).")
-    robotpy = tools.get("robotpy") if isinstance(tools, dict) else None
-    if not isinstance(robotpy, dict):
-        return
-    wpilib, version = installed.get("wpilib"), robotpy.get("robotpy_version")
-    if isinstance(version, str) and wpilib is not None and version != wpilib.version:
+    wpilib = installed.get("wpilib")
+    if wanted.version is not None and wpilib is not None and wanted.version != wpilib.version:
         yield hint(
             "project",
-            f"{name}: robotpy_version is {version}, but wpilib {wpilib.version} is installed here",
-            f'pip install "wpilib=={version}", or change robotpy_version to have the robot get {wpilib.version}.',
+            f"{wanted.lines['robotpy_version']}: robotpy_version is {wanted.version}, "
+            f"but wpilib {wpilib.version} is installed here",
+            f'pip install "wpilib=={wanted.version}", or change robotpy_version to have the robot get '
+            f"{wpilib.version}.",
         )
-    if "robotpy_extras" in robotpy:
-        text = f"{name}: robotpy_extras has another name since 2026, and robotpy deploy refuses this one"
+    if "robotpy_extras" in wanted.lines:
+        where = wanted.lines["robotpy_extras"]
+        text = f"{where}: robotpy_extras has another name since 2026, and robotpy deploy refuses this one"
         yield hint("project", text, "Call it components.")
-    requires = robotpy.get("requires")
-    for text in requires if isinstance(requires, list) else []:
-        try:
-            needed = Requirement(str(text))
-        except InvalidRequirement as invalid:
-            yield problem(
-                "project", f"{name}: requires = {text!r}: {str(invalid).splitlines()[0]}", "Correct it there."
-            )
-            continue
+    for needed in wanted.requires:
         if needed.marker is not None and not needed.marker.evaluate({"extra": ""}):
             continue
         there = installed.get(needed.name)
         if there is None or not fits(there.version, needed):
             instead = f"{there.version} is installed" if there else "it is not installed"
-            yield problem("project", f"{name}: requires {text}, but {instead} here", f'pip install "{text}"')
+            text = f"{wanted.lines['requires']}: requires {needed}, but {instead} here"
+            yield problem("project", text, f'pip install "{needed}"')
 
 
 def _robot_class(project: Project) -> Iterator[Finding]:

@@ -76,23 +76,23 @@ class _Channels:
         ]
         forward = Field("initialized", "InitializedForward", BOOL)
         reverse = Field("initialized", "InitializedReverse", BOOL)
-        self._made = MadeDevices(
+        self._devices = MadeDevices(
             [
                 *(INITIALIZED.slot(pwm) for pwm in self._pwms),
                 *(field.slot(relay) for field in (forward, reverse) for relay in self._relays),
                 *(INITIALIZED.slot(module) for module, _ in self._pneumatics),
             ]
         )
-        self._told: list[bool] | None = None
+        self._made: list[bool] | None = None
         self._motors: list[Any] = []
         self._switches: list[tuple[Callable[[], bool], Callable[[bool], None]]] = []
 
     def turn_off(self) -> Iterator[Restore]:
         """Turn off what is on."""
-        told = self._made.told()
-        if told is not self._told:
-            self._told = told
-            self._find(told)
+        made = self._devices.made()
+        if made is not self._made:
+            self._made = made
+            self._find(made)
         for motor in self._motors:
             speed = motor.getSpeed()
             if speed and not _drives_servo(motor):
@@ -106,13 +106,13 @@ class _Channels:
                 put(False)
                 yield partial(_restore, get, put, False, True)
 
-    def _find(self, told: list[bool]) -> None:
-        there = iter(told)
-        self._motors = [pwm for pwm in self._pwms if next(there)]
-        self._switches = [(relay.getForward, relay.setForward) for relay in self._relays if next(there)]
-        self._switches += [(relay.getReverse, relay.setReverse) for relay in self._relays if next(there)]
+    def _find(self, made: list[bool]) -> None:
+        made_next = iter(made)
+        self._motors = [pwm for pwm in self._pwms if next(made_next)]
+        self._switches = [(relay.getForward, relay.setForward) for relay in self._relays if next(made_next)]
+        self._switches += [(relay.getReverse, relay.setReverse) for relay in self._relays if next(made_next)]
         for module, channels in self._pneumatics:
-            if next(there):
+            if next(made_next):
                 for channel in range(channels):
                     get, put = partial(module.getSolenoidOutput, channel), partial(module.setSolenoidOutput, channel)
                     self._switches.append((get, put))

@@ -37,7 +37,7 @@ class Recording:
         self._kinds = [(kind, [slot.get for slot in kind.initialized()]) for kind in KINDS]
         slots = [slot for kind in KINDS for slot in kind.initialized()]
         slots += [*tree.modules.initialized(), tree["accelerometer"]._slot("active")]
-        self._made = MadeDevices(slots)
+        self._devices = MadeDevices(slots)
         self._state: Any = None
         self._here: list[str] = []
         self._reads: list[Callable[[], Any]] = []
@@ -46,7 +46,7 @@ class Recording:
 
     def anything_made(self) -> bool:
         """Return whether any device exists, or any thread of WPILib's that waits for an alarm."""
-        made = any(self._made.told()) or bool(self._tree["CAN"].signature())
+        made = any(self._devices.made()) or bool(self._tree["CAN"].signature())
         return made or hal.simulation.getNumNotifiers() > 0
 
     def devices_made(self) -> list[str]:
@@ -54,7 +54,7 @@ class Recording:
         slots = [join(kind.name, index) for kind in KINDS for index, _ in enumerate(kind.initialized())]
         slots += ["pneumatics or power distribution"] * len(list(self._tree.modules.initialized()))
         slots.append("accelerometer")
-        made = [name for name, there in zip(slots, self._made.told(), strict=True) if there]
+        made = [name for name, there in zip(slots, self._devices.made(), strict=True) if there]
         if self._tree["CAN"].signature():
             made += [join("CAN", name) for name in sorted(self._tree["CAN"])]
         return made + ["a notifier"] * (hal.simulation.getNumNotifiers() > 0)
@@ -64,7 +64,7 @@ class Recording:
         tree = self._tree
         devices = tree["CAN"].signature()
         tree["robot"].sync(devices)
-        state = (self._made.told(), devices)
+        state = (self._devices.made(), devices)
         others = state != self._state
         if others:
             self._state = state
@@ -134,27 +134,26 @@ class _AtRest:
 
 
 class MadeDevices:
-    """Which devices there are, without asking for each of the hundreds that may be.
+    """Which devices the robot has made, without reading each of the hundreds that it could make.
 
-    The HAL notes when one is made; it forgets to, once a device's data have been reset, so those that are there are
-    asked all the same.
+    The HAL calls back when one is made, but not when a device's data are reset: so those that were made are read again.
     """
 
     def __init__(self, slots: list[Slot]) -> None:
         self._slots = slots
         self._noted = True
         self._watches: list[object] = []
-        self._told: list[bool] = []
-        self._there: list[Callable[[], Any]] = []
+        self._made: list[bool] = []
+        self._still_made: list[Callable[[], Any]] = []
 
-    def told(self) -> list[bool]:
-        """For each device whether it is there: the same list while that is so."""
-        if self._noted or False in [tells() for tells in self._there]:
+    def made(self) -> list[bool]:
+        """Return, for each device, whether it has been made; the same list object as long as nothing changes."""
+        if self._noted or False in [is_made() for is_made in self._still_made]:
             self._noted = False
             self._watches = [slot.watch(self._note) for slot in self._slots if slot.watch is not None]
-            self._told = [bool(slot.get()) for slot in self._slots]
-            self._there = [slot.get for slot, told in zip(self._slots, self._told, strict=True) if told]
-        return self._told
+            self._made = [bool(slot.get()) for slot in self._slots]
+            self._still_made = [slot.get for slot, made in zip(self._slots, self._made, strict=True) if made]
+        return self._made
 
     def _note(self) -> None:
         self._noted = True

@@ -10,6 +10,7 @@ import importlib.util
 import sys
 from pathlib import Path
 
+from .._version import requirement
 from ..errors import UsageError
 from ..text_files import write_whole
 from .figures import Figures
@@ -26,7 +27,7 @@ def flame_is_to_be_had() -> None:
     if importlib.util.find_spec("pyinstrument") is None:
         raise UsageError(
             "the flame view is drawn by pyinstrument, which is not installed",
-            remedy='Install it with: pip install "pyfrc[profile]"',
+            remedy=f'Install it with: pip install "{requirement("profile")}"',
         )
 
 

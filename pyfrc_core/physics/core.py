@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["PhysicsEngine", "PhysicsInitException", "PhysicsInterface"]
 
 _NO_MOVE = Transform2d()
+#: What WPILib takes for equal when it compares poses: metres, radians.
+_LEAST_MOVE = 1e-9
 
 
 class PhysicsInitException(RobotCodeError):
@@ -164,7 +166,12 @@ class PhysicsInterface:
         :param x: feet forward
         :param y: feet to the right
         :param angle: radians, clockwise
+
+        As with `move_robot`, less than a nanometre and a billionth of a radian is no move.
         """
+        _check(x, y, angle)
+        if max(abs(x) * METRES_PER_FOOT, abs(y) * METRES_PER_FOOT, abs(angle)) < _LEAST_MOVE:
+            return
         self._move(x, y, angle)
         self._turn_analog_gyros(angle)
 

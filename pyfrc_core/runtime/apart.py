@@ -24,12 +24,18 @@ if TYPE_CHECKING:
 
 Answer = TypeVar("Answer")
 
+#: Its output is never read: no letter of it is an error.
+ENVIRONMENT = {"PYTHONIOENCODING": "utf-8:backslashreplace"}
+
 _BESIDE_OUR_PACKAGE = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True)
-class _Job:
-    """:param call: the pickled work and its project, apart, since unpickling it needs `path`"""
+class Job:
+    """Work for another process.
+
+    :param call: the pickled work and its project, apart, since unpickling it needs `path`
+    """
 
     call: bytes
     path: list[str]
@@ -45,6 +51,22 @@ class _FailedThere(Exception):
         return f"\n{self.args[0]}"
 
 
+def run_interpreter(job: Job) -> int:
+    """Run `main` in a new interpreter; tests replace this function by one that starts it faster.
+
+    :return: the exit code; a signal's number, negative
+    """
+    return subprocess.run(
+        [sys.executable, "-m", __name__],
+        input=pickle.dumps(job),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        cwd=_BESIDE_OUR_PACKAGE,  # where no module of the user's is in Python's way
+        env=os.environ | ENVIRONMENT,
+        check=False,
+    ).returncode
+
+
 def run_apart(work: Callable[[Project, LastWords], Answer], project: Project, meanwhile: str) -> Answer:
     """Have another process do `work`, and answer what it answers; nothing that is printed there is seen.
 
@@ -55,21 +77,13 @@ def run_apart(work: Callable[[Project, LastWords], Answer], project: Project, me
     with TemporaryDirectory(prefix="pyfrc-apart-") as temporary:
         answer, words = Path(temporary, "answer"), Path(temporary, "words")
         # A copy, without what the project has read already.
-        job = _Job(pickle.dumps((work, replace(project))), sys.path, str(Path.cwd()), answer, words)
-        done = subprocess.run(
-            [sys.executable, "-m", __name__],
-            input=pickle.dumps(job),
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            cwd=_BESIDE_OUR_PACKAGE,  # where no module of the user's is in Python's way
-            env={**os.environ, "PYTHONIOENCODING": "utf-8:backslashreplace"},  # nobody reads it
-            check=False,
-        )
+        job = Job(pickle.dumps((work, replace(project))), sys.path, str(Path.cwd()), answer, words)
+        status = run_interpreter(job)
         if not answer.is_file():
             left = words.read_bytes().decode(errors="surrogateescape") if words.is_file() else ""
             from .own_process import explain_end
 
-            raise RobotCodeError(explain_end(left, done.returncode, project.files, meanwhile))
+            raise RobotCodeError(explain_end(left, status, project.files, meanwhile))
         result, error, stack = pickle.loads(answer.read_bytes())
     if stack:
         raise (error or RuntimeError("a mistake in pyfrc itself")) from _FailedThere(stack)
@@ -78,7 +92,7 @@ def run_apart(work: Callable[[Project, LastWords], Answer], project: Project, me
 
 def main() -> None:
     """The other process."""
-    job: _Job = pickle.load(sys.stdin.buffer)
+    job: Job = pickle.load(sys.stdin.buffer)
     sys.path[:] = job.path
     os.chdir(job.directory)
     from .own_process import LastWords, end_processes_of_the_robot, exit_now

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .._version import requirement
 from ..errors import UsageError
 from .scene import Field, Line, Point, Pose, Scene
 
@@ -32,7 +33,9 @@ def see_that_pictures_can_be_drawn(file: Path) -> None:
     :raises UsageError: saying what to do
     """
     if importlib.util.find_spec("PIL") is None:
-        raise UsageError("drawing a picture needs Pillow", remedy='Install it with: pip install "pyfrc[picture]"')
+        raise UsageError(
+            "drawing a picture needs Pillow", remedy=f'Install it with: pip install "{requirement("picture")}"'
+        )
     from PIL import Image
 
     known = Image.registered_extensions()

@@ -16,14 +16,14 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from ..runtime.forks import FORK_IS_SAFE
+from . import host_process
 from .commands import Quit
 from .host import Exited, Hosting, Kill, Launch, Preload
+from .host_process import HostProcess
 from .messages import Failed, Job, Message
 from .output_pipe import OutputPipe
 from .robot_channel import RobotChannel
 
-#: Where no module of the user's is in Python's way.
-_BESIDE_OUR_PACKAGE = Path(__file__).resolve().parents[2]
 #: The most bytes that the name of a socket may have on every system.
 _LONGEST_NAME = 100
 #: How long a process is given to end when it has been told to, in seconds.
@@ -59,7 +59,7 @@ class RobotProcesses:
         except OSError:  # a file system without sockets, or a name that is too long
             self._listener = Listener(("127.0.0.1", 0), authkey=self._key)
         self._number = 0
-        self._host: subprocess.Popen[bytes] | None = None
+        self._host: HostProcess | None = None
         self._host_connection: Connection | None = None
         self._host_reader: threading.Thread | None = None
         self._robot: Connection | None = None
@@ -145,22 +145,10 @@ class RobotProcesses:
         if self._output is not None:
             _thread(self._output.close, "pyfrc sim: end of output")
         self._output = output = OutputPipe(self._on_output)
-        host = subprocess.Popen(
-            [sys.executable, "-c", f"from {__package__}.host import main; main()"],
-            stdin=subprocess.PIPE,
-            stdout=output.writing_end,
-            stderr=subprocess.STDOUT,
-            cwd=_BESIDE_OUR_PACKAGE,
-            env=os.environ | {"PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8"},
-            start_new_session=os.name == "posix",
-        )
-        self._host = host
-        assert host.stdin is not None
         hosting = Hosting(
             self._listener.address, self._key, sys.path, str(Path.cwd()), self._forks, self._temporary.name
         )
-        with suppress(OSError), host.stdin as stdin:
-            stdin.write(pickle.dumps(hosting))
+        self._host = host = host_process.start_host(hosting, output.writing_end)
         _thread(self._wait_for, "pyfrc sim: end", host, self._number)
 
     def _end_host(self) -> None:
@@ -227,7 +215,7 @@ class RobotProcesses:
                 if isinstance(message, Exited):
                     self._exited(message.number, message.status)
 
-    def _wait_for(self, host: subprocess.Popen[bytes], number: int) -> None:
+    def _wait_for(self, host: HostProcess, number: int) -> None:
         """Report the robot's exit where it comes with the host's: always where nothing is forked."""
         status = host.wait()
         self._all_accepted()
@@ -312,7 +300,7 @@ def introduced(connection: Connection) -> object:
     return connection.recv()
 
 
-def _end_group(host: subprocess.Popen[bytes]) -> None:
+def _end_group(host: HostProcess) -> None:
     """End a host, with whatever the robot has started."""
     if os.name == "posix":
         with suppress(ProcessLookupError, PermissionError):

@@ -32,6 +32,7 @@ from ..runtime.watchdog import Watchdog
 from .extensions import WINDOW, load_extensions
 from .field import tags_of
 from .messages import Failed, Job, Ready, WindowClosed
+from .program_files import keep_no_bytecode_of_new_code
 from .session import Ended, Session
 from .snapshot import Failure
 from .wpilog import WpiLog
@@ -61,6 +62,7 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
     run = RobotRun(LogPlace.of_run(project.root))
     loaded = False
     try:
+        keep_no_bytecode_of_new_code(project.root)
         redirection.install(files)
         robot_class = project.load()
         physics = load_physics(project) if project.physics_file.is_file() else None

@@ -10,11 +10,11 @@ from functools import partial
 from pathlib import Path
 
 from ..errors import UsageError
+from ..interruption import ending_like_ctrl_c
 from ..project import Project
 from ..runtime.scripts.script import load_script
 from .c_exit import calling_at_c_exit
 from .extensions import WINDOW
-from .interruption import ending_like_ctrl_c
 from .kept import KeptFiles
 from .network import NT4_PORT
 from .options import SimOptions

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from .program_files import program_files
 from .simulation import Simulation
 
 #: How often to look, in wall seconds.
 _LOOK_SECONDS = 0.2
-#: Directories that hold no code of the robot's.
-_NOT_OURS = {"__pycache__", "node_modules", "site-packages", "tests", "venv"}
 
 
 class Watch:
@@ -24,26 +22,13 @@ class Watch:
 
     def __init__(self, root: Path) -> None:
         self._root = root
-        self._seen = self._look()
+        self._seen = program_files(self._root)
 
     def changed(self) -> list[str]:
         """The files that have been saved, made or removed since this was last asked, relative to the root."""
-        before, self._seen = self._seen, self._look()
+        before, self._seen = self._seen, program_files(self._root)
         changed = sorted({file for file, _ in before.items() ^ self._seen.items()})
         return [Path(file).relative_to(self._root).as_posix() for file in changed]
-
-    def _look(self) -> dict[str, tuple[int, int]]:
-        found = {}
-        for directory, below, files in os.walk(self._root):
-            below[:] = [name for name in below if name not in _NOT_OURS and not name.startswith(".")]
-            for name in files:
-                if name.endswith(".py") or name in ("config.json", "pyproject.toml"):
-                    try:
-                        status = Path(directory, name).stat()
-                    except OSError:  # gone again: an editor's
-                        continue
-                    found[str(Path(directory, name))] = (status.st_mtime_ns, status.st_size)
-        return found
 
 
 @contextmanager

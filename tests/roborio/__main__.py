@@ -21,15 +21,15 @@ def main() -> int:
     parser = argparse.ArgumentParser("python -m tests.roborio", description=__doc__)
     parser.add_argument("--host", default="127.0.0.2", help="the loopback address at which it is found (127.0.0.2)")
     parser.add_argument("--wpilib", default="2026.2.2", metavar="VERSION", help="the version of wpilib on it")
-    parser.add_argument("--image", default="FRC_roboRIO_2026_v2.0", metavar="VERSION", help="the version of its image")
+    parser.add_argument("--image", default="FRC_roboRIO_2026_v1.2", metavar="VERSION", help="the version of its image")
     parser.add_argument("--slow", action="store_true", help="as on a field: 20 ms round trips, 4 Mbit/s")
     parser.add_argument("command", nargs="*", help="run this with the look-alike's address as last argument")
     options = parser.parse_args()
-    if (missing := missing_here()) is not None:
+    if missing := missing_here():
         if options.command:
-            print(f"no look-alike here: {missing}")
+            print(f"no look-alike here: it needs {', '.join(missing)}")
             return 0
-        print(f"error: {missing}", file=sys.stderr)
+        print(f"error: a look-alike of a roboRIO needs {', '.join(missing)}, which this machine lacks", file=sys.stderr)
         return 1
     if options.command:
         with Roborio(wpilib=options.wpilib, image=options.image) as robot:

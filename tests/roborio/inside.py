@@ -18,18 +18,25 @@ import sys
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).parents[2]))  # run without site-packages
+
+from pyfrc_core.virtual_robot.console import framed
+
 ROOT = sys.argv[1]
-SSH, *CONSOLES = (socket.socket(fileno=int(number)) for number in sys.argv[2:])
+HAS_DRIVER_STATION = sys.argv[2] == "driver-station"  # connected all the time
+DRIVER_STATION, SSH, *CONSOLES = (socket.socket(fileno=int(number)) for number in sys.argv[3:])
 CHROOT = shutil.which("chroot", path="/usr/sbin:/usr/bin:/sbin:/bin") or "chroot"
 LVUSER = ("--userspec=500:500", "--groups=")
 # What the robot's own start script does: one line, run as lvuser.
+PID_FILE = Path(ROOT, "run/natinst/FRC_UserProgram.pid")
+SUPERVISOR_SETTINGS = Path(ROOT, "etc/natinst/share/lvrt.conf")
+DRIVER_STATION_LOST = 1.0  # seconds without a packet of its
 PROGRAM = """
 cd /home/lvuser
 if [ -e /tmp/frcdebug ]; then file=robotDebugCommand; else file=robotCommand; fi
 [ -e $file ] || exec sleep infinity
 eval "exec $(head -n 1 $file)"
 """
-PAUSE_BEFORE_RESTART = 1.0  # seconds, after a program that ended by itself
 
 
 def set_up() -> int:
@@ -37,6 +44,8 @@ def set_up() -> int:
     for name, mode in (("tmp", "1777"), ("run", "755")):
         subprocess.run(["mount", "-t", "tmpfs", "-o", f"mode={mode},size=64m", "tmpfs", f"{ROOT}/{name}"], check=True)
     Path(ROOT, "run/sshd").mkdir(0o755)
+    PID_FILE.parent.mkdir(0o755)
+    os.chown(PID_FILE.parent, 500, 500)  # scripts that run as lvuser remove the file
     with socket.socket() as any_socket:  # loopback up: ifreq with IFF_UP, by SIOCSIFFLAGS
         fcntl.ioctl(any_socket, 0x8914, struct.pack("16sH14x", b"lo", 1))
     os.mkfifo(f"{ROOT}/run/robot-program")
@@ -50,7 +59,7 @@ class Program:
     def __init__(self) -> None:
         self.process: subprocess.Popen[bytes] | None = None
         self.output = -1
-        self.start_at: float | None = time.monotonic()
+        self.start_at: float | None = time.monotonic() if starts_programs() else None
 
     def start(self) -> None:
         """Start it, if there is a start command; `output` is then its output's descriptor."""
@@ -65,6 +74,19 @@ class Program:
             env={"HOME": "/home/lvuser", "USER": "lvuser", "PATH": "/usr/local/bin:/usr/bin:/bin"},
         )
         os.close(its_end)
+        PID_FILE.write_text(f"{self.process.pid}\n")
+
+    def ended(self) -> None:
+        """Start it again at once, as lvrt does unless its settings say otherwise."""
+        self.process = None
+        PID_FILE.unlink(missing_ok=True)
+        if starts_programs():
+            self.start_at = time.monotonic()
+
+    def forget(self) -> None:
+        """Leave it alone: it runs on, and nobody looks after it."""
+        self.start_at = None
+        self.process = None
 
     def stop(self) -> None:
         """Stop it, if it runs."""
@@ -75,26 +97,35 @@ class Program:
             self.process = None
 
 
-def framed(line: bytes, number: int) -> bytes:
-    """A line of output as netconsole frames it."""
-    body = struct.pack(">BfH", 12, time.monotonic() % 1e6, number % 65536) + line
-    return struct.pack(">H", len(body)) + body
+def starts_programs() -> bool:
+    """Whether the supervisor's settings have it start programs; scripts change them with nirtcfg."""
+    try:
+        return "RTTarget.LaunchAppAtBoot=False" not in SUPERVISOR_SETTINGS.read_text().splitlines()
+    except FileNotFoundError:
+        return True
+
+
+def supervisor() -> subprocess.Popen[bytes]:
+    """A process called lvrt: scripts end it to have it start the program again."""
+    command = [CHROOT, *LVUSER, ROOT, "/usr/local/natinst/bin/lvrt"]
+    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def main() -> None:
     control = set_up()
     CONSOLES.extend(socket.create_server(("0.0.0.0", port)) for port in (1740, 1741))
-    for each in (SSH, *CONSOLES):
+    for each in (DRIVER_STATION, SSH, *CONSOLES):
         each.setblocking(False)
     selector = selectors.DefaultSelector()
     selector.register(sys.stdin, selectors.EVENT_READ, "owner")
     selector.register(control, selectors.EVENT_READ, "control")
+    selector.register(DRIVER_STATION, selectors.EVENT_READ, "driver station")
     selector.register(SSH, selectors.EVENT_READ, "ssh")
     for each in CONSOLES:
         selector.register(each, selectors.EVENT_READ, "console")
     listeners: list[socket.socket] = []
-    program = Program()
-    number, unfinished = 0, b""
+    program, lvrt = Program(), supervisor()
+    number, unfinished, packet_at = 0, b"", float("-inf")
     os.write(1, b"ready\n")
     while True:
         if program.start_at is not None and time.monotonic() >= program.start_at:
@@ -107,9 +138,13 @@ def main() -> None:
                 for words in os.read(control, 4096).split(b"\n"):
                     if b"stop" in words:
                         program.stop()
+                    if b"forget" in words:
+                        program.forget()
                     if b"start" in words:
-                        program.stop()
                         program.start_at = time.monotonic()
+            elif key.data == "driver station":
+                DRIVER_STATION.recv(1024)
+                packet_at = time.monotonic()
             elif key.data == "ssh":
                 connection, _ = SSH.accept()
                 with connection:
@@ -124,11 +159,12 @@ def main() -> None:
                     selector.unregister(key.fd)
                     os.close(key.fd)
                     if program.process is not None and program.output == key.fd:
-                        program.process = None
-                        program.start_at = time.monotonic() + PAUSE_BEFORE_RESTART
+                        program.ended()
                     continue
                 os.write(1, piece)
                 *lines, unfinished = (unfinished + piece).split(b"\n")
+                if not HAS_DRIVER_STATION and time.monotonic() - packet_at > DRIVER_STATION_LOST:
+                    continue
                 for line in lines:
                     number += 1
                     for listener in list(listeners):
@@ -137,8 +173,11 @@ def main() -> None:
                         except OSError:
                             listeners.remove(listener)
         with contextlib.suppress(ChildProcessError):
-            while os.waitpid(-1, os.WNOHANG)[0]:
-                pass
+            while (ended := os.waitpid(-1, os.WNOHANG)[0]) != 0:
+                if ended == lvrt.pid:
+                    lvrt = supervisor()
+                    if program.process is None and starts_programs():
+                        program.start_at = time.monotonic()
 
 
 main()

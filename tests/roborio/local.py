@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -46,7 +47,10 @@ class LocalChannel:
         self._process = process
         self._limits = {"to": cut_to_robot, "from": cut_from_robot}
         self.bytes_to_robot = self.bytes_from_robot = 0
-        #: How many steps on the disk the agent has made, once it has ended by itself.
+        #: Set: `recv_exit_status` waits by itself.
+        self.status_event = threading.Event()
+        self.status_event.set()
+        #: How many steps on the disk the agent has made, or calls, once it has ended by itself.
         self.steps: int | None = None
 
     def sendall(self, data: bytes) -> None:
@@ -133,7 +137,7 @@ class LocalRobot:
         robot = cls(root)
         for name in ("home/lvuser", "tmp", "etc/natinst/share", "usr/local/frc/bin", "etc/profile.d"):
             (root / name).mkdir(parents=True)
-        (root / "etc/natinst/share/scs_imagemetadata.ini").write_text('IMAGEVERSION = "FRC_roboRIO_2026_v2.0"\n')
+        (root / "etc/natinst/share/scs_imagemetadata.ini").write_text('IMAGEVERSION = "FRC_roboRIO_2026_v1.2"\n')
         (root / "etc/profile.d/natinst-path.sh").write_text("")
         script = root / "usr/local/frc/bin/frcKillRobot.sh"
         script.write_text("#!/bin/sh\n")
@@ -221,15 +225,22 @@ class Agents:
         cut_from_robot: int | None = None,
         last_step: int | None = None,
         loses: bool = False,
+        calls: bool = False,
+        all_signs: bool = False,
+        runs: bool | None = None,
     ) -> LocalChannel:
         """A new agent.
 
         :param last_step: it is killed before this step of its on the disk
         :param loses:     and what was not on the disk yet is lost, as when the power goes
+        :param calls:     its calls are counted, instead of its steps on the disk
+        :param all_signs: it gives a sign of life for everything that it does
+        :param runs:      what each watch of a program sees: it runs, or it ends; None: what is so
         """
         ours, theirs = socket.socketpair()
         alive, end = os.pipe()
-        message = json.dumps({"root": str(root), "last_step": last_step, "loses": loses}).encode()
+        options = {"last_step": last_step, "loses": loses, "calls": calls, "all_signs": all_signs, "runs": runs}
+        message = json.dumps({"root": str(root), **options}).encode()
         socket.send_fds(self._control, [message], [theirs.fileno(), end])
         theirs.close()
         os.close(end)

@@ -8,6 +8,7 @@ them can run side by side, and pulling its power is one SIGKILL.
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import shutil
 import signal
@@ -19,10 +20,11 @@ import threading
 from pathlib import Path
 from types import TracebackType
 
-import pytest
-
 HERE = Path(__file__).parent
 LVUSER, NI = 500, 500
+#: Files to take for ``frcKillRobot.sh``; the default one, which takes no time, is in files/.
+TAKES_TWO_SECONDS = HERE / "kill_scripts/takes_two_seconds.sh"
+LETS_PROGRAMS_SURVIVE = HERE / "kill_scripts/lets_programs_survive.sh"
 _PASSWD = """\
 root:x:0:0::/:/usr/sbin/nologin
 admin:{password}:0:0::/home/admin:/bin/bash
@@ -44,23 +46,27 @@ Subsystem sftp internal-sftp
 """
 
 
-def missing_here() -> str | None:
-    """What there is not on this machine, of what a look-alike needs."""
+@functools.cache
+def missing_here() -> tuple[str, ...]:
+    """Return what this machine lacks of what a look-alike needs."""
     if sys.platform != "linux":
-        return "a roboRIO look-alike needs Linux"
-    if os.geteuid() != 0:
-        return "a roboRIO look-alike needs root"
-    if not Path("/usr/sbin/sshd").exists():
-        return "a roboRIO look-alike needs sshd: apt-get install openssh-server"
-    if subprocess.run(["unshare", "-m", "-p", "-n", "-f", "true"], capture_output=True, check=False).returncode != 0:
-        return "a roboRIO look-alike needs namespaces of its own, which this system does not let us make"
-    return None
+        return ("Linux",)
+    missing = [] if os.geteuid() == 0 else ["root"]
+    if shutil.which("sshd", path="/usr/sbin") is None:
+        missing.append("sshd")
+    if (
+        not missing
+        and subprocess.run(["unshare", "-m", "-p", "-n", "-f", "true"], capture_output=True, check=False).returncode
+    ):
+        missing.append("namespaces")  # a system may forbid them even to root
+    return tuple(missing)
 
 
 def require_roborio() -> None:
-    """Skip the test where there can be no look-alike (conftest.py makes that a failure in the gate)."""
-    if (missing := missing_here()) is not None:
-        pytest.skip(missing)
+    """Skip the test where there can be no look-alike: for tests with much to do before they make one."""
+    from skips import require  # which the tests can import; `python -m tests.roborio` starts elsewhere
+
+    require("deploying to a look-alike of a roboRIO", missing_here())
 
 
 class Roborio:
@@ -75,6 +81,8 @@ class Roborio:
     :param password:       of both users
     :param authorized_key: a public key, in OpenSSH's form; only this key is let in then, no password
     :param kill_script:    a file to take for ``frcKillRobot.sh``
+    :param driver_station: whether one is connected all the time; else the console is silent, except while packets such
+                           as a Driver Station's arrive (UDP 1110)
     """
 
     def __init__(
@@ -83,13 +91,17 @@ class Roborio:
         host: str | None = None,
         port: int | None = None,
         wpilib: str | None = "2026.2.2",
-        image: str | None = "FRC_roboRIO_2026_v2.0",
+        image: str | None = "FRC_roboRIO_2026_v1.2",
         python: str | Path | None = sys.executable,
         disk_size: str = "64m",
         password: str = "",
         authorized_key: str | None = None,
         kill_script: Path | None = None,
+        driver_station: bool = True,
     ) -> None:
+        if missing_here():
+            require_roborio()  # here, so that no test can go without it
+        self._driver_station = driver_station
         self._base = Path(tempfile.mkdtemp(prefix="roborio-"))
         self._root = self._base / "root"
         self._root.mkdir()
@@ -111,6 +123,11 @@ class Roborio:
         except BaseException:
             self.close()
             raise
+
+    @classmethod
+    def unkind(cls, kill_script: Path = TAKES_TWO_SECONDS, driver_station: bool = False) -> Roborio:
+        """One that spares us nothing: a kill that takes its time, no Driver Station."""
+        return cls(kill_script=kill_script, driver_station=driver_station)
 
     def __enter__(self) -> Roborio:
         return self
@@ -137,14 +154,18 @@ class Roborio:
 
     def power_on(self) -> None:
         """Switch it on: it listens when this returns, and starts the robot program that it finds on its disk."""
-        listeners = [_listener(self.host, port) for port in (self.port, 1740, 1741)]
+        packets = socket.socket(type=socket.SOCK_DGRAM)
+        packets.bind((self.host, 1110))
+        listeners = [packets, *(_listener(self.host, port) for port in (self.port, 1740, 1741))]
         numbers = [str(each.fileno()) for each in listeners]
         self._said = ""
         into = ["nsenter", f"--mount=/proc/{self._holder.pid}/ns/mnt"]
         apart = ["unshare", "-m", "-p", "-n", "-f", f"--mount-proc={self._root}/proc"]
+        inside = [str(HERE / "inside.py"), str(self._root)]
+        inside.append("driver-station" if self._driver_station else "no-driver-station")
         errors = (self._base / "errors").open("w")
         self._inside = subprocess.Popen(
-            [*into, *apart, sys.executable, "-I", "-S", str(HERE / "inside.py"), str(self._root), *numbers],
+            [*into, *apart, sys.executable, "-I", "-S", *inside, *numbers],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=errors,
@@ -258,9 +279,14 @@ class Roborio:
     ) -> None:
         shutil.copytree(HERE / "files/etc", self.disk / "etc", dirs_exist_ok=True)
         shutil.copytree(HERE / "files/usr/local", self.disk / "usr/local", dirs_exist_ok=True)
-        for script in ("usr/local/bin/python3", "usr/local/bin/opkg", "usr/local/frc/bin/frcKillRobot.sh"):
-            (self.disk / script).chmod(0o755)
+        (self.disk / "var/run").symlink_to("/run")
+        for directory in ("bin", "frc/bin", "natinst/bin"):
+            for script in (self.disk / "usr/local" / directory).iterdir():
+                script.chmod(0o755)
+        if (awk := shutil.which("awk")) is not None:  # scripts use it; the host's may be a link by way of /etc
+            (self.disk / "usr/local/bin/awk").symlink_to(Path(awk).resolve())
         metadata = self.disk / "etc/natinst/share/scs_imagemetadata.ini"
+        os.chown(self.disk / "etc/natinst/share/lvrt.conf", LVUSER, NI)
         if image is None:
             shutil.rmtree(self.disk / "etc/natinst")
         else:
@@ -272,9 +298,10 @@ class Roborio:
         else:
             with (packages / "wpilib/__init__.py").open("a") as file:
                 file.write(f'\n__version__ = "{wpilib}"\n')
-            about = packages / f"wpilib-{wpilib}.dist-info"
-            about.mkdir()
-            (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: wpilib\nVersion: {wpilib}\n")
+            for name in ("wpilib", "robotpy"):
+                about = packages / f"{name}-{wpilib}.dist-info"
+                about.mkdir()
+                (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: {wpilib}\n")
         python3 = self.disk / "usr/local/bin/python3"
         if executable is None:
             python3.unlink()

@@ -7,6 +7,7 @@ in a power cut: every file written since the last flush is empty.
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import os
 import pathlib
@@ -16,7 +17,7 @@ import sys
 import traceback
 from typing import Any
 
-from pyfrc_core.deploy.agent import deploying, disk, releases, serve
+from pyfrc_core.deploy.agent import program, releases, serve, system, watching
 
 _CHANGES = {
     "os.rename",
@@ -43,12 +44,12 @@ class Steps:
         self._me = os.getpid()
         self._unsaved: dict[int, int] = {}
         self._saved_caches: set[int] = set()
-        self._open, self._fsync, self._flush = pathlib.Path.open, os.fsync, disk.flush
+        self._open, self._fsync, self._flush = pathlib.Path.open, os.fsync, system.flush
         if loses:
             # A function, which is bound to the path as the original is; our own method would not be.
             pathlib.Path.open = lambda path, *args, **options: self._opening(path, *args, **options)  # type: ignore[method-assign,assignment]
             os.fsync = self._fsyncing
-            for module in (disk, releases, deploying, serve):
+            for module in (system, releases):
                 module.flush = self._flushing  # type: ignore[attr-defined]
         sys.addaudithook(self._hook)
 
@@ -86,12 +87,29 @@ class Steps:
         self._saved_caches = {cache.stat().st_ino for cache in self._root.rglob("*.pyc")}
 
 
+class Calls:
+    """Counts the calls that an agent makes, of functions in Python and in C."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        sys.setprofile(self._count)
+
+    def _count(self, frame: object, event: str, argument: object) -> None:
+        self.count += event in ("call", "c_call")
+
+
 def agent(conversation: int, alive: int, options: dict[str, Any]) -> None:
-    """Be an agent; its steps are told at its end."""
+    """Be an agent; its steps, or its calls, are told at its end."""
     os.dup2(conversation, 0)
     os.dup2(conversation, 1)
     os.close(conversation)
     steps = Steps(options.get("last_step"), options.get("loses", False), options["root"])
+    if options["all_signs"]:
+        serve.Activity = functools.partial(serve.Activity, pause=0.0)  # type: ignore[misc,assignment]
+    if options["runs"] is not None:
+        seen = {"verdict": watching.RUNNING if options["runs"] else watching.ENDED, "heard": True, "seen": True}
+        program.Program.watch = lambda *watch: {**seen, "seconds": 1.0, "age": 1.0, "lived": 1.0}  # type: ignore[method-assign]
+    counted: Steps | Calls = Calls() if options["calls"] else steps
     try:
         serve.main(open(0, "rb", 0))  # noqa: SIM115
     except SystemExit:
@@ -99,7 +117,8 @@ def agent(conversation: int, alive: int, options: dict[str, Any]) -> None:
     except BaseException:
         traceback.print_exc()
     finally:
-        os.write(alive, b"%d" % steps.count)
+        sys.setprofile(None)
+        os.write(alive, b"%d" % counted.count)
         os._exit(0)
 
 

@@ -7,91 +7,28 @@ import json
 import os
 import zlib
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from .compiling import compile_below, compiled_forms, link_compiled
-from .disk import BLOCK, files_below, flush, free_bytes, link_or_copy, remove, sha256_of, write_whole
+from .activity import Activity
+from .compiling import CompiledForms, Compiler, compile_below
+from .content_index import DEPLOY_JSON, ContentIndex, Wanted, sha256_of, wanted_of
+from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, write_whole
 from .places import COMMAND, DEBUG_COMMAND, Refusal
 from .releases import Record, Releases, start_commands
 from .wire import Said, Wire
 
 #: Bytes to be left free on the robot's disk after a deploy, for the program's own files.
 _RESERVE = 256 * 1024
-_DEPLOY_JSON = "deploy.json"
-
-
-class Wanted(NamedTuple):
-    """A file as it is to be on the robot."""
-
-    path: str
-    size: int
-    sha256: str
-    executable: bool
-
-
-def wanted_of(files: Iterable[Any]) -> list[Wanted]:
-    """The manifest that the laptop has sent; every path stays in the code's directory."""
-    wanted = [Wanted(str(path), int(size), str(sha256), bool(executable)) for path, size, sha256, executable in files]
-    for each in wanted:
-        if "\0" in each.path or any(part in ("", ".", "..") for part in each.path.split("/")):
-            raise Refusal("path", f"{each.path!r} is no path within the program's directory")
-    if len({each.path for each in wanted}) != len(wanted):
-        raise Refusal("path", "the manifest has the same path twice")
-    return [each for each in wanted if each.path != _DEPLOY_JSON]
-
-
-class AtHand:
-    """Which of the wanted contents are on the robot already: looked for in all releases, known by their hashes."""
-
-    def __init__(self, releases: Releases, wanted: list[Wanted]) -> None:
-        sizes, hashes = {each.size for each in wanted}, {each.sha256 for each in wanted}
-        self._copies: dict[str, Path] = {}
-        self._same: dict[tuple[str, str, bool], Path] = {}
-        code = releases.code()
-        places = [] if code is None else [code]
-        places += [releases.directory(number).resolve() for number in reversed(releases.numbers())]
-        known: dict[tuple[int, int], str] = {}
-        for directory in dict.fromkeys(places):
-            listed = releases.listed(directory)
-            for name, file in files_below(directory):
-                try:
-                    state = file.stat()
-                    if state.st_size not in sizes:
-                        continue
-                    identity = (state.st_dev, state.st_ino)
-                    if identity not in known:
-                        known[identity] = sha256_of(file)
-                except OSError:
-                    continue  # the program that runs may remove and replace its files
-                sha256 = known[identity]
-                if sha256 in hashes:
-                    self._copies.setdefault(sha256, file)
-                    if listed is None or name in listed:
-                        self._same.setdefault((name, sha256, bool(state.st_mode & 0o100)), file)
-
-    def same_file(self, wanted: Wanted) -> Path | None:
-        """The file of this very name and content, in a release: it can be linked. Others might be the program's own."""
-        return self._same.get((wanted.path, wanted.sha256, wanted.executable))
-
-    def copy(self, wanted: Wanted) -> Path | None:
-        """A file with this content."""
-        return self._copies.get(wanted.sha256)
-
-    def missing(self, wanted: Iterable[Wanted]) -> list[Wanted]:
-        """The files whose contents the laptop has to send, each content once."""
-        first: dict[str, Wanted] = {}
-        for each in wanted:
-            if self.copy(each) is None:
-                first.setdefault(each.sha256, each)
-        return list(first.values())
 
 
 class Contents:
     """The contents that come over the wire: one compressed stream of them all, one after the other."""
 
-    def __init__(self, wire: Wire) -> None:
+    def __init__(self, wire: Wire, activity: Activity) -> None:
         self._wire = wire
+        self._activity = activity
         self._unpacking = zlib.decompressobj()
         self._ready = b""
 
@@ -104,6 +41,7 @@ class Contents:
                 digest.update(piece)
                 stream.write(piece)
                 left -= len(piece)
+                self._activity.step(len(piece))
         if digest.hexdigest() != wanted.sha256:
             raise Refusal("changed", f"{wanted.path} was changed while it was sent", "Deploy again.")
 
@@ -134,6 +72,7 @@ class Deploy:
 
     def __init__(self, releases: Releases, wire: Wire, request: Said) -> None:
         self._releases = releases
+        self._activity = releases.activity
         self._places = releases.places
         self._wire = wire
         self._wanted = wanted_of(request["files"])
@@ -141,16 +80,17 @@ class Deploy:
         self._main = str(request["main"])
         self._debug = bool(request.get("debug"))
         self._in_place = bool(request.get("in_place"))
+        self._program = frozenset(request.get("program") or ())
         self._commands = start_commands(self._main)
 
     def run(self) -> Said:
         """Do it; what is to be told to the laptop."""
         if self._main not in {each.path for each in self._wanted}:
             raise Refusal("main", f"there is no {self._main} among the files")
-        at_hand = AtHand(self._releases, self._wanted)
+        at_hand = ContentIndex(self._releases, self._wanted, self._activity)
         code = self._releases.code()
         if self._in_place and code is not None:
-            wanted = [each for each in self._wanted if not _has(at_hand, each, code)]
+            wanted = [each for each in self._wanted if not at_hand.has(each, code)]
             _refuse_clashes(wanted, code)
         else:
             wanted = self._wanted
@@ -166,27 +106,24 @@ class Deploy:
             return {**self._overwrite(code, wanted), **told}
         return {**self._release(), **told}
 
-    def _compiling(self) -> None:
-        self._wire.say(phase="compile")
-
-    def _is_current(self, current: int, at_hand: AtHand) -> bool:
+    def _is_current(self, current: int, at_hand: ContentIndex) -> bool:
         files = self._releases.record(current).get("files")
         directory = self._releases.directory(current).resolve()
         same = files == {each.path: each.sha256 for each in self._wanted}
-        return same and all(_has(at_hand, each, directory) for each in self._wanted)
+        return same and all(at_hand.has(each, directory) for each in self._wanted)
 
     def _again(self, current: int) -> Said:
         """The same files as they are there already: only who has deployed them is new."""
         directory = self._releases.directory(current)
         record = self._releases.record(current)
         record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
-        compile_below(directory, self._debug, self._compiling)
-        write_whole(directory / _DEPLOY_JSON, json.dumps(self._about, indent=2))
+        compile_below(directory, self._debug, self._activity, self._program)
+        write_whole(directory / DEPLOY_JSON, json.dumps(self._about, indent=2))
         self._releases.write_record(current, record)
         self._switch(current, None)
         return {"release": current, "previous": current, "files": 0, "bytes": 0, "taken": None, "unchanged": True}
 
-    def _make_room(self, wanted: list[Wanted], at_hand: AtHand) -> AtHand:
+    def _make_room(self, wanted: list[Wanted], at_hand: ContentIndex) -> ContentIndex:
         """Look for room for what is written: contents, and compiled files, up to twice as large as their sources.
 
         :return: what is at hand when there is room; old releases may have had to go
@@ -198,7 +135,7 @@ class Deploy:
                 needed += (each.size + 4095) // 4096 * 4096 * (3 if each.path.endswith(".py") else 1)
         if free_bytes(self._places.home) < needed:
             self._releases.prune(kept=1)
-            at_hand = AtHand(self._releases, self._wanted)
+            at_hand = ContentIndex(self._releases, self._wanted, self._activity)
         free = free_bytes(self._places.home)
         if free < needed:
             raise Refusal(
@@ -210,35 +147,60 @@ class Deploy:
             )
         return at_hand
 
-    def _fill(self, wanted: list[Wanted], missing: list[Wanted], at_hand: AtHand) -> None:
-        """Put the wanted files into the incoming directory."""
-        incoming = self._places.incoming
+    def _fill(self, wanted: list[Wanted], missing: list[Wanted], at_hand: ContentIndex) -> None:
+        """Put the wanted files into the incoming directory, compiled."""
+        incoming, activity = self._places.incoming, self._activity
         incoming.mkdir(parents=True)
+        for directory in sorted({each.path.rpartition("/")[0] for each in wanted}):
+            (incoming / directory).mkdir(parents=True, exist_ok=True)
+        linked = self._link(wanted, at_hand)
+        first = {each.sha256: each for each in missing}
+        copied = [each for each in wanted if each.path not in linked and first.get(each.sha256) != each]
+        at_once = [name for name, is_compiled in linked.items() if not is_compiled and name.endswith(".py")]
+        sources = at_once + [each.path for each in (*missing, *copied) if each.path.endswith(".py")]
+        with Compiler(incoming, sources, self._debug, self._program) as compiler:
+
+            def is_there(each: Wanted) -> None:
+                (incoming / each.path).chmod(0o755 if each.executable else 0o644)
+                if each.path.endswith(".py"):
+                    compiler.next_is_there()
+
+            for _ in at_once:
+                compiler.next_is_there()
+            activity.begin("receive", sum(each.size for each in missing))
+            contents = Contents(self._wire, activity)
+            for each in missing:
+                contents.write(each, incoming / each.path)
+                is_there(each)
+            if missing:
+                contents.end()
+            activity.begin("copy", len(copied))
+            for each in copied:
+                received = first.get(each.sha256)
+                source = at_hand.copy(each) if received is None else str(incoming / received.path)
+                _copy(source, each, incoming / each.path, activity)
+                is_there(each)
+                activity.step()
+            compiler.finish(activity)
+
+    def _link(self, wanted: list[Wanted], at_hand: ContentIndex) -> dict[str, bool]:
+        """Link the files that are the same in a release; whether they are compiled, by name."""
+        incoming, forms, linked = str(self._places.incoming), CompiledForms(), {}
+        self._activity.begin("link", len(wanted))
         for each in wanted:
-            (incoming / each.path).parent.mkdir(parents=True, exist_ok=True)
-        received: dict[str, Path] = {}
-        contents = Contents(self._wire)
-        for each in missing:
-            received[each.sha256] = incoming / each.path
-            contents.write(each, received[each.sha256])
-        if missing:
-            contents.end()
-        for each in wanted:
-            file, same = incoming / each.path, at_hand.same_file(each)
-            if file == received.get(each.sha256):
-                pass
-            elif same is not None:
+            same = at_hand.same_file(each)
+            if same is not None:
+                file = f"{incoming}/{each.path}"
                 link_or_copy(same, file)
-                link_compiled(same, file)
-                continue
-            else:
-                _copy(received.get(each.sha256) or at_hand.copy(each), each, file)
-            file.chmod(0o755 if each.executable else 0o644)
+                forms.link(same, file)
+                linked[each.path] = forms.includes(same, self._debug)
+            self._activity.step()
+        return linked
 
     def _release(self) -> Said:
         releases, places = self._releases, self._places
-        compile_below(places.incoming, self._debug, self._compiling)
-        write_whole(places.incoming / _DEPLOY_JSON, json.dumps(self._about, indent=2))
+        releases.flush(places.own)  # the contents, which takes its time; the rest is little
+        write_whole(places.incoming / DEPLOY_JSON, json.dumps(self._about, indent=2))
         previous, taken = releases.current(), None
         if releases.is_other_tools():
             taken = releases.next_number()
@@ -255,14 +217,15 @@ class Deploy:
         code = releases.code()
         self._wire.say(phase="switch")
         releases.write_record(number, record)
-        flush(places.own)
+        releases.flush(places.own)
         places.incoming.rename(releases.directory(number))
         if code is not None:
             carried = releases.carry(code, releases.directory(number).resolve(), None)
             record["carried"] = {"from": record["from"], "files": carried}
             releases.write_record(number, record)
         self._switch(number, taken)
-        releases.prune()
+        with suppress(OSError):  # what cannot be removed now, the next deploy removes
+            releases.prune()
         return {"release": number, "previous": record["from"], "taken": taken, "unchanged": False}
 
     def _switch(self, number: int, taken: int | None) -> None:
@@ -271,17 +234,22 @@ class Deploy:
 
     def _overwrite(self, code: Path, wanted: list[Wanted]) -> Said:
         """In place: file by file, each of them whole; nothing is deleted."""
-        flush(self._places.own)
+        self._wire.say(phase="switch")
+        current = self._releases.current()
+        if current is not None and wanted:
+            self._releases.record_start(current, ran=False, ended=False)  # it becomes another program
+        self._releases.flush(self._places.own)
+        compiled = CompiledForms()
         for each in wanted:
             target = code / each.path
             target.parent.mkdir(parents=True, exist_ok=True)
-            for compiled in compiled_forms(target):
-                remove(compiled)
+            for form in compiled.of(str(target)):
+                remove(Path(form))
             (self._places.incoming / each.path).replace(target)
-        remove(self._places.incoming)
-        compile_below(code, self._debug, self._compiling)
-        write_whole(code / _DEPLOY_JSON, json.dumps(self._about, indent=2))
-        current = self._releases.current()
+            compiled.link(str(self._places.incoming / each.path), str(target))
+        self._releases.remove(self._places.incoming)
+        compile_below(code, self._debug, self._activity)
+        write_whole(code / DEPLOY_JSON, json.dumps(self._about, indent=2))
         if current is not None:
             record = self._releases.record(current)
             record["files"] = {**record.get("files", {}), **{each.path: each.sha256 for each in self._wanted}}
@@ -289,7 +257,7 @@ class Deploy:
             self._releases.write_record(current, record)
         for name in (COMMAND, DEBUG_COMMAND):
             write_whole(self._places.home / name, self._commands[name] or "")
-        flush(self._places.home)
+        self._releases.flush(self._places.home)
         self._releases.set_debug(self._debug)
         return {"release": current, "previous": current, "taken": None, "unchanged": not wanted}
 
@@ -312,35 +280,27 @@ def _refuse_clashes(wanted: list[Wanted], code: Path) -> None:
 def plan(releases: Releases, files: Iterable[Any]) -> Said:
     """What a deploy of these files would do; nothing is written."""
     wanted = wanted_of(files)
-    at_hand = AtHand(releases, wanted)
+    at_hand = ContentIndex(releases, wanted, releases.activity)
     code = releases.code()
-    there: dict[str, Path] = {} if code is None else dict(files_below(code))
+    there = set() if code is None else {name for name, _ in files_below(code)}
     listed = None if code is None else releases.listed(code)
-    new = {each.path for each in wanted} | {_DEPLOY_JSON}
+    new = {each.path for each in wanted} | {DEPLOY_JSON}
     is_code = (lambda name: name.endswith(".py")) if listed is None else listed.__contains__
     missing = at_hand.missing(wanted)
     return {
         "added": [each.path for each in wanted if each.path not in there],
-        "changed": [each.path for each in wanted if each.path in there and code and not _has(at_hand, each, code)],
+        "changed": [each.path for each in wanted if each.path in there and code and not at_hand.has(each, code)],
         "removed": sorted(name for name in there if name not in new and is_code(name)),
         "files": len(missing),
         "bytes": sum(each.size for each in missing),
     }
 
 
-def _copy(source: Path | None, wanted: Wanted, file: Path) -> None:
+def _copy(source: str | None, wanted: Wanted, file: Path, activity: Activity) -> None:
     """A copy of a file that may be the program's own, and changed at any moment: what was copied is what counts."""
     if source is not None:
-        with source.open("rb") as reading, file.open("wb") as writing:
+        with Path(source).open("rb") as reading, file.open("wb") as writing:
             while block := reading.read(BLOCK):
                 writing.write(block)
-    if source is None or sha256_of(file) != wanted.sha256:
+    if source is None or sha256_of(str(file), activity) != wanted.sha256:
         raise Refusal("changed", f"{wanted.path} was changed by the robot program in this moment", "Deploy again.")
-
-
-def _has(at_hand: AtHand, wanted: Wanted, code: Path) -> bool:
-    """Whether the file of this name in the directory `code` is as wanted."""
-    file, same = code / wanted.path, at_hand.same_file(wanted)
-    if same is None or not file.is_file():
-        return False
-    return same == file or same.samefile(file)

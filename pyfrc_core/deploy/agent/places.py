@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import time
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
+
+from .system import lock
 
 HOME = "/home/lvuser"
 CODE = HOME + "/py"
@@ -68,7 +69,7 @@ class Lock:
             self._file.parent.mkdir(parents=True, exist_ok=True)
             stream = self._file.open("a+", encoding="utf-8")
             try:
-                fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                lock(stream)
                 if self._is_still(stream):
                     break
             except OSError:

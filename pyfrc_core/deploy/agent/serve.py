@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import errno
 import os
-import pwd
-import re
 import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from .activity import Activity
+from .content_index import sha256_of
 from .deploying import Deploy, plan
-from .disk import files_below, flush, free_bytes, remove, remove_if_possible, sha256_of, text_of
+from .disk import files_below, free_bytes, remove, text_of
+from .imports import look_up
+from .inventory import IMAGE_FILE, find_other_languages, image_in
 from .places import COMMAND, DEBUG_COMMAND, Lock, Places, Refusal
-from .program import KILL_SCRIPT, Program, processes, stop
+from .program import KILL_SCRIPT, Program, age_of, processes, stop
 from .releases import Releases
+from .system import become, is_root, user
+from .virtual import virtual_robot
+from .watching import ENDED, RUNNING, UNHEARD
 from .wire import EndedError, Said, Wire, WireError
 
 _USER = "lvuser"
@@ -27,33 +33,31 @@ def main(source: BinaryIO) -> None:
     """Talk to the laptop, over `source` and standard output."""
     wire = Wire(source, os.fdopen(os.dup(1), "wb"))
     hello = wire.hear()
-    if "root" not in hello and os.geteuid() == 0:
-        _become(_USER)
+    virtual = virtual_robot()
+    root = hello.get("root") if virtual is None else virtual.root
+    if root is None and is_root():
+        become(_USER)
     try:
-        Agent(wire, Places(hello.get("root", "/")), str(hello.get("who") or "somebody")).serve()
+        Agent(wire, Places(root or "/"), hello).serve()
     except (WireError, ConnectionError):
         sys.exit(1)  # the laptop is gone
-
-
-def _become(user: str) -> None:
-    """What is written belongs to the user whose program it is."""
-    entry = pwd.getpwnam(user)
-    os.initgroups(user, entry.pw_gid)
-    os.setgid(entry.pw_gid)
-    os.setuid(entry.pw_uid)
 
 
 class Agent:
     """What the laptop can ask for."""
 
-    def __init__(self, wire: Wire, places: Places, who: str) -> None:
+    def __init__(self, wire: Wire, places: Places, hello: Said) -> None:
         self._wire = wire
         self._places = places
-        self._releases = Releases(places)
+        self._activity = Activity(wire.say)
+        self._releases = Releases(places, self._activity)
         self._program = Program(places)
-        self._who = who
+        self._hello = hello
+        self._who = str(hello.get("who") or "somebody")
         #: Held from a change of the program until it has been started again and watched.
         self._lock: ExitStack | None = None
+        #: The release that was started and has not been watched yet.
+        self._started: int | None = None
         #: The manifest that was last planned with: a deploy that brings none is of these files.
         self._files: list[Any] = []
         self._requests: dict[str, Callable[[Said], Said]] = {
@@ -68,7 +72,7 @@ class Agent:
 
     def serve(self) -> None:
         """Answer until the laptop hangs up."""
-        self._answer(self.facts, {})
+        self._answer(self.facts, self._hello)
         while True:
             # Where no lock is held, the laptop may have to ask its user something.
             self._wire.impatient = self._lock is not None
@@ -79,6 +83,7 @@ class Agent:
             self._answer(lambda request: self._requests[request["op"]](request), request)
 
     def _answer(self, do: Callable[[Said], Said], request: Said) -> None:
+        self._activity.reset()
         try:
             self._wire.say(done=do(request))
         except WireError:
@@ -108,20 +113,18 @@ class Agent:
 
     def facts(self, request: Said) -> Said:
         """What there is on the robot."""
-        image = re.search(
-            r'IMAGEVERSION\s*=\s*"?([^"\n]*)',
-            text_of(self._places.of("/etc/natinst/share/scs_imagemetadata.ini")) or "",
-        )
         ini = text_of(self._places.of("/etc/natinst/share/ni-rt.ini"))
-        releases = self._releases
+        releases, python = self._releases, look_up(request.get("modules") or ())
+        program = processes()
         return {
+            **python,
+            "wpilib": python["packages"].get("wpilib"),
             "python": ".".join(map(str, sys.version_info[:3])),
-            "wpilib": _version_of("wpilib"),
-            "image": image[1] if image else None,
+            "image": image_in(text_of(self._places.of(IMAGE_FILE)) or ""),
             "startup_dlls": any(line.startswith("StartupDLLs") for line in (ini or "").splitlines()),
-            "kill_script": self._places.of(KILL_SCRIPT).exists(),
+            "kill_script": virtual_robot() is not None or self._places.of(KILL_SCRIPT).exists(),
             "free": free_bytes(self._places.home) if self._places.home.is_dir() else 0,
-            "user": pwd.getpwuid(os.geteuid()).pw_name,
+            "user": user(),
             "home": self._places.home.is_dir(),
             "current": releases.current(),
             "releases": [self._about(number) for number in releases.numbers()],
@@ -129,13 +132,16 @@ class Agent:
             "deploy_json": text_of(self._places.code / "deploy.json"),
             "command": text_of(self._places.home / COMMAND),
             "debug": self._places.debug_flag.exists(),
-            "running": bool(processes()),
+            "running": bool(program),
+            "program_age": age_of(program),
+            "other_languages": find_other_languages(self._places),
         }
 
     def _about(self, number: int) -> Said:
         record = self._releases.record(number)
         known = {key: record.get(key) for key in ("main", "debug", "deploy", "from")}
-        return {"release": number, "taken": bool(record.get("taken")), "files": len(record.get("files", ())), **known}
+        known.update({key: bool(record.get(key)) for key in ("taken", "ran", "ended")})
+        return {"release": number, "files": len(record.get("files", ())), **known}
 
     @contextmanager
     def _transaction(self, keep: bool = False) -> Iterator[None]:
@@ -163,24 +169,36 @@ class Agent:
         with self._transaction(keep=not request.get("in_place")):
             self._releases.recover()
             try:
-                return Deploy(self._releases, self._wire, request).run()
+                done = Deploy(self._releases, self._wire, request).run()
+                return {**done, "fallback": self._releases.fallback(done["release"])}
             except BaseException:
-                remove_if_possible(self._places.incoming)  # what is left the next deploy clears up
+                with suppress(ConnectionError):  # what is left the next deploy clears up
+                    self._releases.remove(self._places.incoming, if_possible=True)
                 raise
 
     def _restart(self) -> Said:
         with self._transaction(keep=True):
-            self._program.restart()
-            current = self._releases.current()
+            self._activity.begin("stop")
+            self._started = current = self._releases.current()
+            name = None if current is None else self._releases.record(current).get("main")
+            main = None if name is None else self._places.code / name
+            survived = self._activity.wait_for(lambda: self._program.restart(main))
             if current is not None:
                 self._releases.settle(current)
-        return {}
+        return {"survived": survived}
 
     def _watch(self, request: Said) -> Said:
         # Locked: somebody else's restart in the middle of it would be taken for this program's end.
         with self._lock or ExitStack():
             self._lock = None
-            return self._program.watch(self._wire, float(request["seconds"]))
+            seconds = float(request["seconds"])
+            watched = self._program.watch(self._wire, seconds, float(request.get("unheard", seconds)))
+            started, self._started = self._started, None
+            if started is not None:
+                ran = watched["verdict"] in (RUNNING, UNHEARD) or self._releases.ran(started)
+                with suppress(OSError):  # a full disk does not change the verdict
+                    self._releases.record_start(started, ran, watched["verdict"] == ENDED)
+            return watched
 
     def _roll_back(self, request: Said) -> Said:
         with self._transaction(keep=True):
@@ -191,15 +209,13 @@ class Agent:
         releases, numbers, current = self._releases, self._releases.numbers(), self._releases.current()
         number = asked
         if number is None:
-            earlier = [each for each in numbers if current is None or each < current]
-            before = releases.record(current).get("from") if current is not None else None
-            number = before if before in numbers else max(earlier, default=None)
+            number = releases.fallback(current)
         if number is None or number not in numbers:
-            there = ", ".join(map(str, numbers)) or "none"
             what = "there is no earlier release" if asked is None else f"there is no release {asked}"
-            raise Refusal(
-                "release", f"{what} on the robot to go back to", f"Its releases: {there}; current: {current}."
-            )
+            there = f"Its releases: {', '.join(map(str, numbers))}; current: {current or 'none of them'}."
+            if not numbers:
+                there = "It has no releases yet: each pyfrc deploy adds one."
+            raise Refusal("release", f"{what} on the robot to go back to", there)
         directory, record = releases.directory(number).resolve(), releases.record(number)
         if not any(record["commands"].values()):
             raise Refusal("release", f"release {number} was left by another tool, and had no start command")
@@ -217,10 +233,19 @@ class Agent:
             carried = releases.carry(code, directory, None)
             record["carried"] = {"from": current if taken is None else taken, "files": carried}
             releases.write_record(number, record)
-        changed = _changed(files, directory)
+        changed = self._changed(files, directory)
         releases.switch(number, record["commands"], taken)
         releases.set_debug(bool(record.get("debug")))
         return {"release": number, "previous": current, "changed": changed, "about": self._about(number)}
+
+    def _changed(self, files: dict[str, str], directory: Path) -> list[str]:
+        self._activity.begin("check", len(files))
+        changed = []
+        for path, sha256 in files.items():
+            if sha256_of(f"{directory}/{path}", self._activity) != sha256:
+                changed.append(path)
+            self._activity.step()
+        return sorted(changed)
 
     def _undeploy(self) -> Said:
         """First nothing starts the program any more, then it is stopped, then it is removed."""
@@ -228,28 +253,17 @@ class Agent:
             for name in (COMMAND, DEBUG_COMMAND):
                 remove(self._places.home / name)
             self._releases.set_debug(False)
-            flush(self._places.home)
-            stop(self._places, start=False)
+            self._releases.flush(self._places.home)
+            self._activity.begin("stop")
+            self._activity.wait_for(partial(stop, self._places, start=False))
             there = self._places.code.exists() or self._places.code.is_symlink()
-            remove(self._places.code)
+            self._releases.remove(self._places.code)
             for each in self._places.own.iterdir():
                 if each != self._places.lock:
-                    remove(each)
+                    self._releases.remove(each)
             # Last, and while it is held: whoever waits for it begins with a new one.
-            remove(self._places.lock)
-            with suppress(OSError):
+            with suppress(OSError):  # Windows removes no file that is open
+                remove(self._places.lock)
                 self._places.own.rmdir()
-            flush(self._places.home)
+            self._releases.flush(self._places.home)
         return {"removed": there}
-
-
-def _changed(files: dict[str, str], directory: Path) -> list[str]:
-    return sorted(path for path, sha256 in files.items() if sha256_of(directory / path) != sha256)
-
-
-def _version_of(package: str) -> str | None:
-    """The version of an installed package, by the name of its directory: importing it would take a second."""
-    for place in sys.path:
-        for each in Path(place).glob(f"{package}-*.dist-info"):
-            return each.name[len(package) + 1 : -len(".dist-info")]
-    return None

@@ -6,11 +6,12 @@ A frame is the length of its body in four bytes (big-endian), one byte for its k
 from __future__ import annotations
 
 import json
-import select
 import struct
 import zlib
 from collections.abc import Callable
 from typing import Any, BinaryIO
+
+from .system import readable
 
 SAID, CONTENT = b"J", b"C"
 HEADER = struct.Struct(">Ic")
@@ -40,13 +41,13 @@ def said_frame(said: Said) -> bytes:
     return frame(SAID, zlib.compress(json.dumps(said, separators=(",", ":")).encode()))
 
 
-def read_frame(read: Callable[[int], bytes]) -> tuple[bytes, bytes]:
+def read_frame(read: Callable[[int], bytes], longest: int = LONGEST) -> tuple[bytes, bytes]:
     """The next frame's kind and body; `read` gives exactly so many bytes, fewer only at the end of the stream."""
     header = read(HEADER.size)
     if len(header) < HEADER.size:
         raise EndedError("the stream has ended")
     length, kind = HEADER.unpack(header)
-    if kind not in (SAID, CONTENT) or length > LONGEST:
+    if kind not in (SAID, CONTENT) or length > longest:
         raise WireError(f"this is no frame: {header!r}")
     body = read(length)
     if len(body) < length:
@@ -54,17 +55,27 @@ def read_frame(read: Callable[[int], bytes]) -> tuple[bytes, bytes]:
     return kind, body
 
 
-def said_in(kind: bytes, body: bytes) -> Said:
-    """What a frame says."""
+def text_in(kind: bytes, body: bytes, longest: int = LONGEST) -> bytes:
+    """Return the JSON of what a frame says."""
     if kind != SAID:
         raise WireError("contents have come where something was to be said")
     try:
         unpacking = zlib.decompressobj()
-        text = unpacking.decompress(body, LONGEST)
-        said = json.loads(text)
-    except (zlib.error, ValueError) as error:
+        text = unpacking.decompress(body, longest)
+    except zlib.error as error:
         raise WireError(f"a frame cannot be read: {error}") from error
-    if not isinstance(said, dict) or unpacking.unconsumed_tail:
+    if not unpacking.eof:
+        raise WireError("a frame is too long, or is cut short")
+    return text
+
+
+def said_in(kind: bytes, body: bytes) -> Said:
+    """Return what a frame says."""
+    try:
+        said = json.loads(text_in(kind, body))
+    except (ValueError, RecursionError) as error:
+        raise WireError(f"a frame cannot be read: {error}") from error
+    if not isinstance(said, dict):
         raise WireError("a frame does not hold one JSON object")
     return said
 
@@ -103,13 +114,13 @@ class Wire:
 
     def pending(self) -> bool:
         """Whether something has come, or the other end is gone."""
-        return bool(select.select([self._source], [], [], 0)[0])
+        return readable(self._source, 0)
 
     def _read(self, count: int) -> bytes:
-        # The source is unbuffered, so that `select` sees all that has come.
+        # The source is unbuffered, so that `readable` sees all that has come.
         pieces = []
         while count:
-            if self.impatient and not select.select([self._source], [], [], self._patience)[0]:
+            if self.impatient and not readable(self._source, self._patience):
                 raise WireError(f"nothing has come for {self._patience} s")
             piece = self._source.read(count)
             if not piece:

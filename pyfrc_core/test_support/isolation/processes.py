@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import signal
@@ -194,6 +195,10 @@ def _become_the_test(
 
         write_all(last_words, traceback.format_exc().encode())
     finally:
+        # With -s nothing captures what the test has printed: in a pipe, Python still holds it.
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError):  # its reader has gone, or the robot has closed it
+                stream.flush()
         exit_now(status)
 
 

@@ -13,9 +13,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from ...._version import requirement
 from .joysticks import JOYSTICKS, RELEASED, Sticks
 
-HINT = 'For real gamepads: pip install "pyfrc[gamepads]"'
+HINT = f'For real gamepads: pip install "{requirement("gamepads")}"'
 
 _HATS = {(0, 1): 0, (1, 1): 45, (1, 0): 90, (1, -1): 135, (0, -1): 180, (-1, -1): 225, (-1, 0): 270, (-1, 1): 315}
 

@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 
 from ....errors import UsageError
-from ...interruption import calling_when_ended
+from ....interruption import calling_when_ended
 from ...snapshot import Snapshot, Status
 from .center_view import CenterView
 from .column import Column

@@ -62,7 +62,7 @@ def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
     if snapshot.emergency_stopped:
         return "Emergency stopped", "error"
     if not snapshot.station_attached:
-        return "Driver station lost", "disabled"
+        return "Driver station lost (F8)", "disabled"
     mode = _MODES.get(snapshot.chosen_mode, snapshot.chosen_mode)
     left = "" if snapshot.practice_since is None else f", {snapshot.match_left:.0f} s"
     if snapshot.enabled:

@@ -1,0 +1,78 @@
+"""``[tool.robotpy]`` in pyproject.toml: the packages that a project needs on its robot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import SettingsError
+from .settings import parse_toml, read_toml
+from .toml_text import TomlText
+
+if TYPE_CHECKING:
+    from packaging.requirements import Requirement
+
+#: What the optional components install on a robot; the others are for desktops only.
+COMPONENTS: dict[str, tuple[str, ...]] = {
+    "apriltag": ("robotpy-apriltag",),
+    "commands2": ("robotpy-commands-v2",),
+    "cscore": ("robotpy-cscore",),
+}
+COMPONENTS["all"] = tuple(package for packages in COMPONENTS.values() for package in packages)
+
+#: The modules of these packages: known also where a package is not installed.
+COMPONENT_MODULES = {
+    "commands2": "robotpy-commands-v2",
+    "cscore": "robotpy-cscore",
+    "robotpy_apriltag": "robotpy-apriltag",
+}
+
+
+@dataclass(frozen=True)
+class RobotPackages:
+    """What a project asks of its robot.
+
+    :param version:    of WPILib; none: any
+    :param components: the names of optional components
+    :param requires:   further packages
+    :param lines:      where in pyproject.toml each key is, as ``pyproject.toml:3``
+    """
+
+    version: str | None
+    components: tuple[str, ...]
+    requires: tuple[Requirement, ...]
+    lines: dict[str, str]
+
+
+def load_robot_packages(pyproject: Path) -> RobotPackages:
+    """Return what ``[tool.robotpy]`` asks for; nothing where there is no such file or table.
+
+    :raises SettingsError: with the file and line of a requirement that cannot be read
+    """
+    if not pyproject.is_file():
+        return RobotPackages(None, (), (), {})
+    text = read_toml(pyproject)
+    tools: Any = parse_toml(pyproject, text).get("tool")
+    table = tools.get("robotpy") if isinstance(tools, dict) else None
+    if not isinstance(table, dict):
+        return RobotPackages(None, (), (), {})
+    places = TomlText(pyproject, text)
+    lines = {key: f"{pyproject.name}:{places.line_of(('tool', 'robotpy', key))}" for key in table}
+    version = table.get("robotpy_version")
+    requires = [_requirement(each, lines["requires"]) for each in _texts(table.get("requires"))]
+    components = _texts(table.get("components"))
+    return RobotPackages(version if isinstance(version, str) else None, components, tuple(requires), lines)
+
+
+def _requirement(text: str, where: str) -> Requirement:
+    from packaging.requirements import InvalidRequirement, Requirement  # here: a deploy seldom needs it
+
+    try:
+        return Requirement(text)
+    except InvalidRequirement as invalid:
+        raise SettingsError(f"requires = {text!r}: {str(invalid).splitlines()[0]}", where=where) from None
+
+
+def _texts(value: object) -> tuple[str, ...]:
+    return tuple(each for each in value if isinstance(each, str)) if isinstance(value, list) else ()

@@ -1,0 +1,159 @@
+"""What differs by operating system: locks, links, exchanged names, waiting for a pipe, users.
+
+A roboRIO runs Linux. A virtual robot runs on whatever its user's computer has. Only Linux has been tested.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import getpass
+import os
+import select
+import signal
+import sys
+import time
+from pathlib import Path
+from typing import BinaryIO, TextIO
+
+#: Whether a link can take the place of another link by one rename.
+REPLACES_LINKS = sys.platform != "win32"
+
+_EXCHANGE = 2  # of renameat2, and of renamex_np
+_AT_FDCWD = -100
+_RENAMEAT2 = {"x86_64": 316, "armv7l": 382, "aarch64": 276}
+_SET_DEATH_SIGNAL = 1  # prctl
+
+
+def flush(directory: Path) -> None:
+    """Wait until all that was written in this file system is on the disk.
+
+    One wait for everything is as safe as one for each file and directory, and much faster on flash memory. Windows can
+    only wait for single files: there, a power cut may lose what was written last.
+    """
+    if sys.platform == "win32":
+        return
+    descriptor = os.open(directory, os.O_RDONLY)
+    try:
+        library = ctypes.CDLL(None, use_errno=True)
+        if not hasattr(library, "syncfs"):
+            os.sync()
+        elif library.syncfs(descriptor) != 0:
+            number = ctypes.get_errno()
+            raise OSError(number, os.strerror(number), str(directory))
+    finally:
+        os.close(descriptor)
+
+
+def exchange(one: Path, other: Path) -> bool:
+    """Exchange what two names refer to, atomically; false where the system cannot."""
+    if sys.platform == "win32":
+        return False
+    if sys.platform == "darwin":
+        rename = ctypes.CDLL(None, use_errno=True).renamex_np
+        return bool(rename(os.fsencode(one), os.fsencode(other), _EXCHANGE) == 0)
+    number = _RENAMEAT2.get(os.uname().machine)
+    if number is None:
+        return False
+    call = ctypes.CDLL(None, use_errno=True).syscall
+    return bool(call(number, _AT_FDCWD, os.fsencode(one), _AT_FDCWD, os.fsencode(other), _EXCHANGE) == 0)
+
+
+def make_link(link: Path, directory: Path, place: Path) -> None:
+    """Create `link`, which will be renamed to `place` and then lead to `directory`."""
+    if sys.platform == "win32":
+        import _winapi
+
+        _winapi.CreateJunction(str(directory), str(link))  # symbolic links need the administrator there
+    else:
+        link.symlink_to(os.path.relpath(directory, place.parent))
+
+
+def linked_directory(link: Path) -> Path | None:
+    """Return where a link leads to, without following further links; none: it is no link."""
+    try:
+        target = str(link.readlink())
+    except OSError:
+        return None
+    return link.parent / target.removeprefix("\\\\?\\") if sys.platform == "win32" else link.parent / target
+
+
+def replace_link(link: Path, place: Path) -> None:
+    """Rename a link to `place`, where another link may be; atomic where `REPLACES_LINKS`."""
+    if not REPLACES_LINKS and linked_directory(place) is not None:
+        place.unlink()
+    link.replace(place)
+
+
+def link_file(source: str, target: str) -> None:
+    """Make `target` another name of the file (or link) `source`.
+
+    :raises OSError: when this file system has no such links
+    """
+    if os.link in os.supports_follow_symlinks:
+        os.link(source, target, follow_symlinks=False)
+    else:
+        os.link(source, target)
+
+
+def lock(stream: TextIO) -> None:
+    """Lock an open file until it is closed, or its process has ended.
+
+    :raises OSError: when another process has locked it
+    """
+    if sys.platform == "win32":
+        import msvcrt
+
+        # Others cannot read what is locked there: so a byte far behind the content is.
+        os.lseek(stream.fileno(), 1 << 30, os.SEEK_SET)
+        msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
+
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def readable(stream: BinaryIO, seconds: float) -> bool:
+    """Wait until an unbuffered pipe can be read, or has ended; false: not within `seconds`."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        pipe, count = msvcrt.get_osfhandle(stream.fileno()), ctypes.c_ulong()
+        end = time.monotonic() + seconds
+        while ctypes.windll.kernel32.PeekNamedPipe(pipe, None, 0, None, ctypes.byref(count), None) and not count.value:
+            if time.monotonic() >= end:
+                return False
+            time.sleep(0.005)
+        return True
+    return bool(select.select([stream], [], [], seconds)[0])
+
+
+def end_with_parent() -> None:
+    """Have this process, a fork, killed when its parent ends; only Linux can."""
+    library = ctypes.CDLL(None)
+    if hasattr(library, "prctl"):
+        library.prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
+
+
+def user() -> str:
+    """Return the name of the user that this process runs as."""
+    if sys.platform == "win32":
+        return getpass.getuser()
+    import pwd
+
+    return pwd.getpwuid(os.geteuid()).pw_name
+
+
+def is_root() -> bool:
+    """Return whether this process may become another user."""
+    return sys.platform != "win32" and os.geteuid() == 0
+
+
+def become(name: str) -> None:
+    """Run as another user from now on, so that files that are written belong to that user."""
+    if sys.platform != "win32":
+        import pwd
+
+        entry = pwd.getpwnam(name)
+        os.initgroups(name, entry.pw_gid)
+        os.setgid(entry.pw_gid)
+        os.setuid(entry.pw_uid)

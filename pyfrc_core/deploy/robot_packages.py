@@ -1,0 +1,323 @@
+"""Whether the robot's Python has what a program needs: the modules it imports, the packages ``[tool.robotpy]`` names.
+
+The laptop reads the program's source, since a robot takes seconds for that. The robot only says which modules its
+Python can find. That costs no round trip: the modules go along with the first frame.
+
+`packaging` takes longer to import than all of this takes to run; so only the functions that need it import it. A deploy
+to a robot that has what the program needs calls none of them, unless ``[tool.robotpy]`` has requirements.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..config.robotpy import COMPONENT_MODULES, COMPONENTS, RobotPackages
+from .agent.imports import is_there
+from .local_checks import go_on_after
+from .preparing import INSTALL_FOR_VIRTUAL_ROBOT, INSTALL_PACKAGES, VIRTUAL_IMAGE
+from .program_imports import FoundImport, ProgramImports
+from .robot_checks import NO_CHECK
+
+if TYPE_CHECKING:
+    from packaging.requirements import Requirement
+
+    from .facts import RobotFacts
+    from .manifest import Manifest
+    from .progress import Conversation
+
+_MOST_NAMED = 5
+#: What the robot's start command needs besides the program's own imports.
+_RUNNER = "robotpy"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Something that the robot's Python lacks.
+
+    :param certain: whether the program ends when it is started; otherwise when it gets to that line, or perhaps never
+    """
+
+    where: str
+    text: str
+    remedy: str
+    certain: bool = True
+
+    def __str__(self) -> str:
+        return f"{self.where}: {self.text}"
+
+
+class ImportSearch:
+    """The program's imports, read from its source in the background.
+
+    :param root: the program's directory
+    :param main: its main file's name
+    """
+
+    def __init__(self, manifest: Manifest, root: Path, main: str) -> None:
+        self._files = {entry.path: entry.file for entry in manifest.entries}
+        self._root = root
+        self._main = main
+        self._error: Exception | None = None
+        self._imports: ProgramImports
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        try:
+            self._imports = ProgramImports(self._files, self._main)
+        except Exception as error:
+            self._error = error
+
+    def _found(self) -> ProgramImports:
+        self._thread.join()
+        if self._error is not None:
+            raise self._error
+        return self._imports
+
+    def program(self) -> list[str]:
+        """Return the files that are imported when the program starts."""
+        return sorted(path for path in self._found().certain if path.endswith(".py"))
+
+    def modules(self) -> list[str]:
+        """Return the modules that the robot is to be asked for."""
+        imported = {module for each in self._found().outside for module in (each.wanted.module, *each.wanted.instead)}
+        return sorted({_RUNNER, *(asked for module in imported for asked in _asked_for(module))})
+
+    def problems(self, facts: RobotFacts, packages: RobotPackages) -> list[Problem]:
+        """Return what the program imports and the robot's Python cannot find, in the order of the files.
+
+        :param facts: with the modules that are missing, of those asked for
+        """
+        missing = facts.missing_modules
+        found = [*self._outside(facts, packages), *self._lost(facts)]
+        if _RUNNER in missing:
+            remedy = f"Install it: {_install('robotpy-cli', facts)}."
+            found.append(Problem(self._main, "the robot has no package robotpy-cli, which starts programs", remedy))
+        return sorted(set(found), key=lambda each: (not each.certain, each.where))
+
+    def _outside(self, facts: RobotFacts, packages: RobotPackages) -> Iterator[Problem]:
+        for found in self._found().outside:
+            module = self._missing(found.wanted.module, facts)
+            if module is None or (
+                found.wanted.instead and not any(self._missing(each, facts) for each in found.wanted.instead)
+            ):
+                continue
+            if self._found().changes_path and self._found().named_alike(module):
+                continue  # it is found in a directory that the program adds to sys.path
+            yield self._explained(found, module, facts, packages)
+
+    def _missing(self, module: str, facts: RobotFacts) -> str | None:
+        """Return which module of a dotted name is neither the program's nor the robot's, if one is."""
+        imports = self._found()
+        top = module.partition(".")[0]
+        if imports.file_of(top) is not None or imports.is_own_directory(top):
+            return None
+        if any(path[len(top) :] in facts.extension_suffixes for path in imports.extensions_of(top)):
+            return None
+        return next((each for each in _asked_for(module) if each in facts.missing_modules), None)
+
+    def _lost(self, facts: RobotFacts) -> Iterator[Problem]:
+        imports = self._found()
+        for found in imports.lost:
+            module = found.wanted.module
+            top = module.partition(".")[0]
+            if top and imports.file_of(top) is None and top not in facts.missing_modules:
+                continue  # the robot has a package of this name, which comes before our directory
+            if not top:
+                text = f"from {module} import: there is no package above {found.file}"
+                yield Problem(found.where, text, "Leave out the dots.", found.wanted.certain)
+            else:
+                yield self._not_ours(found, module, facts)
+
+    def _explained(self, found: FoundImport, module: str, facts: RobotFacts, packages: RobotPackages) -> Problem:
+        from importlib.metadata import packages_distributions
+
+        from packaging.utils import canonicalize_name
+
+        top = module.partition(".")[0]
+        others = self._found().extensions_of(top)
+        if others:
+            text = f"import {module}: {others[0]} is not for the robot's Python ({facts.extension_suffixes[0]})"
+            return Problem(found.where, text, "Take the library built for the roboRIO.", found.wanted.certain)
+        if top in sys.stdlib_module_names:
+            text = f"import {module}: Python {facts.python} on the robot has no such module"
+            return Problem(
+                found.where, text, "It is not in that Python's library: do without it.", found.wanted.certain
+            )
+        distribution = next(iter(packages_distributions().get(top, ())), COMPONENT_MODULES.get(top))
+        if distribution is None:
+            return self._not_ours(found, module, facts)
+        if canonicalize_name(distribution) in facts.packages:
+            there = f"{distribution} {facts.packages[canonicalize_name(distribution)]}"
+            text = f"import {module}: {there} on the robot has no such module"
+            remedy = f"Install this computer's version: {_install(distribution, facts)}."
+            return Problem(found.where, text, remedy, found.wanted.certain)
+        text = f"import {module}: the robot has no package {distribution}"
+        return Problem(found.where, text, _how_to_get(distribution, packages, facts), found.wanted.certain)
+
+    def _not_ours(self, found: FoundImport, module: str, facts: RobotFacts) -> Problem:
+        """A module that is neither in the program nor, as far as is known here, in any package."""
+        from difflib import get_close_matches
+
+        base = self._root.joinpath(*module.split("."))
+        if base.with_name(f"{base.name}.py").is_file() or base.is_dir():
+            text = f"import {module}: the project has it, but it is not uploaded"
+            remedy = "Is it in exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml?"
+        else:
+            text = f"import {module}: neither the project nor the robot has such a module"
+            parent = module.rpartition(".")[0]
+            alike = get_close_matches(module, self._own_modules(parent), 1)
+            remedy = f"Is {alike[0]} meant?" if alike else "Is the name right? If it is a package: "
+            if not alike:
+                requires = "" if _is_virtual(facts) else "add it to requires under [tool.robotpy] in pyproject.toml; "
+                remedy += f"{requires}{_install('PACKAGE', facts)}."
+        return Problem(found.where, text, remedy, found.wanted.certain)
+
+    def _own_modules(self, parent: str) -> list[str]:
+        names = (path.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for path in self._files)
+        return [name for name in names if name.rpartition(".")[0] == parent]
+
+
+@cache
+def _asked_for(module: str) -> Sequence[str]:
+    """The names to ask the robot for: a submodule only where this Python finds it, as some packages make theirs."""
+    top = module.partition(".")[0]
+    if not top:
+        return ()
+    return (top, module) if module != top and is_there(module) else (top,)
+
+
+def _is_virtual(facts: RobotFacts) -> bool:
+    return facts.image == VIRTUAL_IMAGE
+
+
+def _install(package: str, facts: RobotFacts) -> str:
+    """Return how to install a package there: on a robot, with the others that the project asks for."""
+    return f"{INSTALL_FOR_VIRTUAL_ROBOT} {package}" if _is_virtual(facts) else INSTALL_PACKAGES
+
+
+def _how_to_get(distribution: str, packages: RobotPackages, facts: RobotFacts) -> str:
+    from packaging.utils import canonicalize_name
+
+    if _is_virtual(facts):
+        return f"Install it {_install(distribution, facts)}."
+    name = canonicalize_name(distribution)
+    component = next((each for each, brought in COMPONENTS.items() if name in brought), None)
+    if any(canonicalize_name(each.name) == name for each in packages.requires) or any(
+        name in COMPONENTS.get(each, ()) for each in packages.components
+    ):
+        return f"Install it: {INSTALL_PACKAGES}."
+    entry = f'"{distribution}" to requires' if component is None else f'"{component}" to components'
+    return f"Add {entry} under [tool.robotpy] in pyproject.toml; {INSTALL_PACKAGES}."
+
+
+def check_packages(
+    search: ImportSearch,
+    packages: RobotPackages,
+    facts: RobotFacts,
+    talk: Conversation,
+    *,
+    refuse: bool = True,
+    dry_run: bool = False,
+) -> None:
+    """Compare what the program needs with what the robot has, before anything is changed.
+
+    :param refuse:  whether to refuse, or ask; otherwise there are only warnings
+    :param dry_run: warn, as nothing will be deployed
+    :raises RefusedError: when something is missing, and the user does not want to deploy all the same
+    """
+    found = search.problems(facts, packages)
+    unfit = list(unfit_packages(packages, facts)) if refuse else []
+    certain = [*(each for each in found if each.certain), *unfit]
+    for each in found if dry_run or not refuse else (each for each in found if not each.certain):
+        if not each.certain:
+            talk.progress.warning(f"{each}; the program fails if it gets there. {each.remedy}")
+        else:
+            talk.progress.warning(f"{each}; the program would end at once. {each.remedy}")
+    if dry_run:
+        for each in unfit:
+            talk.progress.warning(f"{each}. {each.remedy}")
+    elif certain and refuse:
+        failure = "; ".join(str(each) for each in certain[:_MOST_NAMED])
+        if len(certain) > _MOST_NAMED:
+            failure += f"; and {len(certain) - _MOST_NAMED} more"
+        go_on_after(failure, talk.ask, f"{certain[0].remedy} {NO_CHECK}")
+
+
+def unfit_packages(packages: RobotPackages, facts: RobotFacts) -> Iterator[Problem]:
+    """Return how the robot's packages differ from what ``[tool.robotpy]`` asks for."""
+    there = facts.wpilib
+
+    def remedy(package: str) -> str:
+        return f"Change it there; or install what it asks for: {_install(package, facts)}."
+
+    if packages.version is not None and there is not None and not _same(packages.version, there):
+        text = f"robotpy_version is {packages.version}, but the robot has wpilib {there}"
+        yield Problem(packages.lines["robotpy_version"], text, remedy(f"wpilib=={packages.version}"))
+    for component in packages.components:
+        for distribution in COMPONENTS.get(component, ()):
+            version = facts.packages.get(distribution)
+            if version is None:
+                text = f"components has {component}, but the robot has no package {distribution}"
+                yield Problem(packages.lines["components"], text, remedy(distribution))
+            elif there is not None and not _same(version, there):
+                text = f"the robot has {distribution} {version}, but wpilib {there}"
+                same = f"Install the same version: {_install(f'{distribution}=={there}', facts)}."
+                yield Problem(packages.lines["components"], text, same)
+    if not packages.requires:
+        return
+    from packaging.utils import canonicalize_name
+
+    for needed in packages.requires:
+        if not _needed_there(needed, facts):
+            continue
+        version = facts.packages.get(canonicalize_name(needed.name))
+        if version is None or not _fits(version, needed):
+            instead = f"{needed.name} {version}" if version else f"no package {needed.name}"
+            text = f"requires has {str(needed)!r}, but the robot has {instead}"
+            yield Problem(packages.lines["requires"], text, remedy(f"'{needed}'"))
+
+
+def _needed_there(needed: Requirement, facts: RobotFacts) -> bool:
+    """Whether a requirement's marker, if it has one, holds on the robot: for a roboRIO, under both of its names."""
+    if needed.marker is None:
+        return True
+    from packaging.markers import default_environment
+
+    machines = {facts.machine, "roborio"} if facts.machine.startswith("arm") else {facts.machine}
+    robot: dict[str, str] = {
+        **{key: str(value) for key, value in default_environment().items()},
+        "extra": "",
+        "os_name": "posix",
+        "sys_platform": "linux",
+        "platform_system": "Linux",
+        "python_full_version": facts.python,
+        "python_version": ".".join(facts.python.split(".")[:2]),
+    }
+    return all(needed.marker.evaluate({**robot, "platform_machine": machine}) for machine in machines)
+
+
+def _fits(version: str, needed: Requirement) -> bool:
+    from packaging.version import InvalidVersion, Version
+
+    try:
+        return needed.specifier.contains(Version(version), prereleases=True)
+    except InvalidVersion:
+        return True  # nothing can be said
+
+
+def _same(one: str, other: str) -> bool:
+    if one == other:
+        return True
+    from packaging.version import InvalidVersion, Version
+
+    try:
+        return Version(one) == Version(other)
+    except InvalidVersion:
+        return False

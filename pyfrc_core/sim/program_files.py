@@ -1,0 +1,38 @@
+"""The files that make up a robot program, and when they were saved."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from pathlib import Path
+
+#: Directories that hold no code of the robot's.
+_NOT_OURS = {"__pycache__", "node_modules", "site-packages", "tests", "venv"}
+_TWO_SECONDS = 2_000_000_000  # in nanoseconds
+
+
+def program_files(root: Path) -> dict[str, tuple[int, int]]:
+    """Return the Python files and settings below a directory, each with its time (ns) and its size (bytes)."""
+    found = {}
+    for directory, below, files in os.walk(root):
+        below[:] = [name for name in below if name not in _NOT_OURS and not name.startswith(".")]
+        for name in files:
+            if name.endswith(".py") or name in ("config.json", "pyproject.toml"):
+                try:
+                    status = Path(directory, name).stat()
+                except OSError:  # gone again: an editor's
+                    continue
+                found[str(Path(directory, name))] = (status.st_mtime_ns, status.st_size)
+    return found
+
+
+def keep_no_bytecode_of_new_code(root: Path) -> None:
+    """Have this process write no compiled forms when a file of the program was saved a moment ago.
+
+    Python takes a compiled form for that of any source of the same size that was saved in the same second. When a file
+    is saved twice within it, the simulator would go on with the old code.
+    """
+    newest = max((saved for saved, _ in program_files(root).values()), default=0)
+    if abs(time.time_ns() - newest) < _TWO_SECONDS:
+        sys.dont_write_bytecode = True

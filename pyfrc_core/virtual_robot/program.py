@@ -1,0 +1,82 @@
+"""Runs a robot program in WPILib's simulation, in real time: what ``python -m robotpy --main FILE run`` is on a robot.
+
+Started by the supervisor, which keeps its standard input open: when that ends, so does the program.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import logging
+import os
+import socket
+import sys
+import threading
+from pathlib import Path
+
+#: Where dashboards look for NetworkTables.
+_TABLES_PORT = 5810
+
+
+def main() -> None:
+    """Import the main file, and run the robot class in it until it ends."""
+    parser = argparse.ArgumentParser("robotpy")
+    parser.add_argument("--main", required=True, type=Path)
+    parser.add_argument("-v", "--verbose", action="store_true")
+    parser.add_argument("command", choices=["run"])
+    options = parser.parse_args()
+    _end_with_supervisor()
+    logging.basicConfig(
+        level=logging.DEBUG if options.verbose else logging.INFO,
+        format="%(asctime)s:%(msecs)03d %(levelname)-8s: %(name)-20s: %(message)s",
+        datefmt="%H:%M:%S",
+    )
+    sys.exit(0 if _run(options.main) else 1)
+
+
+def _end_with_supervisor() -> None:
+    supervisor = os.dup(0)
+    with Path(os.devnull).open("rb") as nothing:
+        os.dup2(nothing.fileno(), 0)
+
+    def wait() -> None:
+        while os.read(supervisor, 1024):
+            pass
+        os._exit(1)
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def _run(main: Path) -> bool:
+    print("********** Robot program starting **********")
+    import ntcore
+    import wpilib
+
+    from ..project import Project
+
+    sys.path[0] = str(main.parent)
+    wpilib.getDeployDirectory = lambda: str(main.parent / "deploy")
+    # WPILib's own server would listen at all of this computer's addresses.
+    ntcore.NetworkTableInstance.getDefault().startServer("networktables.json", "127.0.0.1", 0, _tables_port())
+    specification = importlib.util.spec_from_file_location("robot", main)
+    assert specification is not None
+    assert specification.loader is not None
+    module = importlib.util.module_from_spec(specification)
+    sys.modules["robot"] = module
+    specification.loader.exec_module(module)
+    return bool(wpilib.RobotBase.main(Project(main).choose_class(module)))
+
+
+def _tables_port() -> int:
+    """Return a free port: the usual one, unless another robot program on this computer has it."""
+    for port in (_TABLES_PORT, 0):
+        try:
+            with socket.create_server(("127.0.0.1", port)) as probe:
+                return int(probe.getsockname()[1])
+        except OSError:
+            continue
+    return _TABLES_PORT
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,178 @@
+"""The virtual robot's SSH server: lets a robot's users in without a password, and runs their Python.
+
+It runs Python commands only, since that is what a deploy sends; there is no shell, as there is none on Windows.
+"""
+
+from __future__ import annotations
+
+import logging
+import shlex
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import paramiko
+from paramiko.common import (
+    AUTH_FAILED,
+    AUTH_SUCCESSFUL,
+    OPEN_FAILED_ADMINISTRATIVELY_PROHIBITED,
+    OPEN_SUCCEEDED,
+)
+
+from ..deploy.connection import ADMINISTRATOR, PROGRAM_USER, VIRTUAL_ROBOT_GREETING
+from . import children
+from .console import close_server
+from .peers import is_other_user
+
+if TYPE_CHECKING:
+    from paramiko import Channel, PKey, Transport
+
+_USERS = (PROGRAM_USER, ADMINISTRATOR)
+_NOT_FOUND = 127  # a shell's exit code for a command that does not exist
+_SIGNALLED = 128  # a shell's exit code for a command that a signal has ended, less the signal
+_STEP_SECONDS = 15.0
+
+
+class SshServer:
+    """An SSH server at a listening socket, until `close`.
+
+    :param key:         the robot's
+    :param console:     the port of its console, which the server's greeting names
+    :param home:        where commands are run
+    :param environment: of the commands
+    """
+
+    def __init__(
+        self, listening: socket.socket, key: PKey, console: int, home: Path, environment: Mapping[str, str]
+    ) -> None:
+        # Who only looks whether a robot is there breaks off, which is no news.
+        logging.getLogger("paramiko").setLevel(logging.CRITICAL)
+        self._listening = listening
+        self._key = key
+        self._greeting = f"{VIRTUAL_ROBOT_GREETING} console={console}"
+        self._home = home
+        self._environment = environment
+        self._lock = threading.Lock()
+        self._transports: set[Transport] = set()
+        self._processes: set[subprocess.Popen[bytes]] = set()
+        threading.Thread(target=self._accept, name="virtual robot: SSH server", daemon=True).start()
+
+    def close(self) -> None:
+        """End all connections, and what runs over them."""
+        close_server(self._listening)
+        with self._lock:
+            transports, processes = list(self._transports), list(self._processes)
+        for transport in transports:
+            transport.close()
+        for process in processes:
+            children.kill_group(process)
+            process.wait()
+
+    def _accept(self) -> None:
+        with suppress(OSError):
+            while True:
+                connected, _ = self._listening.accept()
+                threading.Thread(target=self._greet, args=(connected,), daemon=True).start()
+
+    def _greet(self, connected: socket.socket) -> None:
+        if is_other_user(connected):
+            connected.close()
+            return
+        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        transport = paramiko.Transport(connected)
+        transport.local_version = self._greeting
+        transport.add_server_key(self._key)
+        transport.handshake_timeout = transport.auth_timeout = _STEP_SECONDS
+        with self._lock:
+            self._transports = {each for each in self._transports if each.is_alive()} | {transport}
+        try:
+            transport.start_server(server=_Session(self._run))
+        except (paramiko.SSHException, OSError, EOFError):
+            transport.close()
+
+    def _run(self, channel: Channel, command: str) -> None:
+        """Run a command, with the channel as its input and output."""
+        with suppress(OSError, EOFError):  # the laptop is gone
+            words = _words(command)
+            if not words or not Path(words[0]).name.startswith("python3"):
+                channel.sendall_stderr(f"a virtual robot runs Python only, not: {command}\n".encode())
+                channel.send_exit_status(_NOT_FOUND)
+            else:
+                channel.send_exit_status(self._run_python(channel, words[1:]))
+        channel.close()
+
+    def _run_python(self, channel: Channel, words: list[str]) -> int:
+        process = children.start([sys.executable, *words], self._home, self._environment, stderr=subprocess.PIPE)
+        with self._lock:
+            self._processes.add(process)
+        threading.Thread(target=_feed, args=(channel, process), daemon=True).start()
+        errors = threading.Thread(target=_send_errors, args=(channel, process), daemon=True)
+        errors.start()
+        try:
+            assert process.stdout is not None
+            while data := process.stdout.read(65536):
+                channel.sendall(data)
+            process.stdout.close()
+            errors.join()
+            code = process.wait()
+            return code if code >= 0 else _SIGNALLED - code
+        finally:
+            if process.poll() is None:
+                children.end(process)
+            with self._lock:
+                self._processes.discard(process)
+
+
+def _words(command: str) -> list[str]:
+    try:
+        return shlex.split(command)
+    except ValueError:
+        return []
+
+
+def _feed(channel: Channel, process: subprocess.Popen[bytes]) -> None:
+    assert process.stdin is not None
+    with suppress(OSError, EOFError), process.stdin:
+        while data := channel.recv(65536):
+            view = memoryview(data)
+            while view:  # the pipe is unbuffered, and takes what it has room for
+                view = view[process.stdin.write(view) :]
+
+
+def _send_errors(channel: Channel, process: subprocess.Popen[bytes]) -> None:
+    assert process.stderr is not None
+    with suppress(OSError, EOFError), process.stderr:
+        while data := process.stderr.read(65536):
+            channel.sendall_stderr(data)
+
+
+class _Session(paramiko.ServerInterface):
+    """One connection: who may log in, and what may be asked for.
+
+    :param run: runs a command over a channel
+    """
+
+    def __init__(self, run: Callable[[Channel, str], None]) -> None:
+        self._run = run
+
+    def get_allowed_auths(self, username: str) -> str:
+        return "none,password"
+
+    def check_auth_none(self, username: str) -> int:
+        return AUTH_SUCCESSFUL if username in _USERS else AUTH_FAILED
+
+    def check_auth_password(self, username: str, password: str) -> int:
+        return AUTH_SUCCESSFUL if username in _USERS and not password else AUTH_FAILED
+
+    def check_channel_request(self, kind: str, chanid: int) -> int:
+        return OPEN_SUCCEEDED if kind == "session" else OPEN_FAILED_ADMINISTRATIVELY_PROHIBITED
+
+    def check_channel_exec_request(self, channel: Channel, command: bytes) -> bool:
+        text = command.decode(errors="replace")
+        threading.Thread(target=self._run, args=(channel, text), daemon=True).start()
+        return True

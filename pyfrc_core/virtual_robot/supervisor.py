@@ -1,0 +1,199 @@
+"""Starts the robot program, and starts it again whenever it ends, as the roboRIO's `lvrt` does."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import shlex
+import site
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing import AuthenticationError
+from multiprocessing.connection import Connection, Listener
+from pathlib import Path
+
+from ..deploy.agent.disk import text_of
+from ..deploy.agent.places import COMMAND, DEBUG_COMMAND, Places
+from . import children
+
+_RUNNER = "pyfrc_core.virtual_robot.program"
+_LAST_WORDS = 1.0  # seconds
+
+
+class Supervisor:
+    """The robot program of a virtual robot, kept running until `close`.
+
+    :param on_line: called with each line that the program prints, from a thread
+    :param on_end:  called with what has ended the program, from a thread; and with why there is nothing to start
+    """
+
+    def __init__(self, places: Places, on_line: Callable[[bytes], object], on_end: Callable[[str], object]) -> None:
+        self._places = places
+        self._on_line = on_line
+        self._on_end = on_end
+        self._state = threading.Condition()
+        self._wanted = True
+        self._closed = False
+        self._process: subprocess.Popen[bytes] | None = None
+        self._thread = threading.Thread(target=self._run, name="virtual robot: supervisor", daemon=True)
+
+    def start(self) -> None:
+        """Start what is current on the robot's disk."""
+        self._thread.start()
+
+    def processes(self) -> list[int]:
+        """Return the processes of the program."""
+        with self._state:
+            return [] if self._process is None else [self._process.pid]
+
+    def stop(self) -> None:
+        """Stop the program; return when it has ended."""
+        with self._state:
+            self._wanted = False
+            process = self._process
+        if process is not None:
+            children.end(process)
+            with self._state:
+                self._state.wait_for(lambda: self._process is not process)
+
+    def restart(self) -> None:
+        """Stop the program and start what is current; return when the old one has ended."""
+        self.stop()
+        with self._state:
+            self._wanted = True
+            self._state.notify_all()
+
+    def close(self) -> None:
+        """Stop the program for good."""
+        with self._state:
+            self._closed = True
+            self._state.notify_all()
+        self.stop()
+        self._thread.join()
+
+    def _run(self) -> None:
+        while True:
+            with self._state:
+                self._state.wait_for(lambda: self._wanted or self._closed)
+                if self._closed:
+                    return
+                process = self._start()
+                if process is None:
+                    self._wanted = False
+                    continue
+                self._process = process
+            reader = threading.Thread(target=self._read, args=(process,), daemon=True)
+            reader.start()
+            code = process.wait()
+            children.kill_group(process)
+            reader.join(_LAST_WORDS)  # what the program has started may hold its output open
+            with self._state:
+                asked_for = not self._wanted
+                self._process = None
+                self._state.notify_all()
+            if not asked_for:
+                self._on_end(f"the robot program has ended ({_end_of(code)}); it is started again")
+
+    def _start(self) -> subprocess.Popen[bytes] | None:
+        debug = self._places.debug_flag.exists()
+        command = text_of(self._places.home / (DEBUG_COMMAND if debug else COMMAND))
+        if not command:
+            return None
+        words = program_words(command, self._places)
+        if words is None:
+            self._on_end(f"nothing is started: this is no start command of a Python program: {command.strip()}")
+            return None
+        home = str(self._places.home)
+        environment = {**os.environ, "HOME": home, "USERPROFILE": home, "PYTHONUSERBASE": site.getuserbase()}
+        return children.start(words, self._places.home, environment, stderr=subprocess.STDOUT)
+
+    def _read(self, process: subprocess.Popen[bytes]) -> None:
+        assert process.stdout is not None
+        unfinished = b""
+        while piece := process.stdout.read(65536):
+            *lines, unfinished = (unfinished + piece).split(b"\n")
+            for line in lines:
+                self._on_line(line.removesuffix(b"\r"))
+        if unfinished:
+            self._on_line(unfinished)
+        process.stdout.close()
+        assert process.stdin is not None
+        process.stdin.close()
+
+
+def program_words(command: str, places: Places) -> list[str] | None:
+    """Return the command that runs on this computer what a robot's start command runs; none: it is no such command.
+
+    ``... python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run`` keeps Python's options and those of `robotpy`.
+    """
+    try:
+        words = shlex.split(command)
+        python = next(number for number, word in enumerate(words) if Path(word).name.startswith("python3"))
+        module = words.index("-m", python)
+        main = words.index("--main", module) + 1
+    except (ValueError, StopIteration):
+        return None
+    if words[module + 1] != "robotpy" or main == len(words):
+        return None
+    words[main] = str(places.of(words[main]))
+    return [sys.executable, "-X", "utf8", *words[python + 1 : module], "-m", _RUNNER, *words[module + 2 :]]
+
+
+def _end_of(code: int) -> str:
+    return f"exit code {code}" if code >= 0 else f"signal {-code}"
+
+
+class Control:
+    """Lets the agents that run on the virtual robot stop and start its program.
+
+    :param supervisor: which does it
+    """
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        self._supervisor = supervisor
+        self._closed = False
+        self._key = secrets.token_bytes(32)
+        # More than one may wait: agents of several laptops.
+        self._listener = Listener(("127.0.0.1", 0), backlog=16, authkey=self._key)
+        threading.Thread(target=self._accept, name="virtual robot: control", daemon=True).start()
+
+    @property
+    def key(self) -> str:
+        """The key that agents show, in hexadecimal."""
+        return self._key.hex()
+
+    @property
+    def port(self) -> int:
+        """Where agents find it on this computer."""
+        address = self._listener.address
+        assert isinstance(address, tuple)
+        return int(address[1])
+
+    def close(self) -> None:
+        """Let no agent do anything any more."""
+        self._closed = True
+        self._listener.close()
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                connection = self._listener.accept()
+            except AuthenticationError:
+                continue
+            except (OSError, EOFError):
+                if self._closed:
+                    return
+                continue
+            threading.Thread(target=self._serve, args=(connection,), daemon=True).start()
+
+    def _serve(self, connection: Connection) -> None:
+        with connection, suppress(EOFError, OSError):
+            request = connection.recv()
+            if request == "stop":
+                self._supervisor.stop()
+            elif request == "restart":
+                self._supervisor.restart()
+            connection.send(self._supervisor.processes())

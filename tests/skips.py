@@ -1,0 +1,166 @@
+"""What tests need and not every machine has: they are skipped there, and the run ends with one line that says so.
+
+In the gate, which sets ``PYFRC_NO_SKIPS``, nothing is skipped: a missing part is a failure.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import sys
+from collections import Counter
+from collections.abc import Generator, Iterable, Iterator
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+#: Between what a test is about and what this machine lacks for it, in the reason of a skip.
+_NEEDS = ": needs "
+
+#: Where programs are, besides the PATH of an ordinary user.
+_SYSTEM_PROGRAMS = ("/usr/local/sbin", "/usr/sbin", "/sbin")
+
+#: The packages with what may be missing, by the package manager that has them.
+_PACKAGES = {
+    "apt-get install": {
+        "Xvfb": "xvfb",
+        "git": "git",
+        "ip": "iproute2",
+        "ssh-keygen": "openssh-client",
+        "sshd": "openssh-server",
+        "tkinter": "python3-tk",
+        "xdotool": "xdotool",
+    },
+    "dnf install": {
+        "Xvfb": "xorg-x11-server-Xvfb",
+        "git": "git",
+        "ip": "iproute",
+        "ssh-keygen": "openssh-clients",
+        "sshd": "openssh-server",
+        "tkinter": "python3-tkinter",
+        "xdotool": "xdotool",
+    },
+    "pacman -S": {
+        "Xvfb": "xorg-server-xvfb",
+        "git": "git",
+        "ip": "iproute2",
+        "ssh-keygen": "openssh",
+        "sshd": "openssh",
+        "tkinter": "tk",
+        "xdotool": "xdotool",
+    },
+}
+
+#: What no package brings.
+_OTHERWISE = {
+    "Linux": "run them on Linux (on Windows: in WSL)",
+    "a Python with tkinter": "make test PYTHON=/usr/bin/python3 VENV=.venv-system",
+    "namespaces": "run them outside of this container, or give it --privileged",
+}
+
+
+def missing_programs(*names: str) -> list[str]:
+    """Return those of these programs that are not installed."""
+    path = os.pathsep.join([os.environ.get("PATH", os.defpath), *_SYSTEM_PROGRAMS])
+    return [name for name in names if shutil.which(name, path=path) is None]
+
+
+def missing_tkinter() -> list[str]:
+    """Return what is missing for tkinter, which systems have in a package of its own, for their own Python."""
+    if find_spec("tkinter") is not None:
+        return []
+    return ["tkinter" if sys.platform != "linux" or sys.base_prefix == "/usr" else "a Python with tkinter"]
+
+
+def require(tested: str, missing: Iterable[str]) -> None:
+    """Skip the test, or at the top of a module all of its tests, when anything is missing.
+
+    :param tested:  what is not tested then, the same for all tests of one kind
+    :param missing: the parts that this machine lacks
+    """
+    if parts := list(missing):
+        pytest.skip(tested + _NEEDS + ", ".join(parts), allow_module_level=True)
+
+
+def _remedies(parts: set[str]) -> Iterator[str]:
+    """Yield what brings these parts: one command, where commands can."""
+    commands = []
+    if packaged := parts.intersection(*_PACKAGES.values()):
+        for manager, packages in _PACKAGES.items():
+            if shutil.which(manager.partition(" ")[0]):
+                commands.append(" ".join(["sudo", manager, *sorted({packages[part] for part in packaged})]))
+                break
+        else:
+            yield f"install {', '.join(sorted(packaged))}"
+    if "root" in parts:
+        commands.append("sudo make test")
+    if commands:
+        yield " && ".join(commands)
+    yield from (_OTHERWISE[part] for part in sorted(parts & _OTHERWISE.keys()))
+
+
+def summarize(skipped: Counter[str]) -> str | None:
+    """Return the line that says what was not tested and how to test it; none when nothing was skipped.
+
+    :param skipped: how many tests were skipped, by reason
+    """
+    if not skipped:
+        return None
+    groups: dict[str, tuple[int, set[str]]] = {}
+    for reason, count in skipped.items():
+        tested, _, needs = reason.partition(_NEEDS)
+        before, parts = groups.get(tested, (0, set()))
+        groups[tested] = before + count, parts | set(filter(None, needs.split(", ")))
+    listed = []
+    for tested, (count, parts) in sorted(groups.items(), key=lambda group: -group[1][0]):
+        needs = f"; needs {', '.join(sorted(parts))}" if parts else ""
+        listed.append(f"{tested} ({count} test{'s' * (count != 1)}{needs})")
+    line = f"Not tested on this machine: {', '.join(listed)}."
+    remedy = "; ".join(_remedies(set().union(*(parts for _, parts in groups.values()))))
+    return f"{line} To test this, too: {remedy}" if remedy else line
+
+
+def _count(report: pytest.TestReport | pytest.CollectReport) -> int:
+    """Return how many tests a report speaks of: a module that is skipped has all of its own."""
+    if isinstance(report, pytest.TestReport):
+        return 1
+    return len(re.findall(r"^def test_", Path(report.fspath).read_text("utf-8"), re.MULTILINE))
+
+
+def _reason(report: pytest.TestReport | pytest.CollectReport) -> str:
+    assert isinstance(report.longrepr, tuple)
+    return report.longrepr[2].removeprefix("Skipped: ")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Make what is skipped a failure in the gate."""
+    report = yield
+    if report.skipped and not hasattr(report, "wasxfail") and "PYFRC_NO_SKIPS" in os.environ:
+        report.outcome = "failed"
+    return report
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """The same for a whole module."""
+    report = yield
+    if report.skipped and "PYFRC_NO_SKIPS" in os.environ:
+        report.outcome = "failed"
+    return report
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_sessionfinish(session: pytest.Session) -> Generator[None, None, None]:
+    """End the run with the line, below pytest's own last one."""
+    yield
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    if reporter is None or hasattr(session.config, "workerinput"):
+        return
+    skipped: Counter[str] = Counter()
+    for report in reporter.stats.get("skipped", []):
+        skipped[_reason(report)] += _count(report)
+    if (line := summarize(skipped)) is not None:
+        reporter.write_line(line)

@@ -1,0 +1,403 @@
+"""A robot that returns nonsense: each time one sentence, within limits of time and memory."""
+
+from __future__ import annotations
+
+import json
+import struct
+import threading
+import tracemalloc
+import zlib
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from roborio.local import project_of
+
+from pyfrc_core.deploy import agent_stream
+from pyfrc_core.deploy.agent import wire
+from pyfrc_core.deploy.agent_stream import TimeLimits
+from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
+from pyfrc_core.deploy.manifest import Manifest
+from pyfrc_core.deploy.robot import DeployRequest, Robot
+
+Script = Iterable[bytes]
+
+FACTS: dict[str, Any] = {
+    "python": "3.14.0",
+    "wpilib": "2026.2.2",
+    "image": "FRC_roboRIO_2026_v1.2",
+    "startup_dlls": False,
+    "kill_script": True,
+    "free": 1_000_000,
+    "user": "lvuser",
+    "home": True,
+    "current": 1,
+    "releases": [
+        {
+            "release": 1,
+            "taken": False,
+            "main": "robot.py",
+            "debug": False,
+            "files": 3,
+            "from": None,
+            "deploy": {},
+            "ran": True,
+            "ended": False,
+        }
+    ],
+    "other_code": False,
+    "deploy_json": "{}",
+    "command": None,
+    "debug": False,
+    "running": True,
+    "packages": {"wpilib": "2026.2.2"},
+    "missing_modules": [],
+    "extension_suffixes": [".so"],
+    "machine": "armv7l",
+    "other_languages": [],
+    "program_age": 12.5,
+}
+DEPLOYED = {
+    "release": 2,
+    "previous": 1,
+    "fallback": 1,
+    "taken": None,
+    "unchanged": False,
+    "files": 1,
+    "bytes": 10,
+}
+STATE = {"seconds": 1.5, "age": 1.0, "heard": True, "seen": True, "replaced": False}
+HELLO = wire.said_frame({"done": FACTS})
+REQUEST = DeployRequest("robot.py", {})
+
+
+def packed(text: bytes) -> bytes:
+    return wire.frame(wire.SAID, zlib.compress(text))
+
+
+class FakeRobot:
+    """A robot that sends what it was made to: something for each time that it is sent something.
+
+    :param then: what it sends when all of it was read: nothing, and the link is closed, or something for ever
+    :param status: with which its command has ended; none: that is never known
+    """
+
+    address = "10.12.34.2"
+
+    def __init__(self, *scripts: bytes, then: Script = (), status: int | None = -1, errors: bytes = b"") -> None:
+        self._scripts = iter(scripts)
+        self._buffer = b""
+        self._then = iter(then)
+        self._status = status
+        self._errors = errors
+        self.status_event = threading.Event()
+        if status is not None:
+            self.status_event.set()
+        self.closed = False
+
+    def open(self, command: str) -> FakeRobot:
+        return self
+
+    def sendall(self, data: bytes) -> None:
+        self._buffer += next(self._scripts, b"")
+
+    def recv(self, count: int) -> bytes:
+        self._buffer = self._buffer or next(self._then, b"")
+        piece, self._buffer = self._buffer[:count], self._buffer[count:]
+        return piece
+
+    def recv_ready(self) -> bool:
+        return bool(self._buffer)
+
+    def recv_stderr(self, count: int) -> bytes:
+        return self._errors[:count]
+
+    def recv_exit_status(self) -> int:
+        assert self._status is not None, "it would wait for ever"
+        return self._status
+
+    def settimeout(self, seconds: float | None) -> None:
+        assert seconds
+
+    def close(self) -> None:
+        self.closed = True
+
+
+def nonsense(robot: FakeRobot, do: Callable[[Robot], object] = lambda robot: None, **limits: float) -> str:
+    """What is said of it, in one sentence and a remedy."""
+    with pytest.raises(DeployError) as caught:
+        do(Robot.start(robot, limits=TimeLimits(**limits)))
+    error = caught.value
+    assert error.exit_code == 1
+    assert "\n" not in error.message
+    assert len(error.message) < 1200
+    assert error.message.isprintable()
+    assert error.remedy
+    return error.message
+
+
+# -- frames ------------------------------------------------------------------------------------------------------------
+
+FRAMES = {
+    "wrong kind": wire.frame(b"X", b"{}"),
+    "contents": wire.frame(wire.CONTENT, b"abc"),
+    "length 0": wire.frame(wire.SAID, b""),
+    "length 4 GB": b"\xff\xff\xff\xff" + wire.SAID + bytes(100),
+    "just too long": struct.pack(">I", agent_stream.LONGEST_ANSWER + 1) + wire.SAID,
+    "no zlib": wire.frame(wire.SAID, b"{}"),
+    "zlib without an end": wire.frame(wire.SAID, zlib.compress(b"{}")[:-4]),
+    "zlib bomb": packed(b'{"done": "' + bytes(50_000_000) + b'"}'),
+    "no UTF-8": packed(b'{"done": "\xff"}'),
+    "no JSON": packed(b"{'done': 1}"),
+    "empty JSON": packed(b""),
+    "a list": packed(b"[1, 2]"),
+    "a number": packed(b"1e999"),
+    "deep JSON": packed(b'{"done": ' + b"[" * 100_000),
+    "deeper JSON": packed(b'{"done": ' + b"[" * 1_000_000),
+    "a huge number": packed(b'{"done": ' + b"9" * 5_000 + b"}"),
+    "millions of lists": packed(b'{"done": [' + b"[]," * 2_600_000 + b"[]]}"),
+    "a million lists": packed(b'{"done": [' + b"[]," * 1_300_000 + b"[]]}"),
+    "many objects": packed(b'{"done": [' + b'{"a":1},' * 500_000 + b"{}]}"),
+    "many keys": packed(b'{"done": {' + b",".join(b'"%x":0' % each for each in range(400_000)) + b"}}"),
+    "wide letters": packed(('{"done": "\U0001f600' + "x" * 4_000_000 + '"}').encode()),
+    "a banner": b"\r\n*** Welcome to the robot! ***\x1b[2J\r\n",
+    "nothing that is known": wire.said_frame({"hello": 1}),
+    "no object as the answer": wire.said_frame({"done": [FACTS]}),
+    "no answer": wire.said_frame({"done": None}),
+    "an error that is a number": wire.said_frame({"error": 1, "message": "x", "remedy": ""}),
+    "an error without a message": wire.said_frame({"error": "bug"}),
+    "an error with a list": wire.said_frame({"error": "bug", "message": "x", "remedy": "", "traceback": []}),
+    "an error with a remedy that is none": wire.said_frame({"error": "x", "message": "x", "remedy": {"a": 1}}),
+}
+
+
+@pytest.mark.parametrize("frame", FRAMES.values(), ids=FRAMES)
+def test_a_frame_that_is_none(frame: bytes) -> None:
+    tracemalloc.start()
+    try:
+        message = nonsense(FakeRobot(frame))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert message.startswith("what the robot sends is not from our agent: ")
+    assert peak < 40_000_000
+
+
+@pytest.mark.parametrize(
+    ("frame", "what"),
+    [
+        ("deep JSON", "values are nested too deeply in a frame"),
+        ("a huge number", "a number in a frame has too many digits"),
+        ("a million lists", "a frame has too many values"),
+        ("millions of lists", "a frame is too long, or is cut short"),
+        ("zlib without an end", "a frame is too long, or is cut short"),
+    ],
+)
+def test_what_is_wrong_with_a_frame(frame: str, what: str) -> None:
+    message = nonsense(FakeRobot(FRAMES[frame]))
+    assert message == f"what the robot sends is not from our agent: {what}"
+
+
+def test_the_longest_real_answer_is_read(project: Manifest) -> None:
+    """The changes of a project with 50,000 files, with as many commas in their names."""
+    paths = [f"deploy/trajectories, and choreo/{number:05}.traj" for number in range(50_000)]
+    plan = {"added": paths, "changed": [], "removed": [], "files": 50_000, "bytes": 1}
+    robot = Robot.start(FakeRobot(HELLO, wire.said_frame({"done": plan})))
+    assert len(robot.plan(project).added) == 50_000
+
+
+@pytest.mark.parametrize("cut", [0, 1, 5, 6, len(HELLO) - 1])
+@pytest.mark.parametrize("status", [-1, None, 0])
+def test_a_link_that_is_closed_in_the_middle(cut: int, status: int | None) -> None:
+    message = nonsense(FakeRobot(HELLO[:cut], status=status), start=0.01)
+    assert message.startswith("the link to the robot was lost: the stream has ended")
+
+
+def test_many_errors_printed() -> None:
+    message = nonsense(FakeRobot(status=1, errors=b"x\n" * 1_000_000 + b"\x1b]0;pwned\x07" + b"y" * 1_000_000))
+    assert message.startswith("the agent on the robot has ended: ")
+
+
+# -- the fields of each answer -----------------------------------------------------------------------------------------
+
+WRONG: list[Any] = [1.5, float("nan"), -1, 1 << 70, 10**4000, [], {}, True, "text", [1], [[]], {"a": 1}]
+#: Files on the robot have these: they may hold anything, and are shown as it is possible.
+FROM_FILES = {"deploy_json", "command", "deploy", "packages"}
+
+
+def fits(value: Any, wrong: Any) -> bool:
+    """Whether another value of a field would be right, too."""
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return wrong == []
+    if isinstance(value, list):
+        return wrong == []
+    if value is None:
+        return wrong == 1
+    return type(value) is type(wrong) and not (isinstance(value, int) and not 0 <= wrong < 1 << 53)
+
+
+def variants(right: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The object without one of its fields, and with wrong values in it."""
+    for key, value in right.items():
+        if key in FROM_FILES:
+            continue
+        yield f"no {key}", {each: right[each] for each in right if each != key}
+        for wrong in WRONG:
+            if not fits(value, wrong) and not (value is None and wrong is True):
+                yield f"{key} = {str(wrong)[:20]}", {**right, key: wrong}
+
+
+def of_json(value: object) -> bytes:
+    """As Python's `json` writes it, also numbers with thousands of digits."""
+    return packed(json.dumps(value).encode())
+
+
+@pytest.fixture(autouse=True)
+def _long_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(agent_stream, "MOST_FRAMES", 100)
+
+
+def test_facts_with_a_wrong_field() -> None:
+    count = 0
+    for what, facts in variants(FACTS):
+        message = nonsense(FakeRobot(of_json({"done": facts})))
+        assert message.startswith("what the robot sends is not from our agent: "), what
+        count += 1
+    assert count > 150
+
+
+def test_a_release_with_a_wrong_field() -> None:
+    for what, release in variants(FACTS["releases"][0]):
+        if what not in ("no main", "no from", "no debug"):  # an old record may lack them
+            message = nonsense(FakeRobot(of_json({"done": {**FACTS, "releases": [release]}})))
+            assert message.startswith("what the robot sends is not from our agent: "), what
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Manifest:
+    return project_of(tmp_path / "project", {"robot.py": "x = 1\n", "a.py": ""})
+
+
+def test_an_answer_to_a_deploy_with_a_wrong_field(project: Manifest) -> None:
+    for what, deployed in variants(DEPLOYED):
+        if what in ("no release", "no previous", "no taken"):
+            continue
+        reply = wire.said_frame({"need": []}) + of_json({"done": deployed})
+        message = nonsense(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
+        assert message.startswith("what the robot sends is not from our agent: "), what
+
+
+NEEDS: list[Any] = [
+    {"need": ["robot.py", "secret.txt"]},
+    {"need": ["../robot.py"]},
+    {"need": ["robot.py", "robot.py"]},
+    {"need": "robot.py"},
+    {"need": [1]},
+    {"need": [["robot.py"]]},
+    {"need": None},
+    {"phase": "compile"},
+]
+
+
+@pytest.mark.parametrize("need", NEEDS, ids=str)
+def test_contents_that_were_not_offered(need: dict[str, Any], project: Manifest) -> None:
+    message = nonsense(FakeRobot(HELLO, wire.said_frame(need)), lambda robot: robot.deploy(project, REQUEST))
+    assert "'need'" in message
+
+
+@pytest.mark.parametrize("phase", [None, 1, [], {"a": "b"}])
+def test_a_phase_that_is_none(phase: object, project: Manifest) -> None:
+    reply = wire.said_frame({"need": []}) + wire.said_frame({"phase": phase})
+    assert "'phase'" in nonsense(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
+
+
+def test_a_phase_that_is_not_known_is_one_of_a_later_agent(project: Manifest) -> None:
+    reply = b"".join(map(wire.said_frame, ({"need": []}, {"phase": "\x1b[2Jpolish"}, {"done": DEPLOYED})))
+    phases: list[str] = []
+    robot = Robot.start(FakeRobot(HELLO, reply))
+    assert robot.deploy(project, REQUEST, lambda phase, done, total: phases.append(phase)).release == 2
+    assert phases == ["\\x1b[2Jpolish"]
+
+
+def test_an_answer_that_comes_twice(project: Manifest) -> None:
+    reply = b"".join(map(wire.said_frame, ({"need": []}, {"done": DEPLOYED}, {"done": DEPLOYED})))
+
+    def do(robot: Robot) -> None:
+        robot.deploy(project, REQUEST)
+        robot.restart()
+
+    assert "something came that was not asked for" in nonsense(FakeRobot(HELLO, reply), do)
+
+
+@pytest.mark.parametrize(
+    ("op", "answer"),
+    [
+        (lambda robot: robot.rollback(), {"release": 1, "previous": None, "changed": [1], "about": {}}),
+        (lambda robot: robot.rollback(), {"release": 1, "previous": None, "changed": [], "about": []}),
+        (lambda robot: robot.undeploy(), {"removed": "yes"}),
+        (lambda robot: robot.undeploy(), 1),
+        (lambda robot: robot.restart(), "done"),
+        (lambda robot: robot.watch(1.0), {}),
+        (lambda robot: robot.watch(1.0), STATE),
+        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "\x1b[2J"}),
+        (lambda robot: robot.watch(1.0), {**STATE, "verdict": ["running"]}),
+        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "seconds": float("nan")}),
+        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "age": float("inf")}),
+        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "cpu": -1}),
+        (lambda robot: robot.watch(1.0), {**STATE, "verdict": "running", "network_tables": 1}),
+        (lambda robot: robot.info(), {}),
+        (lambda robot: robot.plan(Manifest(())), {"added": [], "changed": 1, "removed": [], "files": 0, "bytes": 0}),
+        (lambda robot: robot.plan(Manifest(())), {"added": [], "changed": [], "removed": [], "files": -1, "bytes": 0}),
+    ],
+)
+def test_other_answers_with_a_wrong_field(op: Callable[[Robot], object], answer: object) -> None:
+    message = nonsense(FakeRobot(HELLO, wire.said_frame({"done": answer})), op)
+    assert message.startswith("what the robot sends is not from our agent: ")
+
+
+@pytest.mark.parametrize("state", [None, [], {}, {"seconds": "long"}, {"seconds": True}])
+def test_a_state_that_is_none(state: object) -> None:
+    message = nonsense(FakeRobot(HELLO, wire.said_frame({"watching": state})), lambda robot: robot.watch(1.0))
+    assert message.startswith("what the robot sends is not from our agent: ")
+
+
+@pytest.mark.parametrize("output", [None, 1, ["x"]])
+def test_output_that_is_no_text(output: object) -> None:
+    message = nonsense(FakeRobot(HELLO, wire.said_frame({"output": output})), lambda robot: robot.watch(1.0))
+    assert "'output'" in message
+
+
+# -- for ever ----------------------------------------------------------------------------------------------------------
+
+
+def for_ever(*frames: dict[str, Any]) -> Iterator[bytes]:
+    while True:
+        yield from map(wire.said_frame, frames)
+
+
+@pytest.mark.parametrize(
+    "frame", [{"alive": True}, {"output": "x" * 100_000}, {"output": ""}], ids=["alive", "output", "no output"]
+)
+def test_frames_without_an_end(frame: dict[str, Any]) -> None:
+    tracemalloc.start()
+    try:
+        message = nonsense(FakeRobot(HELLO, then=for_ever(frame)), lambda robot: robot.watch(3600.0))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert "no answer" in message
+    assert peak < 10_000_000
+
+
+def test_a_frame_that_drips_for_ever() -> None:
+    """The clock is real here, and the robot as quick as this machine: what ends it is the limit for a frame."""
+    drips = (bytes(1) for _ in iter(int, 1))
+    with pytest.raises(ConnectionFailedError, match="its answer began, and did not end"):
+        Robot.start(FakeRobot(struct.pack(">Ic", 1 << 22, wire.SAID), then=drips), limits=TimeLimits(frame=0.1))
+
+
+def test_the_connection_is_closed_afterwards() -> None:
+    robot = FakeRobot(FRAMES["a list"])
+    nonsense(robot)
+    assert robot.closed

@@ -1,0 +1,335 @@
+"""Projects of thousands of files: signs of life from the agent, work that is linear, memory that is limited."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from importlib.util import cache_from_source
+from pathlib import Path
+
+import pytest
+from roborio.fixtures import local_robot  # noqa: F401 - `robot`
+from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+
+from pyfrc_core.deploy.agent.activity import Activity
+from pyfrc_core.deploy.agent.compiling import Compiler
+from pyfrc_core.deploy.agent.places import Refusal
+from pyfrc_core.deploy.manifest import Manifest
+from pyfrc_core.deploy.progress import wording_of_work
+from pyfrc_core.deploy.robot import DeployRequest, Robot
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="an agent runs on Linux")
+
+REQUEST = DeployRequest("robot.py", {})
+
+
+class Signs:
+    """An activity whose clock stands still, and what it has sent."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+        self.sent: list[tuple[str, int, int]] = []
+        self.on_sign: Callable[[], None] = lambda: None
+        self.activity = Activity(self._say, lambda: self.now, pause=1.0)
+
+    def _say(self, alive: dict[str, object]) -> None:
+        self.sent.append(tuple(alive.values()))  # type: ignore[arg-type]
+        self.on_sign()
+
+
+# -- signs of life -----------------------------------------------------------------------------------------------------
+
+
+def test_a_sign_a_second_says_how_far_the_work_is() -> None:
+    signs = Signs()
+    signs.activity.begin("check", 100)
+    for _ in range(100):
+        signs.activity.step()
+        signs.now += 0.03
+    assert signs.sent == [("check", 35, 100), ("check", 69, 100)]
+
+
+def test_the_first_sign_is_due_a_second_after_the_request() -> None:
+    signs = Signs()
+    signs.now = 3600.0
+    signs.activity.reset()
+    signs.activity.begin("check", 1)
+    signs.activity.step()
+    assert signs.sent == []
+
+
+def test_a_large_file_gives_signs_before_it_is_done() -> None:
+    signs = Signs()
+    signs.activity.begin("check", 2)
+    signs.now += 1.0
+    signs.activity.step(0)
+    assert signs.sent == [("check", 0, 2)]
+
+
+def test_the_system_may_take_its_time() -> None:
+    signs, written = Signs(), threading.Event()
+    activity = Activity(signs._say, lambda: signs.now, pause=0.001)
+
+    def second_sign() -> None:
+        if len(signs.sent) == 2:
+            written.set()
+
+    def syncfs(seconds: float) -> str:
+        signs.now += 1.0
+        assert written.wait(60)
+        return f"written in {seconds} s"
+
+    def clock_goes_on() -> None:
+        signs.now += 1.0
+        second_sign()
+
+    signs.on_sign = clock_goes_on
+    activity.begin("sync")
+    assert activity.wait_for(syncfs, 2.0) == "written in 2.0 s"
+    assert signs.sent[:2] == [("sync", 0, 0)] * 2
+
+
+def test_what_fails_meanwhile_fails_here() -> None:
+    with pytest.raises(FileNotFoundError):
+        Signs().activity.wait_for(Path("/nowhere/at/all").stat)
+
+
+def test_a_laptop_that_goes_meanwhile_leaves_nothing_running() -> None:
+    """What is done under the lock has ended before the lock is released."""
+    signs, gone, ended = Signs(), threading.Event(), []
+    activity = Activity(signs._say, lambda: signs.now, pause=0.001)
+
+    def hang_up() -> None:
+        gone.set()
+        raise BrokenPipeError
+
+    def syncfs() -> None:
+        signs.now += 1.0
+        assert gone.wait(60)
+        ended.append(True)
+
+    signs.on_sign = hang_up
+    with pytest.raises(BrokenPipeError):
+        activity.wait_for(syncfs)
+    assert ended == [True]
+
+
+def large_project(directory: Path, modules: int, **more: str | bytes) -> Manifest:
+    files: dict[str, str | bytes] = {f"generated/m{number}.py": f"x = {number}\n" for number in range(modules)}
+    return project_of(directory, {"robot.py": ROBOT_PY, **files, **more})
+
+
+#: What is done, and the work for which the agent gives signs of life then.
+WORK: dict[str, tuple[Callable[[Robot, Manifest, Callable[[str, int, int], None]], object], set[str]]] = {
+    "deploy": (
+        lambda agent, project, on: agent.deploy(project, REQUEST, on),
+        {"check", "link", "receive", "copy", "compile", "sync", "switch", "carry", "remove"},
+    ),
+    "in place": (
+        lambda agent, project, on: agent.deploy(project, DeployRequest("robot.py", {}, in_place=True), on),
+        {"check", "receive", "compile", "sync", "remove"},
+    ),
+    "plan": (lambda agent, project, on: agent.plan(project, on), {"check"}),
+    "rollback": (lambda agent, project, on: agent.rollback(None, on), {"check", "carry", "sync"}),
+    "undeploy": (lambda agent, project, on: agent.undeploy(on), {"stop", "remove", "sync"}),
+}
+
+
+@pytest.mark.parametrize("what", WORK)
+def test_signs_of_life_during_all_work(what: str, robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+    do, expected = WORK[what]
+    for content in ("1", "22", "333"):
+        robot.deploy(agents, large_project(tmp_path / "project", 10, **{"a.txt": content}))
+    copies = {"a.txt": os.urandom(300_000), "b.txt": b"333", "new.py": "x = 17\n"}
+    project = large_project(tmp_path / "project", 10, **copies)
+    seen: list[tuple[str, int, int]] = []
+    agent = robot.start(agents, all_signs=True)
+    do(agent, project, lambda *sign: seen.append(sign))
+    agent.close()
+    assert {phase for phase, _, _ in seen} >= expected
+    assert all(wording_of_work(*sign) != "working" for sign in seen if sign[0] not in ("send", "receive"))
+    checked = [(done, of) for phase, done, of in seen if phase == "check"]
+    assert not checked or max(checked)[0] >= 11
+    if "receive" in expected:
+        assert ("receive", 300_007, 300_007) in seen
+
+
+def test_work_as_the_terminal_shows_it() -> None:
+    assert wording_of_work("check", 2300, 5000) == "checking 2,300 of 5,000 files"
+    assert wording_of_work("carry", 5003, 0) == "looking through 5,003 files for what the program has written"
+    assert wording_of_work("sync", 0, 0) == "waiting for the robot's disk"
+    assert wording_of_work("a word of a newer agent", 1, 2) == "working"
+
+
+# -- linear work -------------------------------------------------------------------------------------------------------
+
+
+def calls_of(robot: LocalRobot, agents: Agents, do: Callable[[Robot], object]) -> int:
+    agent = robot.start(agents, calls=True)
+    do(agent)
+    agent.close()
+    assert robot.channel.steps is not None
+    return robot.channel.steps
+
+
+def test_the_work_is_linear_in_the_files_of_a_directory(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+    """The calls that the agent makes: for 80 files more they grow as for 40 before."""
+    counts = []
+    for files in (40, 80, 160):
+        there = robot.copy(robot.root.with_name(str(files)))
+        first = large_project(tmp_path / f"first {files}", files)
+        changed = large_project(tmp_path / f"changed {files}", files, **{"generated/m7.py": "x = 'changed'\n"})
+        steps: list[Callable[[Robot], object]] = [
+            lambda agent, project=first: agent.deploy(project, REQUEST),  # type: ignore[misc]
+            lambda agent, project=first: agent.deploy(project, REQUEST),  # type: ignore[misc]
+            lambda agent, project=changed: agent.deploy(project, REQUEST),  # type: ignore[misc]
+            lambda agent, project=first: agent.plan(project),  # type: ignore[misc]
+            lambda agent: agent.rollback(),
+            lambda agent: agent.info(),
+            lambda agent: agent.undeploy(),
+        ]
+        counts.append([calls_of(there, agents, step) for step in steps])
+    for few, some, many in zip(*counts, strict=True):
+        assert many - some <= 2.2 * (some - few) + 200, counts
+
+
+def test_an_unchanged_file_is_read_once(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+    """Only the program in place is looked through, where it has all: earlier releases cost nothing."""
+    project = large_project(tmp_path / "project", 100)
+
+    def calls() -> int:
+        return calls_of(robot, agents, lambda agent: agent.plan(project))
+
+    robot.deploy(agents, project)
+    one_release = calls()
+    for content in ("1", "2"):
+        robot.deploy(agents, large_project(tmp_path / "other", 100, **{"a.txt": content}))
+    robot.deploy(agents, project)
+    assert calls() < 1.2 * one_release
+
+
+def test_sources_are_asked_for_first(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+    """They are compiled while the rest is received."""
+    files = {"a.onnx": "1", "z/b.py": "2", "robot.py": ROBOT_PY, "c.json": "3"}
+    project = project_of(tmp_path / "project", files)
+    agent = robot.start(agents)
+    asked: list[str] = []
+    send = agent._send_contents
+
+    def sent(entries: list, on_progress: Callable[[str, int, int], None] | None) -> None:  # type: ignore[type-arg]
+        asked.extend(entry.path for entry in entries)
+        send(entries, on_progress)
+
+    agent._send_contents = sent  # type: ignore[method-assign]
+    agent.deploy(project, REQUEST)
+    agent.close()
+    assert asked == ["robot.py", "z/b.py", "a.onnx", "c.json"]
+
+
+# -- compiling ---------------------------------------------------------------------------------------------------------
+
+
+def is_compiled(source: Path) -> bool:
+    return Path(cache_from_source(str(source), optimization=1)).exists()
+
+
+def test_what_is_there_is_compiled_while_the_rest_is_received(tmp_path: Path) -> None:
+    first, second = tmp_path / "a.py", tmp_path / "b.py"
+    first.write_text("x = 1\n")
+    os.mkfifo(second)
+    signs = Signs()
+    with Compiler(tmp_path, ["a.py", "b.py"], debug=False) as compiler:
+        compiler.next_is_there()
+        compiler.next_is_there()
+        with second.open("w") as stream:  # open when the compiler reads it
+            assert is_compiled(first)
+            stream.write("y = 2\n")
+        compiler.finish(signs.activity)
+    assert is_compiled(second)
+
+
+def test_a_compiler_that_is_not_needed_any_more_is_ended(tmp_path: Path) -> None:
+    children = Path(f"/proc/self/task/{threading.get_native_id()}/children")
+    before = children.read_text()
+    os.mkfifo(tmp_path / "a.py")  # it would wait for ever
+    with Compiler(tmp_path, ["a.py"], debug=False) as compiler:
+        compiler.next_is_there()
+        assert children.read_text() != before
+    assert children.read_text() == before
+
+
+@pytest.mark.parametrize("again", [False, True], ids=["once", "at each try"])
+def test_a_compiler_that_the_system_kills_lets_no_invalid_program_through(
+    again: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As Linux does when memory is short."""
+    compile_one = Compiler._compile
+
+    def killed(self: Compiler, name: str) -> None:
+        if name == "b.py" and (again or not (tmp_path / "killed").exists()):
+            (tmp_path / "killed").touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        compile_one(self, name)
+
+    monkeypatch.setattr(Compiler, "_compile", killed)
+    names = ["a.py", "b.py", "robot.py"]
+    for name in names:
+        (tmp_path / name).write_text("x = 1\n" if name != "robot.py" else "x = = 1\n")
+    with Compiler(tmp_path, names, False, ["robot.py"]) as compiler:
+        for _ in names:
+            compiler.next_is_there()
+        with pytest.raises(Refusal, match=r"robot\.py:1"):
+            compiler.finish(Signs().activity)
+    assert [is_compiled(tmp_path / name) for name in names] == [True, not again, False]
+
+
+def test_a_source_that_is_not_valid_is_known_whatever_is_killed_behind_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compile_one = Compiler._compile
+
+    def killed(self: Compiler, name: str) -> None:
+        if name == "b.py":
+            os.kill(os.getpid(), signal.SIGKILL)
+        compile_one(self, name)
+
+    monkeypatch.setattr(Compiler, "_compile", killed)
+    (tmp_path / "robot.py").write_text("x = = 1\n")
+    (tmp_path / "b.py").write_text("x = 1\n")
+    with Compiler(tmp_path, ["robot.py", "b.py"], False, ["robot.py"]) as compiler:
+        compiler.next_is_there()
+        compiler.next_is_there()
+        with pytest.raises(Refusal, match=r"robot\.py:1"):
+            compiler.finish(Signs().activity)
+
+
+COMPILING = """
+import resource, sys
+from pathlib import Path
+from pyfrc_core.deploy.agent.activity import Activity
+from pyfrc_core.deploy.agent.compiling import Compiler
+names = ["large.py", "small.py"]
+with Compiler(Path(sys.argv[1]), names, False) as compiler:
+    for _ in names:
+        compiler.next_is_there()
+    compiler.finish(Activity(lambda alive: None))
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+"""
+
+
+def test_memory_of_the_compiler(tmp_path: Path) -> None:
+    """A table of 600 kB would take 100 MB; the program compiles it when it imports it."""
+    large, small = tmp_path / "large.py", tmp_path / "small.py"
+    large.write_text("X = [\n" + "".join(f"  {number}, {number + 1},\n" for number in range(50_000)) + "]\n")
+    small.write_text("x = 1\n")
+    environment = {"PYTHONPATH": os.pathsep.join(sys.path)}
+    printed = subprocess.run(
+        [sys.executable, "-c", COMPILING, str(tmp_path)], env=environment, capture_output=True, text=True, check=True
+    ).stdout
+    assert int(printed) * 1024 < 40_000_000
+    assert not is_compiled(large)
+    assert is_compiled(small)

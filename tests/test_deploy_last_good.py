@@ -1,0 +1,167 @@
+"""The releases that were seen to run: kept, gone back to, and shown."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from roborio.fixtures import local_robot  # noqa: F401 - `robot`
+from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+
+from pyfrc_core.deploy.agent.activity import Activity
+from pyfrc_core.deploy.agent.places import Places
+from pyfrc_core.deploy.agent.releases import Releases
+from pyfrc_core.deploy.errors import DeployError
+from pyfrc_core.deploy.facts import Deployed, RobotFacts
+from pyfrc_core.deploy.robot import DeployRequest
+from pyfrc_core.deploy.telling import info_text
+
+#: Deploys a program, number n, and starts it: whether the watch sees it run; None: it is not watched.
+DeployAndWatch = Callable[[int, "bool | None"], Deployed]
+
+
+@pytest.fixture
+def deploy(robot: LocalRobot, agents: Agents, tmp_path: Path) -> DeployAndWatch:
+    def deploy(number: int, runs: bool | None) -> Deployed:
+        project = project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# {number}\n"})
+        with contextlib.closing(robot.start(agents, runs=runs)) as session:
+            deployed = session.deploy(project, DeployRequest("robot.py", {}))
+            if runs is not None:
+                session.restart()
+                session.watch(1.0)
+        return deployed
+
+    return deploy
+
+
+def facts_of(robot: LocalRobot, agents: Agents) -> RobotFacts:
+    with contextlib.closing(robot.start(agents)) as session:
+        return session.facts
+
+
+def numbers(facts: RobotFacts) -> list[int]:
+    return [each.number for each in facts.releases]
+
+
+def test_crashes_do_not_push_out_the_last_release_that_ran(
+    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
+) -> None:
+    deploy(1, True)
+    good = robot.startable()
+    assert [deploy(number, False).fallback for number in (2, 3, 4, 5)] == [1, 1, 1, 1]
+    facts = facts_of(robot, agents)
+    assert numbers(facts) == [1, 4, 5], "it is one of the three"
+    assert [(each.ran, each.ended) for each in facts.releases] == [(True, False), (False, True), (False, True)]
+    with contextlib.closing(robot.start(agents)) as session:
+        assert session.rollback().release.number == 1
+    assert robot.startable() == good
+
+
+def test_back_to_the_one_before_if_it_ran_and_else_to_the_newest_that_did(
+    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
+) -> None:
+    assert deploy(1, True).fallback is None
+    assert deploy(2, True).fallback == 1
+    with contextlib.closing(robot.start(agents)) as session:
+        assert session.rollback().release.number == 1
+    assert deploy(3, False).fallback == 1, "release 2 ran as well, and was given up"
+    assert deploy(3, False).fallback == 1, "the same again"
+    assert deploy(4, False).fallback == 2
+
+
+def test_of_releases_that_were_not_watched_the_one_before(
+    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
+) -> None:
+    for number in range(1, 5):
+        assert deploy(number, None).fallback == (number - 1 or None)
+    facts = facts_of(robot, agents)
+    assert numbers(facts) == [2, 3, 4]
+    assert not any(each.ran or each.ended for each in facts.releases)
+
+
+def test_another_tools_program_was_not_seen_to_run(robot: LocalRobot, agents: Agents, deploy: DeployAndWatch) -> None:
+    (robot.home / "py").mkdir()
+    (robot.home / "py/robot.py").write_text("# another tool's\n")
+    (robot.home / "robotCommand").write_text("python3 -m robotpy --main /home/lvuser/py/robot.py run\n")
+    deployed = deploy(1, False)
+    assert (deployed.taken, deployed.fallback) == (1, 1)
+    assert not facts_of(robot, agents).releases[0].ran
+
+
+def test_a_release_that_ran_stays_known_as_such_and_in_place_it_becomes_another_program(
+    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch, tmp_path: Path
+) -> None:
+    deploy(1, True)
+    deploy(1, False)
+    assert [(each.ran, each.ended) for each in facts_of(robot, agents).releases] == [(True, True)]
+    deploy(1, True)
+    assert [(each.ran, each.ended) for each in facts_of(robot, agents).releases] == [(True, False)]
+    robot.deploy(agents, project_of(tmp_path / "project", {"robot.py": "# in place\n"}), in_place=True)
+    assert [(each.ran, each.ended) for each in facts_of(robot, agents).releases] == [(False, False)]
+
+
+def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, agents: Agents, deploy: DeployAndWatch) -> None:
+    for number, runs in ((1, True), (2, True), (3, False), (4, False)):
+        deploy(number, runs)
+    releases = Releases(Places(str(robot.root)), Activity(lambda **said: None))
+    releases.prune(kept=1)
+    assert releases.numbers() == [2, 4]
+
+
+def test_a_record_is_written_whole(agents: Agents, tmp_path: Path) -> None:
+    with directory_in_memory() as directory:
+        before = LocalRobot.new(directory / "before")
+        before.deploy(agents, project_of(tmp_path / "project", {"robot.py": ROBOT_PY}))
+        known = json.loads((before.home / ".pyfrc/releases/1.json").read_text())
+        for loses in (False, True):
+            step, ended, outcomes = 0, False, []
+            while not ended:
+                step += 1
+                robot = before.copy(directory / "robot")
+                with contextlib.suppress(DeployError):
+                    session = robot.start(agents, runs=True, last_step=step, loses=loses)
+                    with contextlib.closing(session):
+                        session.restart()
+                        ended = session.watch(1.0).alive
+                record = json.loads((robot.home / ".pyfrc/releases/1.json").read_text())
+                outcomes.append(record.pop("ran", False))
+                record.pop("ended", None)
+                assert record == known
+            assert outcomes == sorted(outcomes)
+            assert {True, False} == set(outcomes)
+
+
+# -- pyfrc deploy-info ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("runs", "running", "age", "says"),
+    [
+        (True, True, 312.4, "release 1, running for 312 s"),
+        (True, True, None, "release 1, running"),
+        (True, False, None, "release 1, not running"),
+        (None, True, 0.42, "release 1, running for 0.4 s"),
+        (False, True, 0.42, "release 1, ended at its last watched start; started again 0.4 s ago"),
+        (False, True, None, "release 1, ended at its last watched start; started again"),
+        (False, False, None, "release 1, ended at its last watched start; not running"),
+    ],
+)
+def test_what_is_known_of_the_program(
+    robot: LocalRobot,
+    agents: Agents,
+    deploy: DeployAndWatch,
+    runs: bool | None,
+    running: bool,
+    age: float | None,
+    says: str,
+) -> None:
+    deploy(1, runs)
+    facts = dataclasses.replace(facts_of(robot, agents), running=running, program_age=age)
+    lines = info_text(facts, "").splitlines()
+    assert f"program    {says}" in lines
+    listed = {True: ", seen to run", False: ", ended at its last watched start", None: ""}[runs]
+    assert lines[-1] == f"* release 1   date unknown{listed}"

@@ -1,0 +1,365 @@
+"""What a program needs and the robot's Python lacks: said before anything is changed on the robot."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import re
+import sys
+from collections.abc import Callable, Iterator
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from at_terminal import run_at_terminal
+from packaging.requirements import Requirement
+from roborio import Roborio, require_roborio
+from roborio.fixtures import local_robot  # noqa: F401 - `robot`
+from roborio.local import Agents, LocalRobot, project_of
+
+from pyfrc_core.config.robotpy import RobotPackages, load_robot_packages
+from pyfrc_core.deploy.errors import RefusedError
+from pyfrc_core.deploy.facts import RobotFacts
+from pyfrc_core.deploy.preparing import VIRTUAL_IMAGE
+from pyfrc_core.deploy.progress import Conversation, Progress, Questions
+from pyfrc_core.deploy.robot_packages import ImportSearch, Problem, check_packages, unfit_packages
+from pyfrc_core.errors import SettingsError
+
+GUIDE = (Path(__file__).parents[1] / "docs/deploy.md").read_text("utf-8")
+KEYS = ("robotpy_version", "components", "requires")
+NOTHING = RobotPackages(None, (), (), {})
+OURS = version("wpilib")
+SITE = "usr/local/lib/python3.14/site-packages"
+
+
+@pytest.fixture
+def facts(robot: LocalRobot, agents: Agents) -> RobotFacts:
+    """What a robot says of itself that has just what a program needs."""
+    session = robot.start(agents)
+    session.close()
+    return dataclasses.replace(session.facts, python="3.14.0", machine="armv7l", packages={"wpilib": OURS})
+
+
+Problems = Callable[..., list[Problem]]
+
+
+@pytest.fixture
+def problems(facts: RobotFacts, tmp_path: Path) -> Problems:
+    """What is wrong with a program of these files, on a robot without these modules."""
+
+    def find(files: dict[str, str], missing: tuple[str, ...], packages: RobotPackages = NOTHING) -> list[Problem]:
+        search = ImportSearch(project_of(tmp_path, files), tmp_path, "robot.py")
+        absent = tuple(each for each in search.modules() if each in missing)
+        return search.problems(dataclasses.replace(facts, missing_modules=absent), packages)
+
+    return find
+
+
+# --- modules
+
+
+@pytest.mark.parametrize(
+    ("files", "missing", "said", "remedy"),
+    [
+        (
+            {"robot.py": "import wpilib\nimport commands2.button\n"},
+            ("commands2",),
+            "robot.py:2: import commands2: the robot has no package robotpy-commands-v2",
+            'Add "commands2" to components under [tool.robotpy] in pyproject.toml; with internet: ',
+        ),
+        (
+            {"robot.py": "import arm\n", "arm.py": "from magicbot import tunable\n"},
+            ("magicbot",),
+            "arm.py:1: import magicbot: the robot has no package robotpy-wpilib-utilities",
+            'Add "robotpy-wpilib-utilities" to requires under [tool.robotpy]',
+        ),
+        (
+            {"robot.py": "import wpilib.simulation\n"},
+            ("wpilib.simulation",),
+            f"robot.py:1: import wpilib.simulation: wpilib {OURS} on the robot has no such module",
+            "Install this computer's version",
+        ),
+        (
+            {"robot.py": "import drivetrian\n", "drivetrain.py": ""},
+            ("drivetrian",),
+            "robot.py:1: import drivetrian: neither the project nor the robot has such a module",
+            "Is drivetrain meant?",
+        ),
+        (
+            {"robot.py": "from subsystems import shoter\n", "subsystems/shooter.py": ""},
+            ("subsystems",),
+            "robot.py:1: import subsystems.shoter: neither the project nor the robot has such a module",
+            "Is subsystems.shooter meant?",
+        ),
+        (
+            {"robot.py": "import some_library\n"},
+            ("some_library",),
+            "robot.py:1: import some_library: neither the project nor the robot has such a module",
+            "add it to requires under [tool.robotpy]",
+        ),
+        (
+            {"robot.py": "import telnetlib\n" if "telnetlib" in sys.stdlib_module_names else "import curses\n"},
+            ("telnetlib", "curses"),
+            "Python 3.14.0 on the robot has no such module",
+            "do without it",
+        ),
+        (
+            {"robot.py": "import fast\n", "fast.cp399-win_arm.pyd": ""},
+            ("fast",),
+            "robot.py:1: import fast: fast.cp399-win_arm.pyd is not for the robot's Python",
+            "Take the library built for the roboRIO.",
+        ),
+        (
+            {"robot.py": "from .arm import Arm\n", "arm.py": ""},
+            (),
+            "robot.py:1: from .arm import: there is no package above robot.py",
+            "Leave out the dots.",
+        ),
+        (
+            {"robot.py": "import wpilib\n"},
+            ("robotpy",),
+            "robot.py: the robot has no package robotpy-cli, which starts programs",
+            "robotpy sync",
+        ),
+    ],
+)
+def test_what_is_missing(
+    problems: Problems, files: dict[str, str], missing: tuple[str, ...], said: str, remedy: str
+) -> None:
+    (found,) = problems(files, missing)
+    assert said in str(found)
+    assert remedy in found.remedy
+    assert found.certain
+
+
+@pytest.mark.parametrize(
+    ("files", "missing"),
+    [
+        ({"robot.py": "try:\n    import numpy\nexcept ImportError:\n    numpy = None\n"}, ("numpy",)),
+        ({"robot.py": "try:\n    import ujson\nexcept ImportError:\n    import json\n"}, ("ujson",)),
+        ({"robot.py": "try:\n    import json\nexcept ImportError:\n    import ujson\n"}, ("ujson",)),
+        ({"robot.py": "if VERSION >= (3, 11):\n    import tomllib\nelse:\n    import tomli\n"}, ("tomli",)),
+        ({"robot.py": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import numpy\n"}, ("numpy",)),
+        ({"robot.py": "import wpilib\n", "physics.py": "import pyfrc\n"}, ("pyfrc",)),
+        ({"robot.py": "import sys\nsys.path.append('lib')\nimport tool\n", "lib/tool.py": ""}, ("tool",)),
+        ({"robot.py": "import space.part\n", "space/part.py": ""}, ("space",)),
+        ({"robot.py": "from space import part\n", "space/other.py": ""}, ()),  # the robot has a package `space`
+        ({"robot.py": "import fast\n", "fast.abi3.so": ""}, ("fast",)),
+    ],
+)  # fmt: skip
+def test_what_is_not_missing(problems: Problems, files: dict[str, str], missing: tuple[str, ...]) -> None:
+    if "fast.abi3.so" in files and sys.platform == "win32":
+        pytest.skip("names of extension modules are Linux's here")
+    assert problems(files, missing) == []
+
+
+def test_an_import_that_perhaps_never_runs_is_only_a_warning(problems: Problems) -> None:
+    files = {"robot.py": "import wpilib\n\ndef autonomous():\n    import commands2\n"}
+    (found,) = problems(files, ("commands2",))
+    assert (found.where, found.certain) == ("robot.py:4", False)
+
+
+@pytest.mark.parametrize(
+    ("module", "remedy"),
+    [
+        ("numpy", "Install it in the environment in which pyfrc virtual-robot runs: python -m pip install numpy."),
+        (
+            "commands2",
+            "Install it in the environment in which pyfrc virtual-robot runs: "
+            "python -m pip install robotpy-commands-v2.",
+        ),
+        (
+            "some_library",
+            "Is the name right? If it is a package: in the environment in which pyfrc virtual-robot runs: "
+            "python -m pip install PACKAGE.",
+        ),
+    ],
+)
+def test_a_virtual_robot_gets_packages_from_pip(facts: RobotFacts, tmp_path: Path, module: str, remedy: str) -> None:
+    search = ImportSearch(project_of(tmp_path, {"robot.py": f"import {module}\n"}), tmp_path, "robot.py")
+    virtual = dataclasses.replace(facts, image=VIRTUAL_IMAGE, missing_modules=(module,))
+    (found,) = search.problems(virtual, NOTHING)
+    assert found.remedy == remedy
+
+
+def test_a_virtual_robot_gets_what_the_project_asks_for_from_pip(facts: RobotFacts) -> None:
+    packages = RobotPackages("2026.9.9", ("cscore",), (Requirement("numpy>=1"),), dict.fromkeys(KEYS, "pyproject.toml"))
+    virtual = dataclasses.replace(facts, image=VIRTUAL_IMAGE, wpilib=OURS, packages={})
+    remedies = [each.remedy for each in unfit_packages(packages, virtual)]
+    installed = [each.partition("python -m pip install ")[2] for each in remedies]
+    assert installed == ["wpilib==2026.9.9.", "robotpy-cscore.", "'numpy>=1'."]
+
+
+@pytest.mark.parametrize("module", ["commands2", "cscore", "robotpy_apriltag"])
+def test_a_component_s_package_is_known_where_it_is_not_installed(
+    problems: Problems, module: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("importlib.metadata.packages_distributions", dict)
+    (found,) = problems({"robot.py": f"import {module}\n"}, (module,))
+    assert "the robot has no package robotpy-" in found.text
+    assert "to components under [tool.robotpy]" in found.remedy
+
+
+def test_a_package_that_the_project_asks_for_has_only_to_be_installed(problems: Problems) -> None:
+    packages = RobotPackages(None, ("all",), (), {})
+    (found,) = problems({"robot.py": "import commands2\n"}, ("commands2",), packages)
+    assert found.remedy.startswith("Install it: with internet: python -m robotpy sync; then at the robot:")
+
+
+def test_a_file_that_is_left_out_of_the_upload(facts: RobotFacts, tmp_path: Path) -> None:
+    manifest = project_of(tmp_path, {"robot.py": "import arm\n"})
+    (tmp_path / "arm.py").write_text("")
+    search = ImportSearch(manifest, tmp_path, "robot.py")
+    assert search.modules() == ["arm", "robotpy"]
+    (found,) = search.problems(dataclasses.replace(facts, missing_modules=("arm",)), NOTHING)
+    assert str(found) == "robot.py:1: import arm: the project has it, but it is not uploaded"
+
+
+# --- [tool.robotpy]
+
+
+@pytest.mark.parametrize(
+    ("table", "installed", "said"),
+    [
+        ("robotpy_version = '2020.1.1'", {}, f":2: robotpy_version is 2020.1.1, but the robot has wpilib {OURS}"),
+        (f"robotpy_version = '{OURS}.0'", {}, None),
+        ("components = ['commands2']", {}, ":2: components has commands2, but the robot has no package robotpy-comm"),
+        ("components = ['commands2']", {"robotpy-commands-v2": "2026.1.1"}, ":2: the robot has robotpy-comm"),
+        ("components = ['commands2', 'sim']", {"robotpy-commands-v2": OURS}, None),
+        ("requires = ['Phoenix6>=26.1']", {}, ":2: requires has 'Phoenix6>=26.1', but the robot has no"),
+        ("\nrequires = ['phoenix6>=26.1']", {"phoenix6": "25.3"}, ":3: requires has 'phoenix6>=26.1', but the "),
+        ("requires = ['phoenix6>=26.1', 'robotpy_rev']", {"phoenix6": "26.1.1", "robotpy-rev": "2026.0"}, None),
+        ("requires = ['colorama; sys_platform == \"win32\"']", {}, None),
+        ("requires = ['numpy; platform_machine != \"roborio\"']", {}, None),
+        ("requires = ['numpy; python_version >= \"3.14\"']", {}, ":2: requires has "),
+        ("requires = 'numpy'", {}, None),
+    ],
+)  # fmt: skip
+def test_packages_that_do_not_fit(
+    facts: RobotFacts, tmp_path: Path, table: str, installed: dict[str, str], said: str | None
+) -> None:
+    pyproject = tmp_path / "pyproject.toml"
+    pyproject.write_text(f"[tool.robotpy]\n{table}\n")
+    robot = dataclasses.replace(facts, packages={**facts.packages, **installed})
+    found = list(unfit_packages(load_robot_packages(pyproject), robot))
+    assert len(found) == (said is not None)
+    assert (said or "") in "".join(map(str, found))
+
+
+def test_a_requirement_that_cannot_be_read_is_named_with_its_line(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text("[tool.robotpy]\n\nrequires = ['phoenix6 >> 1']\n")
+    with pytest.raises(SettingsError, match="requires = 'phoenix6 >> 1'") as caught:
+        load_robot_packages(tmp_path / "pyproject.toml")
+    assert caught.value.where == "pyproject.toml:3"
+
+
+def test_no_table_asks_for_nothing(tmp_path: Path) -> None:
+    assert load_robot_packages(tmp_path / "pyproject.toml") == NOTHING
+    (tmp_path / "pyproject.toml").write_text("[tool.ruff]\n")
+    assert load_robot_packages(tmp_path / "pyproject.toml") == NOTHING
+
+
+# --- what is done about it
+
+
+@pytest.mark.parametrize("agrees", [True, False, None])
+def test_the_user_is_asked(facts: RobotFacts, tmp_path: Path, agrees: bool | None) -> None:
+    search = ImportSearch(project_of(tmp_path, {"robot.py": "import commands2\n"}), tmp_path, "robot.py")
+    questions: list[str] = []
+
+    def answer(question: str) -> bool:
+        questions.append(question)
+        return bool(agrees)
+
+    ask = None if agrees is None else Questions(lambda question: "", answer)
+    talk = Conversation(Progress(io.StringIO()), ask)
+    robot = dataclasses.replace(facts, missing_modules=("commands2",))
+    if agrees:
+        check_packages(search, NOTHING, robot, talk)
+    else:
+        with pytest.raises(RefusedError, match=r"not deployed: robot.py:1: import commands2: .*"):
+            check_packages(search, NOTHING, robot, talk)
+    assert len(questions) == (agrees is not None)
+
+
+# --- on a look-alike
+
+
+@pytest.fixture
+def roborio() -> Iterator[Roborio]:
+    require_roborio()
+    with Roborio(wpilib=OURS) as look_alike:
+        yield look_alike
+
+
+ROBOT = "import wpilib\n{imports}\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+
+
+def deploy(project, robot: Roborio, *args: str):
+    return project.run("deploy", "--skip-tests", "--robot", robot.where, *args, env={"SSH_AUTH_SOCK": ""})
+
+
+def test_a_missing_package_is_named_while_the_old_program_runs_on(roborio: Roborio, make_project) -> None:
+    project = make_project({"robot.py": ROBOT.format(imports="")})
+    assert deploy(project, roborio).code == 0
+    before = roborio.said("Robot program startup complete").count("startup complete")
+    project.write({"robot.py": ROBOT.format(imports="import commands2")})
+    planned = deploy(project, roborio, "--dry-run")
+    assert planned.code == 0
+    assert "warning: robot.py:2: import commands2: the robot has no package robotpy-commands-v2" in planned.stdout
+    refused = deploy(project, roborio)
+    assert refused.code == 1
+    assert "not deployed: robot.py:2: import commands2: the robot has no package robotpy-commands-v2" in refused.output
+    (shown,) = re.findall(r"^ +```text\n +(error: not deployed.*?)```$", GUIDE, re.MULTILINE | re.DOTALL)
+    assert " ".join(shown.split()) in " ".join(refused.output.split())
+    assert "Traceback" not in refused.output
+    assert sorted(each.name for each in (roborio.home / ".pyfrc").iterdir()) == ["lock", "releases"]
+    assert (roborio.home / "py/robot.py").read_text() == ROBOT.format(imports="")
+    assert roborio.said("startup complete").count("startup complete") == before, "it was not restarted"
+    roborio.put(f"{SITE}/commands2/__init__.py", "")
+    assert deploy(project, roborio).code == 0
+
+
+def test_deploying_all_the_same(roborio: Roborio, make_project) -> None:
+    project = make_project({"robot.py": ROBOT.format(imports="import commands2")})
+    code, shown = run_at_terminal(
+        project.path,
+        ["deploy", "--skip-tests", "--robot", roborio.where],
+        [("no package robotpy-commands-v2. Deploy all the same?", "y")],
+    )
+    assert code == 3, shown  # it has ended at once
+    project.write({"robot.py": ROBOT.format(imports="import commands2 as c")})
+    done = deploy(project, roborio, "-n")
+    assert done.code == 3, done.output
+    assert "warning: robot.py:2: import commands2" in done.stdout
+
+
+def test_versions_that_do_not_fit(roborio: Roborio, make_project) -> None:
+    settings = "[tool.robotpy]\nrobotpy_version = '2026.1.0'\ncomponents = ['apriltag']\n"
+    project = make_project({"robot.py": ROBOT.format(imports=""), "pyproject.toml": settings})
+    refused = deploy(project, roborio)
+    assert refused.code == 1
+    assert f"pyproject.toml:2: robotpy_version is 2026.1.0, but the robot has wpilib {OURS}" in refused.output
+    assert "pyproject.toml:3: components has apriltag, but the robot has no package robotpy-apriltag" in refused.output
+    assert deploy(project, roborio, "-n").code == 0
+
+
+def test_the_robots_python_is_the_seasons(roborio: Roborio, make_project) -> None:
+    customize = roborio.disk / SITE / "sitecustomize.py"
+    customize.write_text(customize.read_text().replace("(3, 14,", "(3, 99,"))
+    project = make_project({"robot.py": ROBOT.format(imports="")})
+    refused = deploy(project, roborio)
+    assert refused.code == 1
+    assert f"the robot has Python 3.99.0, but wpilib {OURS} is for Python 3.14 there" in refused.output
+    assert not (roborio.home / ".pyfrc").exists()
+    assert deploy(project, roborio, "-n").code == 0
+
+
+def test_a_file_that_the_robots_python_cannot_compile(roborio: Roborio, make_project) -> None:
+    project = make_project({"robot.py": ROBOT.format(imports="import arm"), "arm.py": "SPEED = 1\n"})
+    assert deploy(project, roborio).code == 0
+    project.write({"arm.py": "SPEED = 1\nprint 'fast'\n"})
+    refused = deploy(project, roborio, "-n")
+    assert refused.code == 1
+    assert "arm.py:2" in refused.output
+    assert (roborio.home / "py/arm.py").read_text() == "SPEED = 1\n"

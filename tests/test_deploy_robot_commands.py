@@ -1,0 +1,79 @@
+"""The commands that messages suggest are about the robot that the user's own command names."""
+
+from __future__ import annotations
+
+import json
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from pyfrc_cli.robot_options import conversation, errors_shown, json_option, robot_options
+from pyfrc_core.deploy import preparing, standing, starting
+from pyfrc_core.deploy.facts import StartState
+from pyfrc_core.deploy.reach import RobotChoice
+from pyfrc_core.deploy.robot_commands import naming_robot
+from pyfrc_core.errors import PyfrcError
+
+REMEDY = "Deploy again: pyfrc deploy. To see what it has: pyfrc deploy-info. Or: pyfrc deploy --rollback 3."
+
+
+@click.command()
+@robot_options
+@json_option
+def failing(choice: RobotChoice, as_json: bool) -> None:
+    with errors_shown(choice, as_json):
+        progress = conversation(choice, as_json).progress
+        progress.note("see pyfrc console")
+        progress.warning("see pyfrc console")
+        raise PyfrcError("it fails", remedy=REMEDY)
+
+
+@pytest.mark.parametrize(
+    ("typed", "robot"),
+    [
+        (["--robot", "127.0.0.1:2222"], " --robot 127.0.0.1:2222"),
+        (["--team", "1234"], " --team 1234"),
+        ([], ""),
+    ],
+    ids=["robot", "team", "neither"],
+)
+def test_remedies_name_the_robot_as_it_was_typed(typed: list[str], robot: str) -> None:
+    expected = (
+        f"Deploy again: pyfrc deploy{robot}. To see what it has: pyfrc deploy-info{robot}. "
+        f"Or: pyfrc deploy{robot} --rollback 3."
+    )
+    result = CliRunner().invoke(failing, [*typed, "--json"])
+    assert isinstance(result.exception, PyfrcError)
+    assert str(result.exception) == f"it fails\n  {expected}"
+    note, warning, error = map(json.loads, result.stdout.splitlines())
+    assert error["remedy"] == expected
+    assert note["text"] == warning["text"] == f"see pyfrc console{robot}"
+
+
+@pytest.mark.parametrize(
+    "remedy",
+    [
+        standing.TAKES_OVER.remedy,
+        standing.GOES_BACK.remedy,
+        standing.GOES_AWAY.remedy,
+        standing.deployed(2, 1).remedy,
+        standing.went_back(1).remedy,
+        standing.started(2, 1, StartState(seconds=1.0, seen=True)).remedy,
+        starting._GO_BACK,
+        preparing.other_languages_notice(["/home/lvuser/robot.jar"])[1],
+    ],
+)
+def test_each_command_of_a_deploy_s_own_remedies_is_found(remedy: str) -> None:
+    commands = remedy.count("pyfrc ")
+    assert commands > 0
+    assert naming_robot(remedy, None, 1234).count(" --team 1234") == commands
+
+
+def test_a_command_that_names_a_robot_already_stays_as_it_is() -> None:
+    text = "Try it without a robot: pyfrc virtual-robot -- pyfrc deploy --robot"
+    assert naming_robot(text, "10.12.34.2", None) == text
+
+
+def test_an_address_is_quoted_for_the_shell() -> None:
+    assert naming_robot("pyfrc console", "a;b", None) == "pyfrc console --robot 'a;b'"

@@ -1,0 +1,65 @@
+"""What a robot sends cannot control the terminal: not by its output, its records, its errors, nor in its console."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+import unicodedata
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pyfrc_core.deploy.progress import JsonProgress, Progress
+from pyfrc_core.terminal_text import one_line, visible
+
+#: Clears the screen, sets the title, has the terminal answer, reverses the text.
+HOSTILE = "\x1b[2J\x1b]0;title\x07\x9b5n\x08\r\x7f\u202e\u2066\u061c\u2028\ud800"
+SHOWN = "\\x1b[2J\\x1b]0;title\\x07\\x9b5n\\x08\\x0d\\x7f\\u202e\\u2066\\u061c\\u2028\\ud800"
+
+
+def test_control_characters_are_shown_and_colours_are_left_out() -> None:
+    assert visible(HOSTILE) == SHOWN
+    assert visible("\x1b[1;31mred\x1b[0m\tGrüße\r\n") == "red\tGrüße\n"
+    assert one_line("a\nb\tc" + HOSTILE) == "a\\nb c" + SHOWN
+    assert one_line("x" * 5000, 10) == "x" * 10 + " ..."
+
+
+def test_invisible_characters_are_shown() -> None:
+    assert visible("a\u200bb\u00adc\ufeffd\U000e0041") == "a\\u200bb\\xadc\\ufeffd\\U000e0041"
+    invisible = {letter for letter in map(chr, range(sys.maxunicode + 1)) if unicodedata.category(letter) == "Cf"}
+    visible_marks = {letter for letter in invisible if unicodedata.bidirectional(letter) == "AN"}  # Arabic signs
+    kept = {letter for letter in invisible - visible_marks if visible(letter) == letter}
+    joiners = {"\u200c", "\u200d"}  # Persian, Indic scripts and emoji need them
+    syriac_and_kaithi_signs = {"\u070f", "\U000110bd", "\U000110cd"}
+    hieroglyph_joiners = set(map(chr, range(0x13430, 0x13440)))
+    assert kept <= joiners | syriac_and_kaithi_signs | hieroglyph_joiners
+    assert joiners <= kept
+    assert visible("".join(map(chr, range(0xE0000, 0xE0080)))).isascii()
+
+
+@given(st.text())
+def test_no_text_has_control_characters_afterwards(text: str) -> None:
+    assert all(each in "\n\t" or not (ord(each) < 32 or 127 <= ord(each) < 160) for each in visible(text))
+    assert one_line(text).count("\n") == 0
+    assert visible(visible(text)) == visible(text)
+
+
+def test_all_that_a_deploy_prints() -> None:
+    stream = io.StringIO()
+    progress = Progress(stream)
+    with progress.phase("look") as phase:
+        phase.detail = HOSTILE
+    for tell in (progress.note, progress.warning, progress.output):
+        tell(HOSTILE)
+    progress.result({}, HOSTILE)
+    assert stream.getvalue().count("\\x1b[2J") == 5
+    assert not set(stream.getvalue()) & set("\x1b\x07\x9b\r\x7f\u202e\u2028")
+
+
+def test_json_has_the_text_as_it_was_and_no_control_characters() -> None:
+    stream = io.StringIO()
+    JsonProgress(stream).output(HOSTILE)
+    assert stream.getvalue().rstrip("\n").isprintable()
+    assert stream.getvalue().isascii()
+    assert json.loads(stream.getvalue())["text"] == HOSTILE

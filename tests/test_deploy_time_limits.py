@@ -1,0 +1,132 @@
+"""The limits of time for what the robot sends: until a frame begins, for a frame, and for an answer as a whole."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable, Iterator
+
+import pytest
+
+from pyfrc_core.deploy.agent import wire
+from pyfrc_core.deploy.agent_stream import AgentStream, TimeLimits
+from pyfrc_core.deploy.answers import Fields
+from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError
+
+LIMITS = TimeLimits(start=20, silence=60, frame=30, answer=900)
+ALIVE = wire.said_frame({"alive": True})
+DONE = wire.said_frame({"done": {"release": 7}})
+
+
+def release(told: Fields) -> int:
+    """What is expected here of an answer."""
+    return told.count("release")
+
+
+class Clock:
+    """Seconds, which only waiting lets pass."""
+
+    now = 1000.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+class SlowChannel:
+    """A channel from which pieces come, each after some seconds."""
+
+    def __init__(self, clock: Clock, pieces: Iterable[tuple[float, bytes]], ready: bytes = b"") -> None:
+        self._clock = clock
+        self._pieces: Iterator[tuple[float, bytes]] = iter(pieces)
+        self._rest = ready
+        self._patience = 0.0
+        self.status_event = threading.Event()
+
+    def settimeout(self, seconds: float | None) -> None:
+        assert seconds is not None, "each wait has a limit"
+        self._patience = seconds
+
+    def recv(self, count: int) -> bytes:
+        if not self._rest:
+            wait, self._rest = next(self._pieces, (1e9, b""))
+            if wait > self._patience:
+                self._clock.now += self._patience
+                raise TimeoutError
+            self._clock.now += wait
+        piece, self._rest = self._rest[:count], self._rest[count:]
+        return piece
+
+    def recv_ready(self) -> bool:
+        return bool(self._rest)
+
+    def sendall(self, data: bytes) -> None: ...
+    def recv_stderr(self, count: int) -> bytes:
+        return b""
+
+    def recv_exit_status(self) -> int:
+        return -1
+
+    def close(self) -> None: ...
+
+
+def stream_of(*pieces: tuple[float, bytes], clock: Clock | None = None) -> AgentStream:
+    clock = clock or Clock()
+    return AgentStream(SlowChannel(clock, pieces), "10.12.34.2", LIMITS, clock)
+
+
+def dripping(frame: bytes, seconds: float) -> list[tuple[float, bytes]]:
+    return [(seconds, frame[place : place + 1]) for place in range(len(frame))]
+
+
+def test_signs_of_life_are_waited_for_and_passed_over() -> None:
+    stream = stream_of(*[(50.0, ALIVE)] * 10, (50.0, DONE))
+    assert stream.answer(release) == 7
+
+
+def test_news_is_passed_on_and_signs_of_life_are_not() -> None:
+    news: list[str] = []
+
+    def heard(said: Fields) -> None:
+        news.append(said.line("phase"))
+
+    phase = {"phase": "compile"}
+    assert stream_of((1, ALIVE + wire.said_frame(phase) + ALIVE), (1, DONE)).answer(release, heard) == 7
+    assert news == ["compile"]
+
+
+def test_a_slow_frame_within_its_limit() -> None:
+    assert stream_of(*dripping(DONE, 0.5)).answer(release) == 7
+
+
+@pytest.mark.parametrize(
+    ("pieces", "seconds", "why"),
+    [
+        ([], 60, "no answer"),
+        ([(50, ALIVE), (61, DONE)], 50 + 60, "no answer"),
+        (dripping(wire.frame(wire.SAID, bytes(1000)), 5.0), 5 + 30, "its answer began, and did not end"),
+        ([(59, DONE[:3])], 59 + 30, "its answer began, and did not end"),
+        ([(50, ALIVE)] * 1000, 900, "it works, and does not come to an end"),
+        ([(10, wire.said_frame({"phase": "compile"}))] * 1000, 900, "it works, and does not come to an end"),
+    ],
+    ids=["silent", "silent after a sign of life", "dripping", "half a frame", "alive for ever", "phases for ever"],
+)
+def test_each_limit_holds(pieces: list[tuple[float, bytes]], seconds: float, why: str) -> None:
+    clock = Clock()
+    with pytest.raises(ConnectionFailedError, match=f"the link to the robot was lost: {why}"):
+        stream_of(*pieces, clock=clock).answer(release, lambda said: None)
+    assert clock.now == pytest.approx(1000 + seconds, abs=5)
+
+
+def test_signs_of_life_while_contents_are_sent_are_passed_over_and_the_rest_is_kept() -> None:
+    clock = Clock()
+    for ready, news in ((ALIVE + ALIVE, False), (ALIVE + DONE, True)):
+        stream = AgentStream(SlowChannel(clock, [(0, DONE)], ready), "10.12.34.2", LIMITS, clock)
+        assert stream.has_news() is news
+        assert stream.answer(release) == 7
+
+
+def test_a_refusal_while_contents_are_sent() -> None:
+    refusal = wire.said_frame({"error": "space", "message": "the disk is full", "remedy": ""})
+    clock = Clock()
+    stream = AgentStream(SlowChannel(clock, [], ALIVE + refusal), "10.12.34.2", LIMITS, clock)
+    with pytest.raises(RefusedError, match="the disk is full"):
+        stream.has_news()

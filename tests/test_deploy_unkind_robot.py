@@ -1,0 +1,124 @@
+"""Deploys to a look-alike that is as unkind as a roboRIO: kills take their time or fail, the console is silent."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from pathlib import Path
+
+from roborio import Roborio, require_roborio
+from roborio.local import project_of
+from roborio.machine import LETS_PROGRAMS_SURVIVE
+from roborio.ssh import SshConnection
+
+from pyfrc_core.deploy.robot import DeployRequest, Robot
+
+ROBOT = """\
+import signal
+import wpilib
+
+signal.signal(signal.SIGTERM, signal.SIG_IGN)
+
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        print("this is {name}")
+"""
+
+
+def write_and_deploy(project, name: str, robot: Roborio, *options: str):
+    project.write({"robot.py": ROBOT.format(name=name)})
+    return project.run("deploy", "--skip-tests", "-n", "--robot", robot.where, *options)
+
+
+def programs_on(robot: Roborio) -> list[str]:
+    lines = robot.run("ps", "-ww", "-u", "lvuser", "-o", "args").stdout.splitlines()
+    return [line for line in lines if "/home/lvuser/py/robot.py" in line]
+
+
+def test_a_kill_that_takes_two_seconds_and_restarts_at_once(make_project) -> None:
+    require_roborio()
+    project = make_project({})
+    with Roborio.unkind(driver_station=True) as robot:
+        for name in ("the first", "the second"):
+            result = write_and_deploy(project, name, robot)
+            assert result.code == 0, result.output
+            assert "the program runs" in result.stdout
+            robot.said(f"this is {name}")
+        assert len(programs_on(robot)) == 1
+        assert "frcKillRobot.sh" not in result.output
+
+
+def test_the_console_is_silent_without_a_driver_station(tmp_path: Path) -> None:
+    require_roborio()
+    project = project_of(tmp_path, {"robot.py": ROBOT.format(name="a robot")})
+    with Roborio(driver_station=False) as roborio, SshConnection(roborio.host, roborio.port) as connection:
+        robot = Robot.start(connection)
+        robot.deploy(project, DeployRequest("robot.py", {}))
+        robot.restart()
+        roborio.said("this is a robot")
+        assert robot.watch(0.5, unheard=0.1).output == ""
+        done = threading.Event()
+
+        def be_a_driver_station() -> None:
+            with socket.socket(type=socket.SOCK_DGRAM) as packets:
+                while not done.wait(0.05):
+                    packets.sendto(b"packet", (roborio.host, 1110))
+
+        driver_station = threading.Thread(target=be_a_driver_station)
+        driver_station.start()
+        try:
+            robot.restart()
+            assert "this is a robot" in robot.watch(20, unheard=20).output
+        finally:
+            done.set()
+            driver_station.join()
+            robot.close()
+
+
+def test_a_program_that_survives_the_kill_script_is_ended_and_the_script_replaced(make_project) -> None:
+    require_roborio()
+    project = make_project({})
+    script = Path("usr/local/frc/bin/frcKillRobot.sh")
+    with Roborio.unkind(LETS_PROGRAMS_SURVIVE, driver_station=True) as robot:
+        assert write_and_deploy(project, "the first", robot).code == 0
+        robot.said("this is the first")
+        result = write_and_deploy(project, "the second", robot)
+        assert result.code == 0, result.output
+        assert "the old program went on after frcKillRobot.sh, and was ended" in result.stdout
+        assert "frcKillRobot.sh let it survive, and was replaced" in result.stdout
+        robot.said("this is the second")
+        assert len(programs_on(robot)) == 1
+        assert (robot.disk / script).read_text().startswith("#!/bin/bash\n# pyfrc's")
+        assert (
+            robot.disk / script.with_name("frcKillRobot.image.sh")
+        ).read_bytes() == LETS_PROGRAMS_SURVIVE.read_bytes()
+        # From now on, nothing survives: the agent has nothing to end.
+        result = write_and_deploy(project, "the third", robot)
+        assert result.code == 0, result.output
+        assert "survive" not in result.output
+        assert "went on" not in result.output
+        robot.said("this is the third")
+        assert len(programs_on(robot)) == 1
+
+
+def test_programs_in_java_and_cpp_are_removed_on_request(make_project) -> None:
+    require_roborio()
+    with Roborio(python=None) as robot:
+        robot.put("home/lvuser/robotCommand", "/usr/local/frc/JRE/bin/java -jar /home/lvuser/Robot.jar\n")
+        for name in ("home/lvuser/Robot.jar", "home/lvuser/deploy/paths.json", "usr/local/frc/third-party/lib/a.so"):
+            robot.put(name, "content")
+        project = make_project({})
+        command = ["undeploy", "--java-cpp", "--robot", robot.where]
+        asked = project.run(*command)
+        assert asked.code == 2
+        assert "Say so with --yes" in asked.stderr
+        assert (robot.home / "Robot.jar").exists()
+        result = project.run(*command, "--yes")
+        assert result.code == 0, result.output
+        assert "/home/lvuser/Robot.jar" in result.stdout
+        assert list(robot.home.iterdir()) == []
+        assert not (robot.disk / "usr/local/frc/third-party/lib").exists()
+        robot.put("home/lvuser/robotCommand", "python3 -m robotpy --main /home/lvuser/py/robot.py run\n")
+        assert "There was nothing to remove" in project.run(*command, "--yes").stdout
+        assert (robot.home / "robotCommand").exists()

@@ -1,0 +1,116 @@
+"""What the documentation, the templates and messages say about installing pyfrc.
+
+The index has older packages of this name (2026.0.3 and before), which are another program: every line that installs
+pyfrc by its name asks for a version that has what the line is about.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from skips import missing_programs, require
+
+from pyfrc_core._version import __version__, requirement
+
+ROOT = Path(__file__).parents[1]
+OLD = "2026.0.3"
+PAGE = (ROOT / "docs/getting_started.md").read_text("utf-8")
+#: A line that has pip install something, up to what ends a command in prose, tables and code.
+INSTALLS = re.compile(r"pip install ([^`\n(|&;]+)")
+PYFRC = re.compile(r"""(?<![/\\])["']?pyfrc\b(?!-|/)[^"'\s;&]*["']?""")
+
+
+def block(heading: str, language: str) -> list[str]:
+    """Return the lines of the block in this language, below a heading of the page on getting started."""
+    section = PAGE.partition(f"\n{heading}\n")[2].partition("\n## ")[0]
+    found = re.search(rf"^```{language}\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)
+    assert found is not None, f"no {language} below {heading}"
+    return found[1].splitlines()
+
+
+def files_with_text() -> list[Path]:
+    templates = [file for file in (ROOT / "templates").rglob("*") if file.suffix in (".md", ".yml", ".template")]
+    code = [file for package in ("pyfrc", "pyfrc_cli", "pyfrc_core") for file in (ROOT / package).rglob("*.py")]
+    return [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *templates, *code]
+
+
+def test_what_is_asked_for_is_this_pyfrc_and_not_the_older_program_of_its_name() -> None:
+    for needed in map(Requirement, (requirement(), requirement("gamepads"))):
+        assert needed.name == "pyfrc"
+        assert needed.specifier.contains(__version__)
+        assert not needed.specifier.contains(OLD)
+    assert Requirement(requirement("gamepads")).extras == {"gamepads"}
+
+
+def test_every_line_that_installs_pyfrc_by_name_asks_for_it_in_quotes_with_its_version() -> None:
+    found = 0
+    for file in files_with_text():
+        for command in INSTALLS.findall(file.read_text("utf-8")):
+            for name in PYFRC.findall(command):
+                found += 1
+                assert name[0] == name[-1] == '"', f"{file}: {command}: a shell takes > for a file"
+                extras = Requirement(name.strip('"')).extras
+                assert name.strip('"') == requirement(*extras), f"{file}: {command}"
+    assert found >= 6
+
+
+@pytest.mark.parametrize(
+    ("language", "activation"), [("bash", "source .venv/bin/activate"), ("powershell", r".venv\Scripts\Activate.ps1")]
+)
+def test_the_environment_is_made_then_activated_then_filled_then_used(language: str, activation: str) -> None:
+    lines = [line for line in block("## Install", language) if not line.startswith("#")]
+    made, activated, *rest = lines
+    assert made.endswith("-m venv .venv")
+    assert activated == activation
+    assert rest == [f'pip install "{requirement()}"', "pyfrc doctor"]
+
+
+def test_in_bash_what_is_installed_goes_to_the_environment(tmp_path: Path) -> None:
+    require("the page on getting started, in bash", missing_programs("bash"))
+    made, activated, *_ = block("## Install", "bash")
+    made = f"{made.replace('python3', shlex.quote(sys.executable))} --without-pip"  # which takes the time of ten tests
+    done = subprocess.run(
+        ["bash", "-ec", "\n".join([made, activated, 'python -c "import sys; print(sys.prefix)"'])],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert Path(done.stdout.strip()).samefile(tmp_path / ".venv")
+
+
+@pytest.mark.parametrize("language", ["bash", "powershell"])
+def test_a_checkout_is_installed_by_its_directory(language: str) -> None:
+    (line,) = block("### From a checkout", language)
+    *command, place = shlex.split(line, posix=language == "bash")
+    assert command == ["pip", "install"]
+    assert place.endswith("pyfrc")
+    offline = ["--quiet", "--dry-run", "--no-deps", "--no-build-isolation", str(ROOT)]
+    if language == "bash":
+        subprocess.run([sys.executable, "-m", *command, *offline], check=True, capture_output=True)
+
+
+def test_the_readme_installs_from_the_checkout_until_the_release_is_on_the_index() -> None:
+    section = (ROOT / "README.md").read_text("utf-8").partition("\n## In your own project\n")[2]
+    (line,) = re.findall(r"^\$ (pip install .+)$", section, re.MULTILINE)
+    assert shlex.split(line, comments=True) == ["pip", "install", *block("### From a checkout", "bash")[0].split()[2:]]
+    assert f'pip install "{requirement()}"' in line.partition("#")[2]
+
+
+def test_a_project_can_carry_a_wheel_for_its_workflow(tmp_path: Path) -> None:
+    """The page's way for a machine that has no checkout, such as GitHub's."""
+    section = PAGE.partition("### From a checkout")[2]
+    (building,) = re.findall(r"`(pip wheel [^`]+)`", section)
+    (needed,) = re.findall(r"`(\./wheels/[^`]+)`", section)
+    command = shlex.split(building.replace("/path/to/pyfrc", shlex.quote(str(ROOT))))
+    python = [sys.executable, "-m"]
+    subprocess.run([*python, *command, "--quiet", "--no-build-isolation"], cwd=tmp_path, check=True)
+    (tmp_path / "requirements.txt").write_text(f"{needed}\n", "utf-8")
+    install = [*python, "pip", "install", "--quiet", "--dry-run", "--no-deps", "-r", "requirements.txt"]
+    subprocess.run(install, cwd=tmp_path, check=True)

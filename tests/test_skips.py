@@ -1,0 +1,137 @@
+"""A run's last line: what was not tested on this machine, and what brings it."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import pytest
+import skips
+
+HERE = Path(__file__).parent
+
+TESTS = """
+    import pytest
+    from skips import require
+
+    @pytest.mark.parametrize("number", range(3))
+    def test_robots(number):
+        require("robots", ["root", "sshd"])
+
+    @pytest.mark.skipif(True, reason="there are no whistles")
+    def test_whistles():
+        pass
+
+    def test_all_there():
+        require("robots", [])
+"""
+
+WINDOWS = """
+    from skips import require
+
+    require("windows", ["Xvfb"])
+
+    def test_one():
+        pass
+
+    def test_another():
+        pass
+"""
+
+
+def run(directory: Path, *args: str, **env: str) -> subprocess.CompletedProcess[str]:
+    environment = {name: value for name, value in os.environ.items() if name != "PYFRC_NO_SKIPS"}
+    command = [sys.executable, "-m", "pytest", "-p", "skips", "-p", "no:cacheprovider", *args]
+    return subprocess.run(
+        command,
+        cwd=directory,
+        env=environment | {"PYTHONPATH": str(HERE)} | env,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture
+def suite(make_project) -> Path:
+    path: Path = make_project({"test_robots.py": TESTS, "test_windows.py": WINDOWS}).path
+    return path
+
+
+@pytest.mark.parametrize("args", [[], ["-n", "2"]])
+def test_everything_that_was_skipped_is_in_the_last_line_by_kind_and_counted(suite: Path, args: list[str]) -> None:
+    done = run(suite, *args)
+    assert done.returncode == 0, done.stdout + done.stderr
+    last = done.stdout.splitlines()[-1]
+    assert last.startswith(
+        "Not tested on this machine: robots (3 tests; needs root, sshd), windows (2 tests; needs Xvfb),"
+        " there are no whistles (1 test). To test this, too: "
+    )
+    assert last.endswith("sudo make test")
+
+
+def test_in_the_gate_each_is_a_failure(suite: Path) -> None:
+    done = run(suite, PYFRC_NO_SKIPS="1")
+    assert done.returncode != 0
+    assert "Not tested" not in done.stdout
+    assert "1 error" in done.stdout  # the module
+    done = run(suite, "test_robots.py", PYFRC_NO_SKIPS="1")
+    assert "3 failed, 1 passed, 1 error" in done.stdout
+
+
+def test_a_run_that_skips_nothing_has_no_such_line() -> None:
+    assert skips.summarize(Counter()) is None
+
+
+REASONS = Counter({"robots: needs root, sshd": 7, "windows: needs Xvfb, tkinter, xdotool": 5})
+
+
+@pytest.mark.parametrize(
+    ("manager", "command"),
+    [
+        ("apt-get", "sudo apt-get install openssh-server python3-tk xdotool xvfb && sudo make test"),
+        ("dnf", "sudo dnf install openssh-server python3-tkinter xdotool xorg-x11-server-Xvfb && sudo make test"),
+        ("pacman", "sudo pacman -S openssh tk xdotool xorg-server-xvfb && sudo make test"),
+        ("none", "install Xvfb, sshd, tkinter, xdotool; sudo make test"),
+    ],
+)
+def test_the_one_command_is_of_the_systems_package_manager(
+    manager: str, command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / manager).touch(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    line = skips.summarize(REASONS)
+    assert line is not None
+    assert line.rpartition(": ")[2] == command
+
+
+def test_with_all_programs_there_root_is_what_is_left() -> None:
+    line = skips.summarize(Counter({"robots: needs root": 7}))
+    assert line == "Not tested on this machine: robots (7 tests; needs root). To test this, too: sudo make test"
+
+
+def test_what_no_package_brings() -> None:
+    line = skips.summarize(Counter({"windows: needs Linux": 1}))
+    assert line is not None
+    assert line.endswith("To test this, too: run them on Linux (on Windows: in WSL)")
+
+
+def test_a_program_that_may_not_be_run_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "git").touch(0o644)
+    (tmp_path / "ip").touch(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(skips, "_SYSTEM_PROGRAMS", ())
+    assert skips.missing_programs("git", "ip") == ["git"]
+
+
+def test_no_test_is_skipped_by_a_guard_of_its_own() -> None:
+    """A part that may be missing goes by `require`, so that the last line can say what brings it."""
+    own = re.compile(r"importorskip\(\"tkinter|shutil\.which\(.*\) is None\b.*reason|PYFRC_NO_SKIPS")
+    found = [
+        file.name for file in HERE.glob("test_*.py") if file != Path(__file__) and own.search(file.read_text("utf-8"))
+    ]
+    assert found == []

@@ -1,0 +1,285 @@
+"""`pyfrc virtual-robot`, and the commands of a deploy with it: no root, no SSH server, no network."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import select
+import shlex
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from conftest import RobotProject
+from skips import require
+
+from pyfrc_core.doctor.robot import RobotSearch
+from pyfrc_core.project import find_project
+
+SECONDS = 60
+
+ROBOT = """
+import os
+import wpilib
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        print("version 1 of", os.getpid(), flush=True)
+"""
+CRASHES = """
+import wpilib
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        print("\\7", end="")
+        raise RuntimeError("no gyro")
+"""
+
+
+class Started:
+    """A `pyfrc virtual-robot` that is running."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        self.printed: list[str] = []
+        self._news = threading.Condition()
+        threading.Thread(target=self._read, daemon=True).start()
+        (self.address,) = re.findall(r"running at (\S+);", self.said("running at"))
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            with self._news:
+                self.printed.append(line)
+                self._news.notify_all()
+
+    def said(self, text: str, times: int = 1) -> str:
+        """Wait until so many lines with `text` have been printed; the last of them."""
+        with self._news:
+            found = self._news.wait_for(lambda: sum(text in line for line in self.printed) >= times, SECONDS)
+            assert found, f"{text!r} was not printed, but:\n{''.join(self.printed)}"
+            return [line for line in self.printed if text in line][times - 1]
+
+    def pid(self, times: int = 1) -> int:
+        """The process of the program that says it is version 1."""
+        return int(self.said("version 1 of", times).split()[-1])
+
+
+@contextmanager
+def started(project: RobotProject, directory: Path, *options: str) -> Iterator[Started]:
+    """A virtual robot, ended by Ctrl-C at the end."""
+    command = [sys.executable, "-m", "pyfrc", "virtual-robot", "--directory", str(directory), *options]
+    with subprocess.Popen(
+        command, cwd=project.path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, errors="replace"
+    ) as process:
+        guard = threading.Timer(SECONDS, process.kill)
+        guard.start()
+        try:
+            yield Started(process)
+        finally:
+            process.send_signal(signal.SIGINT)
+            process.wait()
+            guard.cancel()
+
+
+@pytest.fixture
+def project(make_project) -> RobotProject:
+    return make_project({"robot.py": ROBOT, "other.py": "VALUE = 1\n"})
+
+
+@pytest.fixture
+def directory(tmp_path: Path) -> Path:
+    return tmp_path / "robot"
+
+
+def on(robot: Started, project: RobotProject, command: str, *options: str) -> str:
+    """Run a command about the robot, which succeeds; what it printed."""
+    result = project.run(command, *options, "--robot", robot.address)
+    assert result.code == 0, result.output
+    return result.output
+
+
+def deploy(robot: Started, project: RobotProject, *options: str) -> str:
+    return on(robot, project, "deploy", "--skip-tests", *options)
+
+
+def info(robot: Started, project: RobotProject) -> dict:
+    return json.loads(on(robot, project, "deploy-info", "--json").splitlines()[-1])
+
+
+def ended(pid: int) -> bool:
+    """Wait until a process has ended."""
+    try:
+        descriptor = os.pidfd_open(pid)
+    except ProcessLookupError:
+        return True
+    try:
+        return bool(select.select([descriptor], [], [], SECONDS)[0])
+    finally:
+        os.close(descriptor)
+
+
+def test_a_program_is_deployed_changed_rolled_back_and_removed(project: RobotProject, directory: Path) -> None:
+    with started(project, directory) as robot:
+        assert "the program runs" in deploy(robot, project)
+        first = robot.pid()
+        project.write({"robot.py": ROBOT.replace("version 1", "version 2")})
+        assert "1 file" in deploy(robot, project)
+        robot.said("version 2")
+        assert ended(first)
+        about = info(robot, project)
+        assert (about["current"], about["running"]) == (2, True)
+        on(robot, project, "deploy", "--rollback")
+        second = robot.pid(times=2)
+        (project.path / ".pyfrc/known_hosts").unlink()
+        findings = RobotSearch(find_project(project.path), robot.address).findings()
+        assert [each.status for each in findings] == ["ok", "ok"], findings
+        assert not (project.path / ".pyfrc/known_hosts").exists(), "the doctor pins no key"
+        refused = project.run("undeploy", "--java-cpp", "--yes", "--robot", robot.address)
+        assert refused.code == 1
+        assert "a virtual robot runs programs in Python only: there is nothing to remove" in refused.first_error
+        on(robot, project, "undeploy", "--yes")
+        assert ended(second)
+        about = info(robot, project)
+        assert (about["current"], about["running"], about["releases"]) == (None, False, [])
+
+
+def test_the_program_is_disabled_finds_its_files_and_does_not_outlive_a_robot_that_is_killed(
+    project: RobotProject, directory: Path
+) -> None:
+    project.write(
+        {
+            "deploy/path.txt": "a path",
+            "robot.py": """
+            import os
+            from pathlib import Path
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def disabledInit(self):
+                    station = wpilib.DriverStation
+                    print("seen:", station.isDSAttached(), station.isEnabled(), wpilib.RobotBase.isSimulation())
+                    print("read:", Path(wpilib.getDeployDirectory(), "path.txt").read_text())
+                    print("home:", Path.home(), Path.cwd() == Path.home())
+                    print("version 1 of", os.getpid(), flush=True)
+            """,
+        }
+    )
+    with started(project, directory) as robot:
+        deploy(robot, project)
+        assert "False False True" in robot.said("seen:")
+        assert "a path" in robot.said("read:")
+        assert f"{directory / 'root/home/lvuser'} True" in robot.said("home:")
+        pid = robot.pid()
+        robot.process.kill()
+        assert ended(pid)
+
+
+def test_a_program_that_crashes_is_started_again_and_again(project: RobotProject, directory: Path) -> None:
+    """And what it prints does not control the terminal."""
+    project.write({"robot.py": CRASHES})
+    with started(project, directory) as robot:
+        result = project.run("deploy", "--skip-tests", "--robot", robot.address)
+        assert result.code == 3
+        assert "RuntimeError: no gyro" in result.output
+        robot.said("the robot program has ended (exit code 1); it is started again", times=3)
+        assert "\7" not in "".join(robot.printed) + result.output
+
+
+def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_port(
+    project: RobotProject, directory: Path
+) -> None:
+    with started(project, directory) as robot:
+        deploy(robot, project)
+        pid, address = robot.pid(), robot.address
+    assert robot.process.returncode == 0
+    assert ended(pid)
+    with started(project, directory) as robot:
+        assert robot.address == address
+        robot.pid()  # it is started without another deploy
+        assert "its key is the known one" in on(robot, project, "deploy-info")
+        assert info(robot, project)["current"] == 1
+    with started(project, directory, "--fresh") as robot:
+        assert info(robot, project)["releases"] == []
+
+
+def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: RobotProject, directory: Path) -> None:
+    with started(project, directory) as one, started(project, directory.with_name("other")) as other:
+        assert one.address != other.address
+        with subprocess.Popen(
+            [sys.executable, "-u", "-m", "pyfrc", "console", "--robot", other.address],
+            cwd=project.path,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        ) as console:
+            guard = threading.Timer(SECONDS, console.kill)
+            guard.start()
+            assert console.stdout is not None
+            assert any("connected to" in line for line in console.stdout)
+            deploy(other, project)
+            assert any("version 1 of" in line for line in console.stdout)
+            console.send_signal(signal.SIGINT)
+            guard.cancel()
+        assert not any("version 1" in line for line in one.printed)
+
+
+def test_a_port_that_is_taken_and_a_directory_in_use_are_refused(project: RobotProject, directory: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        result = project.run("virtual-robot", "--directory", directory, "--port", port)
+        assert (result.code, result.stdout) == (1, "")
+        assert result.first_error == f"127.0.0.1:{port}: the port cannot be used: Address already in use"
+    with started(project, directory) as robot:
+        result = project.run("virtual-robot", "--directory", directory)
+        assert result.code == 1
+        assert f"a virtual robot is already running here, at {robot.address}" in result.first_error
+    result = project.run("virtual-robot", "--directory", project.path)
+    assert result.code == 2
+    assert "this directory holds other files than a virtual robot's" in result.first_error
+    result = project.run("virtual-robot", "--directory", project.path / "robot.py" / "virtual-robot")
+    assert result.code == 1
+    assert "cannot keep the virtual robot's files here: not a directory" in result.first_error
+    assert "Name a directory that you may write with --directory DIR." in result.stderr
+
+
+def test_a_command_gets_the_address_and_the_robot_ends_with_it(project: RobotProject, directory: Path) -> None:
+    check = "import socket, sys; print(socket.create_connection(sys.argv[1].split(':')).recv(4)); sys.exit(7)"
+    result = project.run("virtual-robot", "--directory", directory, "--", sys.executable, "-c", check)
+    assert (result.code, result.stdout) == (7, "b'SSH-'\n")
+    result = project.run("virtual-robot", "--directory", directory, "--", "no-such-command")
+    assert result.code == 2
+    assert "there is no command 'no-such-command'" in result.first_error
+
+
+def test_the_guides_example_deploys(project: RobotProject) -> None:
+    guide = (Path(__file__).parents[1] / "docs/deploy.md").read_text("utf-8")
+    (example,) = re.findall(r"^```sh\npyfrc (virtual-robot .*)\n```$", guide, re.MULTILINE)
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    result = project.run(*shlex.split(example), env={"PATH": path})
+    assert result.code == 0, result.output
+    assert "the program runs" in result.output
+
+
+def test_other_users_of_the_computer_are_not_let_in(project: RobotProject, directory: Path) -> None:
+    missing = ["Linux"] if sys.platform != "linux" else [] if os.geteuid() == 0 else ["root"]
+    require("that a virtual robot refuses other users", missing)
+
+    def first_bytes() -> bytes:
+        with socket.create_connection(tuple(robot.address.split(":")), timeout=SECONDS) as connected:
+            return connected.recv(4)
+
+    with started(project, directory) as robot:
+        assert first_bytes() == b"SSH-"
+        os.seteuid(65534)
+        try:
+            assert first_bytes() == b""
+        finally:
+            os.seteuid(0)

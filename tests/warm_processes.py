@@ -1,0 +1,255 @@
+"""Processes of commands and simulations that start warm: forked from one that has imported what they import.
+
+These are the hosts of simulated robots, and what `pyfrc_core.runtime.apart` starts. One process forks them, for pytest
+and for the commands that `warm_start` starts. A fork becomes what a new interpreter would have become; where it would
+not become the same, a new interpreter is started.
+"""
+
+from __future__ import annotations
+
+import atexit
+import functools
+import gc
+import importlib
+import json
+import os
+import pickle
+import secrets
+import select
+import signal
+import socket
+import subprocess
+import sys
+import types
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from warm_start import LARGEST, READ_AT_START, end_like_python
+
+from pyfrc_core.runtime import apart
+from pyfrc_core.sim import host_process
+from pyfrc_core.sim.host import Hosting
+from pyfrc_core.sim.host import main as be_a_host
+from pyfrc_core.sim.host_process import HostProcess
+
+#: Measuring begins before most imports.
+_MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
+
+#: May differ: what a fork can be given after its start, and what is read no more when the path is set.
+_NOT_COMPARED = {"PYTHONDONTWRITEBYTECODE", "PYTHONPATH", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
+
+StartHost = Callable[[Hosting, int], HostProcess]
+
+
+class WarmProcesses:
+    """A process that forks others, until this one ends.
+
+    :param environment: that of processes with which nothing is special
+    :ivar address: where it is asked for them, by this process and others
+    """
+
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        self.address = f"\0pyfrc-tests-{secrets.token_hex(16)}"
+        with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
+            listener.bind(self.address)
+            listener.listen(128)
+            process = subprocess.Popen(
+                [sys.executable, __file__, str(listener.fileno())],
+                pass_fds=[listener.fileno()],
+                stdin=subprocess.PIPE,  # closed when this process ends, and the other ends then
+                stdout=subprocess.PIPE,  # as a host has one
+                cwd=host_process.DIRECTORY,
+                env={**environment, **host_process.ENVIRONMENT},
+            )
+        atexit.register(process.communicate)
+
+
+def start_warm(address: Callable[[], str]) -> None:
+    """Have this process's simulations ask for their hosts, and `run_apart` for its processes.
+
+    :param address: returns where, when the first is asked for
+    """
+    host_process.start_host = functools.partial(_start_host, address, host_process.start_host)
+    apart.run_interpreter = functools.partial(_run_apart, address, apart.run_interpreter)
+
+
+def _start_host(address: Callable[[], str], cold: StartHost, hosting: Hosting, output: int) -> HostProcess:
+    if not hosting.fork:  # the robot's own process: it has imported nothing before
+        return cold(hosting, output)
+    environment = os.environ | host_process.ENVIRONMENT
+    warm = _ask(address(), "host", hosting.path, environment, pickle.dumps(hosting), output)
+    return warm or cold(hosting, output)
+
+
+def _run_apart(address: Callable[[], str], cold: Callable[[apart.Job], int], job: apart.Job) -> int:
+    with Path(os.devnull).open("wb") as unread:
+        warm = _ask(address(), "apart", job.path, os.environ | apart.ENVIRONMENT, pickle.dumps(job), unread.fileno())
+    if warm is None:
+        return cold(job)
+    try:
+        return warm.wait()
+    except BaseException:  # interrupted
+        warm.kill()
+        raise
+
+
+def _ask(
+    address: str, kind: str, path: list[str], environment: Mapping[str, str], stdin: bytes, output: int
+) -> _WarmProcess | None:
+    """Have a process forked; return None where a fork would not do."""
+    server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    server.connect(address)
+    their_end, our_end = os.pipe()
+    with os.fdopen(our_end, "wb") as file:
+        request = json.dumps([kind, path, dict(environment)]).encode()
+        socket.send_fds(server, [request], [their_end, output])
+        os.close(their_end)
+        if not (pid := server.recv(LARGEST)):
+            raise RuntimeError("the process that forks others has ended: its traceback is on standard error")
+        if pid == b"cold":
+            server.close()
+            return None
+        with suppress(OSError):  # it has ended already
+            file.write(stdin)
+            file.flush()
+    return _WarmProcess(int(pid), server)
+
+
+class _WarmProcess:
+    """A forked process, with the methods of `subprocess.Popen`."""
+
+    def __init__(self, pid: int, end: socket.socket) -> None:
+        self.pid = pid
+        self._end = end
+
+    def poll(self) -> int | None:
+        try:
+            return self.wait(0)
+        except subprocess.TimeoutExpired:
+            return None
+
+    def wait(self, timeout: float | None = None) -> int:
+        if not select.select([self._end], [], [], timeout)[0]:
+            raise subprocess.TimeoutExpired("warm", timeout or 0)
+        return int(self._end.recv(LARGEST, socket.MSG_PEEK))  # stays for the next one to ask
+
+    def terminate(self) -> None:
+        self._send(signal.SIGTERM)
+
+    def kill(self) -> None:
+        self._send(signal.SIGKILL)
+
+    def _send(self, number: int) -> None:
+        if self.poll() is None:
+            with suppress(ProcessLookupError):
+                os.kill(self.pid, number)
+
+
+class _Request(NamedTuple):
+    """A process to become: its kind, `sys.path`, environment, input and output, and whom to send its number."""
+
+    kind: str
+    path: list[str]
+    environment: dict[str, str]
+    streams: list[int]
+    asking: socket.socket
+
+
+def _serve(listener: socket.socket) -> _Request | None:
+    """Fork for each request, and report each fork's end.
+
+    :return: in a fork, its request; otherwise None, when standard input was closed
+    """
+    started_with = dict(os.environ)
+    modules = {name.partition(".")[0] for name in sys.modules} - {"__main__", "warm_start"}
+    known = {*sys.path, str(Path.cwd())}
+    processes: dict[int, tuple[int, socket.socket]] = {}
+    while True:
+        ready = select.select([0, listener, *processes], [], [])[0]
+        if 0 in ready:
+            return None
+        for end in set(ready) & processes.keys():
+            process, asking = processes.pop(end)
+            os.close(end)
+            status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+            with asking, suppress(OSError):
+                asking.send(str(status).encode())
+        if listener in ready:
+            asking = listener.accept()[0]
+            message, streams, _, _ = socket.recv_fds(asking, LARGEST, 2)
+            request = _Request(*json.loads(message), streams, asking)
+            if not _the_same(request.environment, started_with) or _hides(set(request.path) - known, modules):
+                with asking, suppress(OSError):
+                    asking.send(b"cold")
+            else:
+                process = os.fork()
+                if process == 0:
+                    for other in (listener, *(each for _, each in processes.values())):
+                        other.detach()
+                    return request
+                processes[os.pidfd_open(process)] = process, asking
+            for stream in streams:
+                os.close(stream)
+
+
+def _the_same(environment: Mapping[str, str], started_with: Mapping[str, str]) -> bool:
+    """Whether an interpreter with this environment starts as with that one."""
+    if any(name.startswith(_MEASURING) for name in environment):
+        return False
+    names = (environment.keys() | started_with.keys()) - _NOT_COMPARED
+    return all(environment.get(name) == started_with.get(name) for name in names if name.startswith(READ_AT_START))
+
+
+def _hides(directories: Iterable[str], modules: set[str]) -> bool:
+    """Whether a directory has a module with a name that is imported already; there, it would come first."""
+    for directory in directories:
+        with suppress(OSError):
+            if not modules.isdisjoint(entry.name.partition(".")[0] for entry in Path(directory).iterdir()):
+                return True
+    return False
+
+
+def _become(request: _Request) -> None:
+    """Be what Python is after `host_process.start_host`, or `apart.run_interpreter`."""
+    if request.kind == "host":
+        os.setsid()
+    stdin, output = request.streams
+    for target, descriptor in enumerate((stdin, output, output)):
+        os.dup2(descriptor, target)
+    os.environ.clear()
+    os.environ.update(request.environment)
+    sys.dont_write_bytecode = bool(os.environ.get("PYTHONDONTWRITEBYTECODE"))
+    if request.kind == "host":
+        sys.orig_argv[1:] = ["-c", "from pyfrc_core.sim.host import main; main()"]
+        sys.argv[:] = ["-c"]
+    else:
+        sys.orig_argv[1:] = ["-m", apart.__name__]
+        sys.argv[:] = [apart.__file__]
+        for stream in (sys.stdin, sys.stdout, sys.stderr):
+            stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    sys.modules["__main__"] = types.ModuleType("__main__")
+    del sys.modules["warm_start"]
+    request.asking.send(str(os.getpid()).encode())
+    request.asking.detach()
+    os.closerange(3, os.sysconf("SC_OPEN_MAX"))
+    be_a_host() if request.kind == "host" else apart.main()
+    end_like_python(0)
+
+
+def main() -> None:
+    """The process that forks."""
+    listener = socket.socket(fileno=int(sys.argv[1]))
+    sys.path[0] = ""
+    interrupted = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    importlib.import_module("pyfrc_core.sim.robot_process")
+    gc.collect()
+    gc.freeze()
+    if (request := _serve(listener)) is not None:
+        signal.signal(signal.SIGINT, interrupted)
+        _become(request)
+
+
+if __name__ == "__main__":
+    main()
