@@ -23,6 +23,7 @@ from pyfrc_core.sim.robot_channel import RobotChannel
 FAILS = """
     import ctypes
     import os
+    import signal
     import sys
 
     import wpilib
@@ -179,7 +180,8 @@ def test_a_child_holds_the_connection_of_a_robot_that_dies_open(make_project: Ma
 
 @only_forked
 def test_the_host_is_killed(make_project: MakeProject) -> None:
-    robot = FAILS.replace('raise LookupError("the user\'s error")', "os.kill(os.getppid(), 9)")
+    # Its robot waits for its own end: it must not go on to kill the process that adopts it.
+    robot = FAILS.replace('raise LookupError("the user\'s error")', "os.kill(os.getppid(), 9); signal.pause()")
     with failed(make_project, robot) as simulation:
         assert simulation.status.failure is not None
         assert "signal 9" in simulation.status.failure.headline
