@@ -24,7 +24,6 @@ FAILS = """
     import ctypes
     import os
     import signal
-    import sys
 
     import wpilib
 
