@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 import warm_start
+from hypothesis import HealthCheck, settings
 
 if TYPE_CHECKING:
     from roborio.local import Agents
@@ -35,6 +36,12 @@ _NOT_PASSED_ON_EITHER = {
     "CI",
     "BUILD_NUMBER",
 }
+
+# The same examples in each run, and no limits by the clock: a failure is not chance, nor a busy machine.
+settings.register_profile(
+    "suite", deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("suite")
 
 #: Guards of tests that need what not every machine has.
 pytest_plugins = ["skips"]

@@ -148,7 +148,7 @@ def test_a_frame_that_unpacks_to_too_much() -> None:
         wire.said_in(*wire.read_frame(io.BytesIO(bomb).read))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(noise=st.binary(min_size=1, max_size=200))
 def test_noise_changes_nothing_on_the_robot(noise: bytes, agents: Agents) -> None:
     with directory_in_memory() as directory:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pyfrc_core.deploy.agent.watching import ENDED, RUNNING, STARTED, STARTING, UNHEARD, StartMonitor
@@ -252,7 +252,6 @@ PROGRAMS = st.builds(
 )
 
 
-@settings(deadline=None)
 @given(PROGRAMS, st.fixed_dictionaries(HOW))
 def test_a_program_that_lives_on_is_never_called_ended(program: Program, how: dict[str, float]) -> None:
     how["script"] = max(how["script"], how["gap"])  # the script ends after the old program
@@ -264,7 +263,6 @@ def test_a_program_that_lives_on_is_never_called_ended(program: Program, how: di
         assert verdict == (STARTING if program.starts is None else RUNNING)
 
 
-@settings(deadline=None)
 @given(PROGRAMS, st.floats(0.4, 16.0), st.fixed_dictionaries(HOW))
 def test_a_program_that_crashes_in_robot_init_is_never_called_running(
     program: Program, crashes: float, how: dict[str, float]
@@ -273,7 +271,6 @@ def test_a_program_that_crashes_in_robot_init_is_never_called_running(
     assert judge(replace(program, crashes=crashes, starts=None), **how).verdict == ENDED
 
 
-@settings(deadline=None)
 @given(PROGRAMS, st.floats(0.4, 16.0), st.floats(0.0, 0.5), st.fixed_dictionaries(HOW))
 def test_a_program_that_crashes_right_after_its_start_is_never_called_running(
     program: Program, starts: float, after: float, how: dict[str, float]

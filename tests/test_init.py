@@ -132,7 +132,7 @@ def test_a_name_that_looks_like_an_option_is_refused(make_project: MakeProject) 
     assert list(project.path.iterdir()) == []
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.text(st.characters(exclude_categories=["Cs"], exclude_characters="/\x00"), min_size=1, max_size=20))
 @example("équipe 4711")
 @example("console")

@@ -67,9 +67,7 @@ NUMBERS = [path for path in PATHS if type(_at(path)) in (int, float)]
 
 
 #: For each of two tests. Ten thousand in all were run once; since then it is these.
-HUNDREDS = settings(
-    max_examples=500, derandomize=True, database=None, deadline=None, suppress_health_check=list(HealthCheck)
-)
+HUNDREDS = settings(max_examples=500, suppress_health_check=list(HealthCheck))
 
 
 class Case(NamedTuple):

@@ -190,7 +190,7 @@ def paused_after(commands: list[str], paused: bool) -> bool:
     return paused
 
 
-@settings(max_examples=250, deadline=None, derandomize=True, database=None)
+@settings(max_examples=250)
 @given(words=st.lists(st.sampled_from([*COMMANDS, *GOINGS, *HAPPENINGS]), max_size=14), paused=st.booleans())
 def test_every_sequence_of_commands_ends_as_the_user_wants(project: Project, words: list[str], paused: bool) -> None:
     simulation, processes = started(project, SimOptions(paused=paused))
@@ -215,7 +215,7 @@ def test_every_sequence_of_commands_ends_as_the_user_wants(project: Project, wor
     assert simulation.status.speed == next((speeds[word] for word in reversed(wanted) if word in speeds), 1.0)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True, database=None)
+@settings(max_examples=150)
 @given(
     words=st.lists(st.sampled_from(["step", "write", "unwrite", "reload", "fail", "fast", *HAPPENINGS]), max_size=12)
 )

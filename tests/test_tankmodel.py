@@ -98,7 +98,7 @@ def reference_of_measured() -> Reference:
 # -- the pose, exactly -------------------------------------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(steps)
 def test_one_step_or_a_hundred_gives_the_same_pose(values: list[tuple[float, float, float]]) -> None:
     one, hundred = Track(measured()), Track(measured())
@@ -108,7 +108,7 @@ def test_one_step_or_a_hundred_gives_the_same_pose(values: list[tuple[float, flo
     assert one.state == pytest.approx(hundred.state, abs=1e-6)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(st.lists(st.tuples(motor_values, motor_values, st.floats(0.001, 0.3)), min_size=1, max_size=4))
 def test_pose_agrees_with_a_fine_integration(values: list[tuple[float, float, float]]) -> None:
     track, reference = Track(measured()), reference_of_measured()
@@ -240,7 +240,7 @@ def operations(function: Callable[[], Any]) -> int:
 # -- what each side does -----------------------------------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(steps)
 def test_free_speed_is_never_exceeded(values: list[tuple[float, float, float]]) -> None:
     model = theory()
@@ -250,7 +250,7 @@ def test_free_speed_is_never_exceeded(values: list[tuple[float, float, float]]) 
         assert max(abs(model.l_velocity), abs(model.r_velocity)) <= free * 1.0001
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.floats(0.2, 1), st.floats(-1, 0.1), st.floats(0.001, 1))
 def test_a_stalled_or_braking_motor_never_gains_speed(before: float, power: float, seconds: float) -> None:
     motor = MotorModel(MOTOR_CFG_CIM, 0.925 * units.tm_kv, 0.22 * units.tm_ka, 1.3 * units.volt)
@@ -261,7 +261,7 @@ def test_a_stalled_or_braking_motor_never_gains_speed(before: float, power: floa
     assert motor.acceleration <= 0
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(steps)
 def test_each_side_is_a_motor_model(values: list[tuple[float, float, float]]) -> None:
     model = measured()
@@ -288,7 +288,7 @@ def test_a_motor_model_comes_to_its_steady_speed() -> None:
 # -- the two views, and the heading ------------------------------------------------------------------------------------
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(steps)
 def test_feet_clockwise_and_metres_counter_clockwise_agree(values: list[tuple[float, float, float]]) -> None:
     feet, metres = theory(), theory()
@@ -328,7 +328,7 @@ def test_heading_comes_from_the_moment_of_inertia() -> None:
     assert slower.angle == pytest.approx(track.angle / 2)
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(steps)
 def test_heading_of_wheels_that_do_not_slip(values: list[tuple[float, float, float]]) -> None:
     model = theory()
