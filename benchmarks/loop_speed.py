@@ -38,6 +38,7 @@ def in_place() -> tuple[float, int]:
     perf_counter = time.perf_counter  # before it is redirected
     from pyfrc_core.hal import modes
     from pyfrc_core.project import find_project
+    from pyfrc_core.runtime.loading import load_robot
     from pyfrc_core.runtime.redirect import redirection
     from pyfrc_core.runtime.robot import RobotRun
 
@@ -45,7 +46,7 @@ def in_place() -> tuple[float, int]:
     redirection.install(project.files)
     run = RobotRun()
     run.open()
-    robot = run.construct(counting(project.load()))
+    robot = run.construct(counting(load_robot(project)))
     run.start()
     modes.set_mode(enabled=True)
     begin = perf_counter()

@@ -28,6 +28,7 @@ def measure(way: str) -> float:
     from pyfrc_core.hal import modes
     from pyfrc_core.measure.processes import announced
     from pyfrc_core.project import find_project
+    from pyfrc_core.runtime.loading import load_robot
     from pyfrc_core.runtime.redirect import redirection
     from pyfrc_core.runtime.robot import RobotRun
 
@@ -44,7 +45,7 @@ def measure(way: str) -> float:
             closing.enter_context(announced("profile", settings))
         redirection.install(project.files)
         run = RobotRun()
-        robot_class = project.load()
+        robot_class = load_robot(project)
         run.open()
         run.construct(robot_class)
         run.start()

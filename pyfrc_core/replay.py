@@ -20,6 +20,7 @@ from .project import Project
 from .runtime.clock import to_us
 from .runtime.data_logs import LogPlace
 from .runtime.failures import as_robot_code_error
+from .runtime.loading import load_robot
 from .runtime.loop_limit import LoopLimit
 from .runtime.redirect import redirection
 from .runtime.robot import RobotRun
@@ -76,7 +77,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     if script.story and (ended := _how_its_process_ends(project, script)) is not None:
         return Replayed(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
     redirection.install(project.files)
-    robot_class = project.load()
+    robot_class = load_robot(project)
     until_us = None if until is None else to_us(until)
     with TemporaryDirectory() as temporary:
         written = trace or Path(temporary, "trace.jsonl")

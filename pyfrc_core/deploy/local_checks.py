@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING
 from ..errors import PyfrcError, RobotCodeError
 from ..project import MAIN_FILE, Project
 from ..runtime.apart import run_apart
+from ..runtime.loading import load_robot
 from .errors import RefusedError
 from .progress import Questions
 
@@ -77,7 +78,7 @@ class ImportCheck:
 
 
 def _load(project: Project, words: LastWords) -> None:
-    project.load()
+    load_robot(project)
 
 
 def go_on_after(failure: str, ask: Questions | None, remedy: str, error: PyfrcError | None = None) -> None:

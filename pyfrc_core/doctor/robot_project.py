@@ -12,6 +12,7 @@ from ..hidden_libraries import find_hidden_libraries
 from ..misspelled_methods import MisspelledMethod, find_misspelled_methods
 from ..project import Project
 from ..runtime.apart import run_apart
+from ..runtime.loading import load_robot
 from .findings import Finding, hint, ok, problem
 from .installed import Installed, fits
 
@@ -103,7 +104,7 @@ def _robot_class(project: Project) -> Iterator[Finding]:
 
 
 def _look_at_class(project: Project, words: LastWords) -> tuple[str, list[MisspelledMethod]]:
-    return project.load().__name__, find_misspelled_methods(project)
+    return load_robot(project).__name__, find_misspelled_methods(project)
 
 
 def _sim_config(project: Project) -> Iterator[Finding]:

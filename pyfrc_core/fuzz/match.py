@@ -13,6 +13,7 @@ from ..physics.construct import construct
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.endings import TestEnded, TestRanTooLong
+from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.redirect import redirection
 from ..runtime.robot import RobotRun
@@ -102,7 +103,7 @@ def load(project: Project) -> type[Any]:
     :raises RobotCodeError: when its code fails
     """
     redirection.install(project.files)
-    robot_class = project.load()
+    robot_class = load_robot(project)
     if project.physics_file.is_file():
         from ..physics.engine import load_physics
 

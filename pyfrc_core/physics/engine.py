@@ -15,6 +15,7 @@ from ..config.document import document_of
 from ..hal import modes
 from ..project import Project
 from ..runtime.clock import PACKET_US, PHYSICS, to_us
+from ..runtime.loading import import_file
 from ..runtime.robot import RobotRun
 from .core import PhysicsEngine, PhysicsInitException, PhysicsInterface
 
@@ -32,7 +33,7 @@ def load_physics(project: Project) -> PhysicsModule:
 
     :raises RobotCodeError: when it fails, naming the user's line
     """
-    return PhysicsModule(project.import_file(project.physics_file), project)
+    return PhysicsModule(import_file(project, project.physics_file), project)
 
 
 class PhysicsModule:

@@ -24,6 +24,7 @@ from ..robot_files import is_pyfrc
 from ..runtime import own_process
 from ..runtime.data_logs import LogPlace
 from ..runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ..runtime.loading import load_robot
 from ..runtime.own_process import LastWords
 from ..runtime.redirect import redirection
 from ..runtime.robot import RobotRun
@@ -64,7 +65,7 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
     try:
         keep_no_bytecode_of_new_code(project.root)
         redirection.install(files)
-        robot_class = project.load()
+        robot_class = load_robot(project)
         physics = load_physics(project) if project.physics_file.is_file() else None
         loaded = True
         watchdog = Watchdog(run, files, project.settings.test.hang_seconds, words.write, words.descriptor)

@@ -23,6 +23,7 @@ from ..hal import HalData
 from ..project import Project
 from ..runtime.data_logs import TEST_LOGS, LogPlace
 from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_pyfrc, names_its_place
+from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.redirect import redirection
 from ..runtime.refresh import explain_missing_refresh
@@ -94,7 +95,7 @@ class PyFrcPlugin:
     def robot_class(self) -> type[Any]:
         """The robot class, imported when it is first asked for, and its physics with it."""
         if self._robot_class is None:
-            self._robot_class = self.project.load()
+            self._robot_class = load_robot(self.project)
         self._physics_module  # noqa: B018
         return self._robot_class
 

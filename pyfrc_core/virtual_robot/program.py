@@ -53,6 +53,7 @@ def _run(main: Path) -> bool:
     import wpilib
 
     from ..project import Project
+    from ..runtime.robot_class import choose_robot_class
 
     sys.path[0] = str(main.parent)
     wpilib.getDeployDirectory = lambda: str(main.parent / "deploy")
@@ -64,7 +65,7 @@ def _run(main: Path) -> bool:
     module = importlib.util.module_from_spec(specification)
     sys.modules["robot"] = module
     specification.loader.exec_module(module)
-    return bool(wpilib.RobotBase.main(Project(main).choose_class(module)))
+    return bool(wpilib.RobotBase.main(choose_robot_class(Project(main), module)))
 
 
 def _tables_port() -> int:

@@ -17,6 +17,7 @@ from ...hal import HalData
 from ...project import Project
 from ...runtime.endings import TestEnded, TestRanTooLong
 from ...runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ...runtime.loading import load_robot
 from ...runtime.own_process import LastWords
 from ...runtime.redirect import redirection
 from ...runtime.robot import RobotRun
@@ -129,7 +130,7 @@ def survey(project: Project, last_words: LastWords) -> Survey:
     :raises RobotCodeError: when the robot's code fails before it can be driven, naming the user's line
     """
     redirection.install(project.files)
-    robot_class = project.load()
+    robot_class = load_robot(project)
     run = RobotRun()
     hang_seconds = project.settings.test.hang_seconds
     with Watchdog(run, project.files, hang_seconds, last_words.write, last_words.descriptor).watching():

@@ -1,0 +1,9 @@
+"""The robot project of a command: where its robot.py is, which files belong to it, and its settings.
+
+Imports no WPILib: `runtime.loading` imports the robot's code.
+"""
+
+from .finding import find_project
+from .project import MAIN_FILE, Project
+
+__all__ = ["MAIN_FILE", "Project", "find_project"]

@@ -1,0 +1,98 @@
+"""One robot project: its files and its settings."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+from warnings import warn_explicit
+
+from ..config.findings import SettingsWarning, settings_error
+from ..config.settings import Settings, load_settings
+from ..robot_files import RobotFiles
+
+if TYPE_CHECKING:
+    from ..config.sim import SimConfig
+    from ..config.sim_file import LoadedSimConfig
+
+MAIN_FILE = "robot.py"
+
+
+@dataclass(frozen=True)
+class Project:
+    """One robot project.
+
+    :param main_file: the file with the robot class, absolute
+    :param class_name: the robot class's name, where the user has said it
+    :param settings_file: the pyproject.toml that names the main file, where one does
+    """
+
+    main_file: Path
+    class_name: str | None = None
+    settings_file: Path | None = None
+
+    @property
+    def root(self) -> Path:
+        """The directory of the robot's code."""
+        return self.main_file.parent
+
+    @cached_property
+    def files(self) -> RobotFiles:
+        return RobotFiles(self.root)
+
+    @cached_property
+    def pyproject(self) -> Path:
+        """The project's pyproject.toml: beside the code, or one above it as its tests may be."""
+        if self.settings_file is not None:
+            return self.settings_file
+        beside, above = self.root / "pyproject.toml", self.root.parent / "pyproject.toml"
+        return above if above.is_file() and not beside.is_file() else beside
+
+    @cached_property
+    def settings(self) -> Settings:
+        return load_settings(self.pyproject)
+
+    @cached_property
+    def loaded_sim_config(self) -> LoadedSimConfig:
+        """``sim/config.json`` with its places; read once, when what has no effect in it is told as a warning."""
+        from ..config.sim_file import load_sim_config
+
+        loaded = load_sim_config(self.root)
+        for finding in loaded.warnings:
+            try:
+                warn_explicit(SettingsWarning(finding.text), SettingsWarning, finding.file, finding.line or 1)
+            except SettingsWarning:  # where warnings are errors
+                raise settings_error([finding]) from None
+        return loaded
+
+    @property
+    def sim_config(self) -> SimConfig:
+        """The values of ``sim/config.json`` in effect."""
+        return self.loaded_sim_config.config
+
+    @property
+    def game_specific_messages(self) -> tuple[str, ...]:
+        """The messages that the field may send in autonomous; none in most seasons."""
+        # Most projects have no such file: asked first, since reading it takes pydantic.
+        if not os.path.lexists(self.root / "sim" / "config.json"):
+            return ()
+        return self.sim_config.game_specific_messages
+
+    @property
+    def physics_file(self) -> Path:
+        """Where the project's physics module is, if it has one."""
+        return self.root / "physics.py"
+
+    @property
+    def test_directories(self) -> tuple[Path, Path]:
+        """Where tests may be, in the order in which they are looked for."""
+        return self.root / "tests", self.root.parent / "tests"
+
+    def find_tests(self) -> Path | None:
+        """The directory of the project's tests, if it has any test files."""
+        for directory in self.test_directories:
+            if any(directory.glob("**/test_*.py")) or any(directory.glob("**/*_test.py")):
+                return directory
+        return None

@@ -1,0 +1,105 @@
+"""Import the robot's code, and explain why it cannot be imported."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from ..encoding import find_wrong_encoding
+from ..errors import ProjectError, RobotCodeError, text_of
+from ..hidden_libraries import LIBRARIES, find_hidden_by_any_name
+from ..keyboard_input import refuse_keyboard_input
+from ..project import Project
+from .endings import TestFroze
+from .own_process import explained_exit
+from .robot_class import choose_robot_class
+from .watchdog import importing
+
+#: Part of Python's messages about a file that it cannot decode.
+_ENCODING_MESSAGE = re.compile(r"null bytes|Non-UTF-8|codec can't decode")
+
+
+def load_robot(project: Project) -> type[Any]:
+    """Import the robot program and return its robot class.
+
+    :raises RobotCodeError: when the user's code fails, naming the user's line
+    :raises ProjectError: when there is not exactly one robot class to choose
+    """
+    return choose_robot_class(project, import_file(project, project.main_file))
+
+
+def import_file(project: Project, file: Path) -> ModuleType:
+    """Import one of the program's files, as the module of its name.
+
+    :raises RobotCodeError: when the import fails, naming the user's line
+    """
+    name, where = file.stem, file.name
+    loaded = sys.modules.get(name)
+    if loaded is not None and getattr(loaded, "__file__", None) == str(file):
+        return loaded  # a test file has imported it already
+    if sys.path[:1] != [str(project.root)]:
+        sys.path.insert(0, str(project.root))
+    specification = importlib.util.spec_from_file_location(name, file)
+    if specification is None or specification.loader is None:
+        raise ProjectError("this is not a Python file", where=where)
+    module = importlib.util.module_from_spec(specification)
+    sys.modules[name] = module
+    refuse_keyboard_input(project.files)
+    try:
+        with importing(project.files, project.settings.test.hang_seconds), explained_exit(project.files):
+            specification.loader.exec_module(module)
+    except (SyntaxError, UnicodeDecodeError, ValueError) as error:
+        del sys.modules[name]
+        _refuse_wrong_encoding(project, file, error)
+        if not isinstance(error, SyntaxError):
+            raise _import_error(project, file, error) from error
+        place = project.files.relative(error.filename or where) + (f":{error.lineno}" if error.lineno else "")
+        text = f"\n    {error.text.strip()}" if error.text else ""
+        raise RobotCodeError(f"SyntaxError: {error.msg}{text}", where=place) from error
+    except RobotCodeError:  # it names its place
+        del sys.modules[name]
+        raise
+    except BaseException as error:
+        del sys.modules[name]
+        raise _import_error(project, file, error) from error
+    return module
+
+
+def _import_error(project: Project, file: Path, error: BaseException) -> RobotCodeError:
+    """Return what the program raised while it was imported as an error with the user's line and what to do."""
+    place = project.files.innermost_line(error.__traceback__) or file.name
+    remedy = "This happens while the file is imported."
+    if isinstance(error, TestFroze):
+        remedy += " Is it an endless loop? If it only takes long: hang_seconds under [tool.pyfrc.test]."
+        return RobotCodeError(str(error), where=place, remedy=remedy)
+    if isinstance(error, SystemExit):
+        remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
+    elif isinstance(error, ModuleNotFoundError):
+        remedy += " Is the name right, and its package installed?"
+        if (project.root / "requirements.txt").is_file():
+            remedy += " Your project's packages: python -m pip install -r requirements.txt"
+    elif isinstance(error, NameError) and error.name in {*LIBRARIES, *sys.stdlib_module_names}:
+        remedy += f" Is this line missing at the top: import {error.name}"
+    if isinstance(error, (ImportError, AttributeError)):
+        for hidden in find_hidden_by_any_name(project.root, project.main_file):
+            remedy += f" {hidden.text}. {hidden.remedy}"
+    return RobotCodeError(text_of(error), where=place, remedy=remedy)
+
+
+def _refuse_wrong_encoding(project: Project, file: Path, error: Exception) -> None:
+    """:raises RobotCodeError: when the import failed because a file of the program is not in UTF-8"""
+    if _ENCODING_MESSAGE.search(str(error)) is None:
+        return
+    named = Path(getattr(error, "filename", None) or "")
+    # Python does not always name the file.
+    for suspect in [named] if named.is_file() else [file, *sorted(project.root.rglob("*.py"))]:
+        if not project.files.is_robot_code(str(suspect)):
+            continue
+        wrong = find_wrong_encoding(suspect)
+        if wrong is not None:
+            place = project.files.relative(str(suspect)) + (f":{wrong.line}" if wrong.line else "")
+            raise RobotCodeError(wrong.message, where=place, remedy=wrong.remedy) from error
