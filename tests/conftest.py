@@ -126,7 +126,7 @@ def _warm_processes() -> WarmProcesses:
 @pytest.fixture(scope="session", autouse=True)
 def _start_cold() -> StartHost:
     """Start the hosts of simulations in this process warm, too; the value starts them as users' are started."""
-    from pyfrc_core.sim import host_process
+    from pyfrc_core.sim.engine import host_process
 
     cold = host_process.start_host
     if warm_start.POSSIBLE:
@@ -139,7 +139,7 @@ def _start_cold() -> StartHost:
 @pytest.fixture
 def cold_hosts(_start_cold: StartHost, monkeypatch: pytest.MonkeyPatch) -> None:
     """Start the hosts of this test's simulations in new interpreters."""
-    monkeypatch.setattr("pyfrc_core.sim.host_process.start_host", _start_cold)
+    monkeypatch.setattr("pyfrc_core.sim.engine.host_process.start_host", _start_cold)
 
 
 @dataclass(frozen=True)

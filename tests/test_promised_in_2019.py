@@ -24,7 +24,7 @@ from pyfrc.sim.field.user_renderer import UserRenderer
 from pyfrc_core.hal import HalData
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.scene import Line, Pose, Text
+from pyfrc_core.sim.engine.scene import Line, Pose, Text
 
 
 @pytest.fixture

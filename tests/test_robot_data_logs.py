@@ -12,8 +12,8 @@ from sim_robots import run, settle
 from wpiutil.log import DataLogReader
 
 from pyfrc_core.project import find_project
-from pyfrc_core.sim.options import SimOptions
-from pyfrc_core.sim.simulation import Simulation
+from pyfrc_core.sim.engine.options import SimOptions
+from pyfrc_core.sim.engine.simulation import Simulation
 
 ROBOT = """
     import os

@@ -16,9 +16,10 @@ from sim_robots import PATIENCE, wait
 
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.forks import FORK_IS_SAFE
-from pyfrc_core.sim import SimOptions, Simulation, output_pipe, processes, robot_channel
-from pyfrc_core.sim.messages import Failed
-from pyfrc_core.sim.robot_channel import RobotChannel
+from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.engine import output_pipe, processes, robot_channel
+from pyfrc_core.sim.engine.messages import Failed
+from pyfrc_core.sim.engine.robot_channel import RobotChannel
 
 FAILS = """
     import ctypes

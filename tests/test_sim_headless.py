@@ -10,9 +10,9 @@ import pytest
 from sim_robots import FILES
 
 from pyfrc_core.errors import UsageError
-from pyfrc_core.sim.extensions import see_that_there_are
-from pyfrc_core.sim.picture import see_that_pictures_can_be_drawn
+from pyfrc_core.sim.engine.extensions import see_that_there_are
 from pyfrc_core.sim.ui.choose import default_name
+from pyfrc_core.sim.ui.picture import see_that_pictures_can_be_drawn
 
 #: As on a machine without a screen.
 NO_DISPLAY = {"DISPLAY": "", "WAYLAND_DISPLAY": ""}

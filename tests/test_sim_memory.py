@@ -14,10 +14,10 @@ from sim_robots import run, settle, wait
 from pyfrc_core.project import find_project
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.recorder import Recorder
-from pyfrc_core.sim import assembly, history
-from pyfrc_core.sim.history import History, entries
-from pyfrc_core.sim.options import SimOptions
-from pyfrc_core.sim.simulation import Simulation
+from pyfrc_core.sim.engine import history, snapshot_builder
+from pyfrc_core.sim.engine.history import History, entries
+from pyfrc_core.sim.engine.options import SimOptions
+from pyfrc_core.sim.engine.simulation import Simulation
 
 FILES = {
     "robot.py": """
@@ -56,8 +56,8 @@ def trace_hash(file: Path) -> str:
 
 def test_memory_does_not_grow_with_time(make_project, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(history, "_BLOCK", 64)
-    monkeypatch.setattr(assembly, "_RECENT_POINTS", 64)
-    monkeypatch.setattr(assembly, "_OLDER_POINTS", 128)
+    monkeypatch.setattr(snapshot_builder, "_RECENT_POINTS", 64)
+    monkeypatch.setattr(snapshot_builder, "_OLDER_POINTS", 128)
     made = make_project(FILES)
     with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
         simulation.choose_mode("teleop")
@@ -113,8 +113,8 @@ def test_what_was_told_is_read_back_from_disk(make_project, monkeypatch: pytest.
 
 
 def test_a_long_trail_is_thinned_out(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(assembly, "_RECENT_POINTS", 64)
-    monkeypatch.setattr(assembly, "_OLDER_POINTS", 128)
+    monkeypatch.setattr(snapshot_builder, "_RECENT_POINTS", 64)
+    monkeypatch.setattr(snapshot_builder, "_OLDER_POINTS", 128)
     made = make_project(FILES)
     with Simulation(find_project(made.path), SimOptions(speed=0, paused=True, recording=False)) as simulation:
         simulation.choose_mode("teleop")

@@ -14,10 +14,10 @@ from pyfrc.sim.field.user_renderer import UserRenderer
 from pyfrc_core.config.findings import SettingsWarning
 from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.project import Project
-from pyfrc_core.sim.field import field_of, tags_of
-from pyfrc_core.sim.picture import draw_picture
-from pyfrc_core.sim.scene import Field, Line, Pose, Scene, Shape, Tag, Target, Text
-from pyfrc_core.sim.user_renderer import MOST_DRAWINGS
+from pyfrc_core.sim.engine.field import field_of, tags_of
+from pyfrc_core.sim.engine.robot_side.user_renderer import MOST_DRAWINGS
+from pyfrc_core.sim.engine.scene import Field, Line, Pose, Scene, Shape, Tag, Target, Text
+from pyfrc_core.sim.ui.picture import draw_picture
 
 DOWN = Pose(10.0, 5.0, math.pi / 2)
 

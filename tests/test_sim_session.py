@@ -22,7 +22,7 @@ from pyfrc_core.project import Project
 from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script, parse_script
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.watch import Watch
+from pyfrc_core.sim.engine.watch import Watch
 
 STILL = SimOptions(paused=True, speed=0)
 

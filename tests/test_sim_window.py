@@ -30,8 +30,8 @@ from pyfrc_core.project import Project
 from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.scene import Tag, Target
-from pyfrc_core.sim.snapshot import Chooser, Failure
+from pyfrc_core.sim.engine.scene import Tag, Target
+from pyfrc_core.sim.engine.snapshot import Chooser, Failure
 from pyfrc_core.sim.ui.choose import default_name, window
 from pyfrc_core.sim.ui.tk import TkFrontEnd
 from pyfrc_core.sim.ui.tk.window import Window
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from tkinter import ttk
 
     from pyfrc_core.sim import Snapshot, Status
-    from pyfrc_core.sim.ui.tk.devices import Row
+    from pyfrc_core.sim.ui.models.devices import Row
     from pyfrc_core.sim.ui.tk.slider import Slider
 
 TEMPLATE = Path(__file__).parent.parent / "templates" / "tank"

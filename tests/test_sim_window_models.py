@@ -18,14 +18,13 @@ if missing_tkinter():  # some imports below need it
 from pyfrc_core.config.sim import SimConfig
 from pyfrc_core.physics.pose import Pose
 from pyfrc_core.sim import Field, Scene, Snapshot, Status
-from pyfrc_core.sim.snapshot import Failure
-from pyfrc_core.sim.ui.tk.devices import SETTABLE, DeviceRows, Row, panels_of
-from pyfrc_core.sim.ui.tk.gamepads import HINT, GamepadRouter, Reading, hat_angle
-from pyfrc_core.sim.ui.tk.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
-from pyfrc_core.sim.ui.tk.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
-from pyfrc_core.sim.ui.tk.theme import scale_for
-from pyfrc_core.sim.ui.tk.viewport import FARTHEST, NEAREST, Viewport
-from pyfrc_core.sim.ui.tk.wording import (
+from pyfrc_core.sim.engine.snapshot import Failure
+from pyfrc_core.sim.ui.models.devices import SETTABLE, DeviceRows, Row, panels_of
+from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading, hat_angle
+from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
+from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
+from pyfrc_core.sim.ui.models.viewport import FARTHEST, NEAREST, Viewport
+from pyfrc_core.sim.ui.models.wording import (
     FASTEST,
     SLOWEST,
     clock,
@@ -38,6 +37,7 @@ from pyfrc_core.sim.ui.tk.wording import (
     station_name,
     status_texts,
 )
+from pyfrc_core.sim.ui.tk.theme import scale_for
 
 FIELD = Field(54.25, 26.5, 20.0, 2.0, 3.0, {"start": Pose(0.0, 0.0, 0.0)})
 

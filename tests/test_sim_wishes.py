@@ -14,10 +14,11 @@ from sim_robots import FILES
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.clock import PACKET_US
 from pyfrc_core.runtime.scripts.script import Step
-from pyfrc_core.sim import SimOptions, Simulation, simulation
-from pyfrc_core.sim.commands import Command, Write
-from pyfrc_core.sim.messages import Failed, Job, Message, Ready, StationState, Update
-from pyfrc_core.sim.snapshot import Failure
+from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.engine import simulation
+from pyfrc_core.sim.engine.commands import Command, Write
+from pyfrc_core.sim.engine.messages import Failed, Job, Message, Ready, StationState, Update
+from pyfrc_core.sim.engine.snapshot import Failure
 
 
 @dataclass

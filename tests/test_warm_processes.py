@@ -13,9 +13,10 @@ from conftest import MakeProject, RobotProject
 from sim_robots import settle, wait
 
 from pyfrc_core.project import Project
-from pyfrc_core.sim import SimOptions, Simulation, host_process
-from pyfrc_core.sim.host import Hosting
-from pyfrc_core.sim.host_process import HostProcess
+from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.engine import host_process
+from pyfrc_core.sim.engine.host import Hosting
+from pyfrc_core.sim.engine.host_process import HostProcess
 
 pytestmark = pytest.mark.skipif(not warm_start.POSSIBLE, reason="here all hosts start cold")
 

@@ -29,10 +29,10 @@ from typing import NamedTuple
 from warm_start import LARGEST, READ_AT_START, end_like_python
 
 from pyfrc_core.runtime import apart
-from pyfrc_core.sim import host_process
-from pyfrc_core.sim.host import Hosting
-from pyfrc_core.sim.host import main as be_a_host
-from pyfrc_core.sim.host_process import HostProcess
+from pyfrc_core.sim.engine import host_process
+from pyfrc_core.sim.engine.host import Hosting
+from pyfrc_core.sim.engine.host import main as be_a_host
+from pyfrc_core.sim.engine.host_process import HostProcess
 
 #: Measuring begins before most imports.
 _MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
@@ -222,7 +222,7 @@ def _become(request: _Request) -> None:
     os.environ.update(request.environment)
     sys.dont_write_bytecode = bool(os.environ.get("PYTHONDONTWRITEBYTECODE"))
     if request.kind == "host":
-        sys.orig_argv[1:] = ["-c", "from pyfrc_core.sim.host import main; main()"]
+        sys.orig_argv[1:] = ["-c", "from pyfrc_core.sim.engine.host import main; main()"]
         sys.argv[:] = ["-c"]
     else:
         sys.orig_argv[1:] = ["-m", apart.__name__]
@@ -243,7 +243,7 @@ def main() -> None:
     listener = socket.socket(fileno=int(sys.argv[1]))
     sys.path[0] = ""
     interrupted = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    importlib.import_module("pyfrc_core.sim.robot_process")
+    importlib.import_module("pyfrc_core.sim.engine.robot_side.robot_process")
     gc.collect()
     gc.freeze()
     if (request := _serve(listener)) is not None:

@@ -1,9 +1,9 @@
 """A simulation session: `Simulation`, what it shows, and what front ends are made of."""
 
-from .options import SimOptions
-from .scene import Field, Scene
-from .simulation import Simulation
-from .snapshot import Failure, Snapshot, Status
+from .engine.options import SimOptions
+from .engine.scene import Field, Scene
+from .engine.simulation import Simulation
+from .engine.snapshot import Failure, Snapshot, Status
 from .ui import FrontEnd
 
 __all__ = ["Failure", "Field", "FrontEnd", "Scene", "SimOptions", "Simulation", "Snapshot", "Status"]

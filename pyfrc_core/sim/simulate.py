@@ -14,14 +14,14 @@ from ..interruption import ending_like_ctrl_c
 from ..project import Project
 from ..runtime.scripts.script import load_script
 from .c_exit import calling_at_c_exit
-from .extensions import WINDOW
-from .kept import KeptFiles
-from .network import NT4_PORT
-from .options import SimOptions
-from .simulation import Simulation
+from .engine.extensions import WINDOW
+from .engine.options import SimOptions
+from .engine.robot_side.network import NT4_PORT
+from .engine.simulation import Simulation
+from .engine.watch import watching
+from .output_files import KeptFiles
 from .ui.choose import default_name, window
 from .ui.headless import Headless, HeadlessMode
-from .watch import watching
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,7 @@ def draw_script(project: Project, script: Path, picture: Path, until: float | No
 
     :param until: an earlier end, in seconds of robot time
     """
-    from .picture import draw_picture, see_that_pictures_can_be_drawn
+    from .ui.picture import draw_picture, see_that_pictures_can_be_drawn
 
     see_that_pictures_can_be_drawn(picture)
     options = SimOptions(speed=0, paused=True, script=load_script(script), recording=False)

@@ -1,5 +1,5 @@
-"""The same objects as in `pyfrc_core.sim.user_renderer`."""
+"""The same objects as in `pyfrc_core.sim.engine.robot_side.user_renderer`."""
 
-from pyfrc_core.sim.user_renderer import UserRenderer
+from pyfrc_core.sim.engine.robot_side.user_renderer import UserRenderer
 
 __all__ = ["UserRenderer"]

@@ -10,9 +10,9 @@ from ...errors import UsageError
 from ...physics.pose import METRES_PER_FOOT
 from ...runtime.clock import PACKET_US, to_us
 from ...runtime.match import MatchPeriods
-from ..commands import ChosenMode
-from ..simulation import Simulation
-from ..snapshot import Failure, Snapshot
+from ..engine.commands import ChosenMode
+from ..engine.simulation import Simulation
+from ..engine.snapshot import Failure, Snapshot
 from . import FrontEnd
 
 #: What the robot may be put through. ``auto`` is autonomous.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from ..simulation import Simulation
+from ..engine.simulation import Simulation
 from . import FrontEnd
 
 

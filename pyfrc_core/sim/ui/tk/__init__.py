@@ -9,7 +9,7 @@ from .. import FrontEnd
 from .window import Window
 
 if TYPE_CHECKING:
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 
 class TkFrontEnd(FrontEnd):

@@ -7,15 +7,15 @@ from tkinter import ttk
 from typing import TYPE_CHECKING
 
 from ....physics.pose import Pose
+from ..models.wording import pose_text
 from . import theme as colors
 from .console_view import ConsoleView
 from .field_view import FieldView
 from .theme import Theme
 from .tooltip import Tooltip
-from .wording import pose_text
 
 if TYPE_CHECKING:
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 #: The field's share of the height; and a traceback's, at least.
 _FIELD_SHARE, _TRACEBACK_SHARE = 0.72, 0.45

@@ -6,13 +6,13 @@ import tkinter as tk
 from tkinter import ttk
 from typing import TYPE_CHECKING, Any
 
-from ...snapshot import Failure
+from ...engine.snapshot import Failure
+from ..models.wording import plain_output
 from . import theme as colors
 from .theme import Theme
-from .wording import plain_output
 
 if TYPE_CHECKING:
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 #: So many lines stay to be seen; and so much of what has gone wrong stands above them, in letters.
 _MOST_LINES, _MOST_HEADLINE = 2000, 300

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..models.devices import Row
+from ..models.wording import number_text
 from . import theme as colors
-from .devices import Row
 from .theme import Theme, fitting
-from .wording import number_text
 
 _MOST_LEDS = 48
 

@@ -8,16 +8,16 @@ from collections.abc import Callable
 from tkinter import ttk
 from typing import TYPE_CHECKING, Any
 
-from ...snapshot import Snapshot
+from ...engine.snapshot import Snapshot
+from ..models.devices import SETTABLE, DeviceRows, Row
 from . import theme as colors
 from .device_items import ITEMS, Item, Place
-from .devices import SETTABLE, DeviceRows, Row
 from .theme import Theme
 from .tooltip import Tooltip
 
 if TYPE_CHECKING:
     from ....config.sim import SimConfig
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 #: In the design's pixels: the whole width, and where labels end.
 WIDTH, _LABELS = 292, 150

@@ -5,9 +5,9 @@ from __future__ import annotations
 import tkinter as tk
 from typing import Any
 
-from ...scene import Line, Text
+from ...engine.scene import Line, Text
+from ..models.viewport import Viewport
 from .theme import Theme
-from .viewport import Viewport
 
 TAG = "drawing"
 

@@ -6,9 +6,9 @@ import tkinter as tk
 from collections.abc import Callable
 from tkinter import ttk
 
+from ..models.keyboard import LAYOUTS
 from . import theme as colors
 from .boxes import tame
-from .keyboard import LAYOUTS
 from .keys import Keys
 from .theme import Theme
 

@@ -11,8 +11,8 @@ from operator import itemgetter
 from pathlib import Path
 
 from ....errors import SettingsError
+from ..models.viewport import Viewport
 from . import theme as colors
-from .viewport import Viewport
 
 _WHERE = "sim/config.json: pyfrc.field.image"
 

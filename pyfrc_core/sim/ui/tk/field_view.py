@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 from ....errors import SettingsError
 from ....physics.pose import Pose
-from ...scene import Field, Scene, Shape, Target
-from ...snapshot import Snapshot, Status
+from ...engine.scene import Field, Scene, Shape, Target
+from ...engine.snapshot import Snapshot, Status
+from ..models.viewport import Viewport
+from ..models.wording import station_name
 from . import theme as colors
 from .drawings import Drawings
 from .field_image import FieldImage
 from .theme import Theme
 from .trail import Trail
-from .viewport import Viewport
-from .wording import station_name
 
 if TYPE_CHECKING:
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 _ZOOM_STEP = 1.2
 #: The grid's lines are so many feet apart.

@@ -7,10 +7,10 @@ import tkinter as tk
 from tkinter import ttk
 from typing import TYPE_CHECKING
 
+from ..models.gamepads import HINT, GamepadRouter
+from ..models.joysticks import BUTTONS, JOYSTICKS, RELEASED, Sticks, axis_labels, button_labels, direction
 from . import theme as colors
 from .boxes import tame
-from .gamepads import HINT, GamepadRouter
-from .joysticks import BUTTONS, JOYSTICKS, RELEASED, Sticks, axis_labels, button_labels, direction
 from .theme import Theme, fitting
 from .tooltip import Tooltip
 

@@ -6,12 +6,12 @@ import tkinter as tk
 from tkinter import ttk
 from typing import TYPE_CHECKING
 
-from .joysticks import Sticks
-from .keyboard import Control, KeyDriver, canonical, layout_for
+from ..models.joysticks import Sticks
+from ..models.keyboard import Control, KeyDriver, canonical, layout_for
 from .time_bar import TimeBar
 
 if TYPE_CHECKING:
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 #: A key that is held repeats itself on X11, each time as if it were let go; it is, when nothing follows for so long.
 #: And longer than a packet: the robot is to see the shortest press.

@@ -7,15 +7,15 @@ from collections.abc import Callable
 from tkinter import ttk
 from typing import TYPE_CHECKING
 
-from ...snapshot import Chooser, Snapshot
+from ...engine.snapshot import Chooser, Snapshot
+from ..models.wording import STATIONS, station_name
 from . import theme as colors
 from .boxes import has_keys, tame
 from .theme import Theme, fitting
 from .tooltip import Tooltip
-from .wording import STATIONS, station_name
 
 if TYPE_CHECKING:
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 #: How wide what stands before a box is at most, in the design's pixels.
 _LABEL = 96

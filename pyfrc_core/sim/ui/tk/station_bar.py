@@ -7,15 +7,15 @@ import tkinter as tk
 from tkinter import ttk
 from typing import TYPE_CHECKING
 
-from ...snapshot import Snapshot, Status
+from ...engine.snapshot import Snapshot, Status
+from ..models.wording import mode_text
 from . import theme as colors
 from .theme import Theme
 from .tooltip import Tooltip
-from .wording import mode_text
 
 if TYPE_CHECKING:
-    from ...commands import ChosenMode
-    from ...simulation import Simulation
+    from ...engine.commands import ChosenMode
+    from ...engine.simulation import Simulation
 
 _MODES: tuple[tuple[str, ChosenMode], ...] = (
     ("Teleoperated", "teleop"),

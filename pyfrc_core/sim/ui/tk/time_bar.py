@@ -8,14 +8,14 @@ from tkinter import filedialog, ttk
 from typing import TYPE_CHECKING
 
 from ....errors import PyfrcError
-from ...snapshot import Snapshot, Status
+from ...engine.snapshot import Snapshot, Status
+from ..models.wording import clock, slider_of_speed, speed_of_slider, speed_text
 from .slider import Slider
 from .theme import Theme
 from .tooltip import Tooltip
-from .wording import clock, slider_of_speed, speed_of_slider, speed_text
 
 if TYPE_CHECKING:
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 
 class TimeBar:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import tkinter as tk
 from typing import Any
 
-from ...scene import Point
-from .viewport import Viewport
+from ...engine.scene import Point
+from ..models.viewport import Viewport
 
 _PIECE = 100
 

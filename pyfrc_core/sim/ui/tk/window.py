@@ -13,25 +13,25 @@ from typing import TYPE_CHECKING
 
 from ....errors import UsageError
 from ....interruption import calling_when_ended
-from ...snapshot import Snapshot, Status
+from ...engine.snapshot import Snapshot, Status
+from ..models.gamepads import GamepadRouter, open_room
+from ..models.joysticks import Sticks
+from ..models.wording import status_texts
 from .center_view import CenterView
 from .column import Column
 from .device_view import DeviceView
 from .drive_view import DriveView
-from .gamepads import GamepadRouter, open_room
 from .joystick_view import WIDTH as JOYSTICK_WIDTH
 from .joystick_view import JoystickView
-from .joysticks import Sticks
 from .keys import Keys
 from .match_view import MatchView
 from .station_bar import StationBar
 from .theme import make_theme
 from .time_bar import TimeBar
 from .tooltip import Tooltip
-from .wording import status_texts
 
 if TYPE_CHECKING:
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 #: How often the window is drawn, in seconds.
 _FRAME = 1 / 40

@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ..runtime.forks import FORK_IS_SAFE
+from ...runtime.forks import FORK_IS_SAFE
 from . import host_process
 from .commands import Quit
 from .host import Exited, Hosting, Kill, Launch, Preload

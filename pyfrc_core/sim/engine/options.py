@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import UsageError
-from ..runtime.scripts.script import InputScript
+from ...errors import UsageError
+from ...runtime.scripts.script import InputScript
 from .extensions import see_that_there_are
 
 

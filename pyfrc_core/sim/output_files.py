@@ -8,7 +8,7 @@ from tempfile import TemporaryFile
 
 from ..disk_space import lack_of_room
 from ..errors import UsageError
-from .simulation import Simulation
+from .engine.simulation import Simulation
 
 
 class KeptFiles:
@@ -20,7 +20,7 @@ class KeptFiles:
     def __init__(self, record: Path | None, wpilog: Path | None, picture: Path | None) -> None:
         self._record, self._wpilog, self._picture = record, wpilog, picture
         if picture is not None:
-            from .picture import see_that_pictures_can_be_drawn
+            from .ui.picture import see_that_pictures_can_be_drawn
 
             see_that_pictures_can_be_drawn(picture)
         for option, file in (("--record", record), ("--wpilog", wpilog), ("--picture", picture)):
@@ -43,7 +43,7 @@ class KeptFiles:
                 raise UsageError(f"{self._wpilog} is not complete: {why}", remedy="Make room on the disk.")
             written.append(self._wpilog)
         if self._picture is not None:
-            from .picture import draw_picture
+            from .ui.picture import draw_picture
 
             draw_picture(snapshot.scene, self._picture, simulation.status.former_trail)
             written.append(self._picture)

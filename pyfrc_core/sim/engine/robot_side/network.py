@@ -14,8 +14,8 @@ from typing import Any
 
 import ntcore
 
-from ..runtime.scripts.targets import NETWORK
-from .snapshot import Chooser
+from ....runtime.scripts.targets import NETWORK
+from ..snapshot import Chooser
 
 #: Where dashboards look for a robot's NetworkTables.
 NT4_PORT = 5810

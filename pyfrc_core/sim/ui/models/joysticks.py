@@ -10,7 +10,7 @@ from .devices import Values
 
 if TYPE_CHECKING:
     from ....config.sim import SimConfig
-    from ...simulation import Simulation
+    from ...engine.simulation import Simulation
 
 JOYSTICKS = 6
 #: So many axes are shown; more of them where they have labels.

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..project import Project
-from ..runtime.scripts.script import InputScript, Step
+from ...project import Project
+from ...runtime.scripts.script import InputScript, Step
 from .commands import Command
 from .scene import Line, Point, Pose, Tag, Target, Text
 from .snapshot import Chooser, Failure

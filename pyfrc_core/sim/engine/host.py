@@ -91,14 +91,14 @@ def main() -> None:
     hosting: Hosting = pickle.load(sys.stdin.buffer)
     sys.path[:] = hosting.path
     os.chdir(hosting.directory)
-    from ..measure.processes import measure_here
+    from ...measure.processes import measure_here
 
     measure_here()
     connection = Client(hosting.address, authkey=hosting.key)
     connection.send("host")
     # Ends with the simulation, not with whoever presses Ctrl-C in its terminal.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    from . import robot_process  # noqa: F401 - what every robot needs, imported while nobody waits for it
+    from .robot_side import robot_process  # noqa: F401 - what every robot needs, imported while nobody waits for it
 
     if hosting.fork:
         _Forks(hosting, connection).serve()
@@ -118,7 +118,7 @@ class _Forks:
 
     def serve(self) -> None:
         """Do what the simulation says until it is gone."""
-        from ..runtime.forks import Fork
+        from ...runtime.forks import Fork
 
         while True:
             if self._fork is None:
@@ -172,7 +172,7 @@ def _preload(modules: Sequence[str]) -> None:
 
 def _end_robot(signum: int, frame: object) -> None:
     """Complete the robot's data logs and end its process, wherever its code is."""
-    from ..runtime import own_process
+    from ...runtime import own_process
 
     own_process.call_before_sudden_end()
     own_process.end_processes_of_the_robot()
@@ -181,9 +181,9 @@ def _end_robot(signum: int, frame: object) -> None:
 
 def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
     """Never returns."""
-    from ..runtime.own_process import LastWords, end_processes_of_the_robot, exit_now
+    from ...runtime.own_process import LastWords, end_processes_of_the_robot, exit_now
     from .robot_channel import close_in_forks, end_of_output
-    from .robot_process import run_robot
+    from .robot_side.robot_process import run_robot
 
     status = 1
     with launch.words.open("w+b", buffering=0) as file:

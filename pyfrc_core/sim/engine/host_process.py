@@ -16,7 +16,7 @@ from .host import Hosting
 ENVIRONMENT = {"PYTHONHASHSEED": "0", "PYTHONUNBUFFERED": "1", "PYTHONIOENCODING": "utf-8"}
 
 #: Where no module of the user's is in Python's way.
-DIRECTORY = Path(__file__).resolve().parents[2]
+DIRECTORY = Path(__file__).resolve().parents[3]
 
 
 class HostProcess(Protocol):

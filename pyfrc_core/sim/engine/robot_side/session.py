@@ -9,25 +9,25 @@ from functools import partial
 from multiprocessing.connection import Connection
 from typing import Any
 
-from ..errors import PyfrcError
-from ..hal import modes
-from ..physics.core import PhysicsInterface
-from ..runtime.clock import INPUT, OBSERVE, PACKET_US
-from ..runtime.endings import TestEnded
-from ..runtime.loop_limit import LoopLimit
-from ..runtime.refresh import RefreshCheck
-from ..runtime.robot import RobotRun
-from ..runtime.scripts.player import Player
-from ..runtime.scripts.recorder import Recorder
-from ..runtime.scripts.targets import Targets
-from ..runtime.trace import Trace
-from .commands import ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
-from .messages import Job, Ready, Update
+from ....errors import PyfrcError
+from ....hal import modes
+from ....physics.core import PhysicsInterface
+from ....runtime.clock import INPUT, OBSERVE, PACKET_US
+from ....runtime.endings import TestEnded
+from ....runtime.loop_limit import LoopLimit
+from ....runtime.refresh import RefreshCheck
+from ....runtime.robot import RobotRun
+from ....runtime.scripts.player import Player
+from ....runtime.scripts.recorder import Recorder
+from ....runtime.scripts.targets import Targets
+from ....runtime.trace import Trace
+from ..commands import ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
+from ..messages import Job, Ready, Update
+from ..scene import Point, Pose, Target
+from ..time_state import TimeState
 from .network import Choosers, Served
 from .pace import Pace, wall
-from .scene import Point, Pose, Target
 from .station import Station
-from .time_state import TimeState
 from .user_renderer import UserRenderer
 
 #: Faster than real time, updates are told no oftener than this, in wall seconds; else one for each packet. What is not

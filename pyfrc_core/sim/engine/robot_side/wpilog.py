@@ -22,8 +22,8 @@ from wpiutil.log import (
     StringLogEntry,
 )
 
-from ..disk_space import lack_of_room
-from ..errors import UsageError
+from ....disk_space import lack_of_room
+from ....errors import UsageError
 
 _DRIVER_STATION = {
     "control.enabled": "DS:enabled",

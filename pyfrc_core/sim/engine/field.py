@@ -8,14 +8,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import UsageError, nearest
-from ..physics.pose import METRES_PER_FOOT
+from ...errors import UsageError, nearest
+from ...physics.pose import METRES_PER_FOOT
 from .commands import ROBOT_ON_FIELD
 from .scene import Field, Pose, Shape, Tag
 
 if TYPE_CHECKING:
-    from ..config.sim import FieldObject, SimConfig
-    from ..project import Project
+    from ...config.sim import FieldObject, SimConfig
+    from ...project import Project
 
 #: A season's tags are drawn where the field's size differs from theirs by less than this, in feet.
 _SAME_SIZE = 1.0
@@ -65,7 +65,7 @@ def tags_of(config: SimConfig) -> tuple[Tag, ...]:
         return ()
     from robotpy_apriltag import AprilTagField, AprilTagFieldLayout
 
-    from ..config.seasons import TODAY
+    from ...config.seasons import TODAY
 
     season = str(config.field.season or TODAY)
     named = [field for name, field in AprilTagField.__members__.items() if season in name]

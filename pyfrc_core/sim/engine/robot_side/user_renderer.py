@@ -7,9 +7,9 @@ import threading
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol
 
-from ..errors import UsageError
-from ..runtime.redirect import redirection
-from .scene import Line, Point, Pose, Text
+from ....errors import UsageError
+from ....runtime.redirect import redirection
+from ..scene import Line, Point, Pose, Text
 
 #: So many drawings stay on the field; when there are more, the oldest go.
 MOST_DRAWINGS = 500

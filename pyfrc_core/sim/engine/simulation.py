@@ -11,12 +11,11 @@ from time import monotonic
 from types import TracebackType
 from typing import Any
 
-from ..errors import PyfrcError, UsageError
-from ..project import Project
-from ..runtime.clock import PACKET_US, to_us
-from ..runtime.own_process import explain_end, moment_of
-from ..runtime.scripts.script import InputScript, Step
-from .assembly import Assembly
+from ...errors import PyfrcError, UsageError
+from ...project import Project
+from ...runtime.clock import PACKET_US, to_us
+from ...runtime.own_process import explain_end, moment_of
+from ...runtime.scripts.script import InputScript, Step
 from .commands import Command, Pause, Run, Speed
 from .controls import Controls
 from .field import field_of, robot_at, start_named
@@ -27,6 +26,7 @@ from .processes import RobotProcesses
 from .recording import Recording
 from .scene import Pose, Tag
 from .snapshot import Failure, Snapshot, Status
+from .snapshot_builder import Assembly
 from .time_state import TimeState
 
 #: So much of what a robot has printed is kept for whoever asks for it, in characters.

@@ -16,26 +16,26 @@ from typing import Any
 
 import hal
 
-from ..errors import PyfrcError
-from ..misspelled_methods import find_misspelled_methods
-from ..physics.engine import load_physics
-from ..project import Project
-from ..robot_files import is_pyfrc
-from ..runtime import own_process
-from ..runtime.data_logs import LogPlace
-from ..runtime.failures import as_robot_code_error, leave_out_pyfrc
-from ..runtime.loading import load_robot
-from ..runtime.own_process import LastWords
-from ..runtime.redirect import redirection
-from ..runtime.robot import RobotRun
-from ..runtime.seeds import seed_generators
-from ..runtime.watchdog import Watchdog
-from .extensions import WINDOW, load_extensions
-from .field import tags_of
-from .messages import Failed, Job, Ready, WindowClosed
-from .program_files import keep_no_bytecode_of_new_code
+from ....errors import PyfrcError
+from ....misspelled_methods import find_misspelled_methods
+from ....physics.engine import load_physics
+from ....project import Project
+from ....robot_files import is_pyfrc
+from ....runtime import own_process
+from ....runtime.data_logs import LogPlace
+from ....runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ....runtime.loading import load_robot
+from ....runtime.own_process import LastWords
+from ....runtime.redirect import redirection
+from ....runtime.robot import RobotRun
+from ....runtime.seeds import seed_generators
+from ....runtime.watchdog import Watchdog
+from ..extensions import WINDOW, load_extensions
+from ..field import tags_of
+from ..messages import Failed, Job, Ready, WindowClosed
+from ..program_files import keep_no_bytecode_of_new_code
+from ..snapshot import Failure
 from .session import Ended, Session
-from .snapshot import Failure
 from .wpilog import WpiLog
 
 #: Code that a robot imports counts as a library's when it is from there.

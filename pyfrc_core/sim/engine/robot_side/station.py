@@ -7,13 +7,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from ..config.settings import MatchSettings
-from ..config.sim import FieldConfig
-from ..hal import modes
-from ..runtime.match import MatchPeriods
-from ..runtime.robot import RobotRun
-from .commands import ChooseMode, EmergencyStop, Enable, Practice
-from .messages import StationState
+from ....config.settings import MatchSettings
+from ....config.sim import FieldConfig
+from ....hal import modes
+from ....runtime.match import MatchPeriods
+from ....runtime.robot import RobotRun
+from ..commands import ChooseMode, EmergencyStop, Enable, Practice
+from ..messages import StationState
 
 _CONTROL = re.compile(r"joysticks\[[0-5]\]\.(axes|buttons|povs)\[\d+\]")
 _NEUTRAL = {"axes": 0.0, "buttons": False, "povs": modes.NOT_PRESSED}

@@ -11,9 +11,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .._version import requirement
-from ..errors import UsageError
-from .scene import Field, Line, Point, Pose, Scene
+from ..._version import requirement
+from ...errors import UsageError
+from ..engine.scene import Field, Line, Point, Pose, Scene
 
 if TYPE_CHECKING:
     from PIL.ImageDraw import ImageDraw

@@ -6,7 +6,7 @@ import math
 import re
 
 from ....physics.pose import Pose
-from ...snapshot import Snapshot, Status
+from ...engine.snapshot import Snapshot, Status
 
 #: The slowest and the fastest that the speed slider offers; beyond it is as fast as it goes.
 SLOWEST, FASTEST = 0.1, 8.0

@@ -1,0 +1,1 @@
+"""What runs in the robot's process: the session between the robot and the `Simulation`."""

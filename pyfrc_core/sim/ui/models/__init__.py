@@ -1,0 +1,1 @@
+"""What every front end shows and binds, without any toolkit."""
