@@ -16,7 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from pyfrc_core.fuzz.robots import robots_of
+from pyfrc_core.fuzz.match_executor import open_match_executor
 from pyfrc_core.project import find_project
 from pyfrc_core.runtime.scripts.script import load_script
 
@@ -79,8 +79,8 @@ def measured(name: str, project: Path) -> str:
 def failing(project: Path, kept: Path) -> int:
     """How many of the replays fail in the same way as the first."""
     script = load_script(kept)
-    with robots_of(find_project(project), JOBS) as robots:
-        failures = [robots.follow(script).failure for _ in range(REPLAYS)]
+    with open_match_executor(find_project(project), JOBS) as executor:
+        failures = [executor.replay(script).failure for _ in range(REPLAYS)]
     first = failures[0]
     return sum(first is not None and first.same_as(each) for each in failures)
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from .loudness import hint
 from .project_options import chosen_project, from_here, project_options
+from .verbosity import hint
 
 
 @click.command("add-tests", context_settings={"help_option_names": ["-h", "--help"]})

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from .loudness import hint
 from .project_options import chosen_project, project_options
+from .verbosity import hint
 
 if TYPE_CHECKING:
     from pyfrc_core.config.sim_file import LoadedSimConfig

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from .loudness import loudness
+from .verbosity import verbosity
 from .wrapping import WRAPPING, wrapped_command
 
 
@@ -45,7 +45,7 @@ def command(
     from pyfrc_core.measure.coverage import CoverageOptions, measuring
 
     options = CoverageOptions(
-        enabled=True, html=html, xml=xml, json=as_json, fail_under=fail_under, quiet=loudness().quiet
+        enabled=True, html=html, xml=xml, json=as_json, fail_under=fail_under, quiet=verbosity().quiet
     )
     with measuring(wrapped.project, options) as measured:
         status = wrapped.run()

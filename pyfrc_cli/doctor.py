@@ -9,9 +9,9 @@ from pathlib import Path
 
 import click
 
-from .loudness import hint, loudness
 from .project_options import project_options
 from .robot_options import refuse_option_as_value
+from .verbosity import hint, verbosity
 
 _COLOURS = {"ok": "green", "hint": "cyan", "problem": "red"}
 
@@ -56,7 +56,7 @@ def command(
     for finding in examine(Examination(directory, main, robot_class, not no_robot, robot, team)):
         finding = replace(finding, remedy=finding.remedy and naming_robot(finding.remedy, robot, team))
         findings.append(finding)
-        if not as_json and (finding.status == "problem" or not loudness().quiet):
+        if not as_json and (finding.status == "problem" or not verbosity().quiet):
             click.secho(f"{finding.status:<8}", fg=_COLOURS[finding.status], nl=False)
             click.echo(f"{finding.topic}: {finding.text}")
             if finding.remedy:

@@ -11,11 +11,11 @@ import click
 
 from pyfrc_core.wording import counted
 
-from .loudness import hint, loudness
 from .project_options import chosen_project, project_options
+from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
-    from pyfrc_core.fuzz.campaign import Found, Progress
+    from pyfrc_core.fuzz.campaign import CampaignProgress, FuzzFinding
 
 _DEFAULT_SECONDS = 60.0
 
@@ -74,7 +74,7 @@ def command(
     project = chosen_project(directory, main, robot_class)
     if seconds is None and runs is None:
         seconds = _DEFAULT_SECONDS
-    teller = _Teller(loudness().quiet)
+    teller = _Teller(verbosity().quiet)
     campaign = run_campaign(project, CampaignOptions(seed, runs, seconds, jobs or usable_processors()), teller)
     teller.end(campaign.progress)
     if campaign.interrupted:
@@ -92,7 +92,7 @@ class _Teller:
         self._on_terminal = sys.stdout.isatty() and not quiet
         self._told = time.monotonic()
 
-    def on_progress(self, progress: Progress) -> None:
+    def on_progress(self, progress: CampaignProgress) -> None:
         now = time.monotonic()
         if self._quiet or now - self._told < (_ON_TERMINAL if self._on_terminal else _ELSEWHERE):
             return
@@ -102,7 +102,7 @@ class _Teller:
         else:
             click.echo(_line(progress))
 
-    def on_found(self, found: Found) -> None:
+    def on_found(self, found: FuzzFinding) -> None:
         self._clear()
         click.secho(found.failure.text, fg="red")
         if found.kept is None:
@@ -115,7 +115,7 @@ class _Teller:
             hint(f"  {counted(found.writes, 'write')}, {counted(found.runs, 'run')} of the robot to find them")
             click.echo(f"  pyfrc replay {found.kept.shown}")
 
-    def end(self, progress: Progress) -> None:
+    def end(self, progress: CampaignProgress) -> None:
         self._clear()
         progress.doing = ""
         hint(_line(progress))
@@ -125,7 +125,7 @@ class _Teller:
             click.echo("\r\033[K", nl=False)
 
 
-def _line(progress: Progress) -> str:
+def _line(progress: CampaignProgress) -> str:
     parts = [
         counted(progress.matches, "match", "matches"),
         f"{progress.simulated / 3600:.2f} h of robot time",

@@ -9,7 +9,7 @@ import click
 
 from pyfrc_core.scaffold import DEFAULT, TEMPLATES, create_project
 
-from .loudness import hint
+from .verbosity import hint
 
 
 def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) -> None:

@@ -15,7 +15,7 @@ import click
 
 from pyfrc_core._version import __version__
 
-from .loudness import QUIET, VERBOSE, Loudness, add_options
+from .verbosity import QUIET, VERBOSE, Verbosity, add_options
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -96,7 +96,7 @@ def cli() -> None:
 def run() -> None:
     """Run the command line; errors that pyfrc knows are told in a sentence, with exit code 1 or 2."""
     _escape_unknown_letters()
-    told = Loudness()
+    told = Verbosity()
     # None: by whether it goes to a terminal.
     color = False if os.environ.get("NO_COLOR") else None
     if COMPLETE_VARIABLE in os.environ:

@@ -9,7 +9,7 @@ import click
 
 from pyfrc_core._version import requirement
 
-from .loudness import loudness
+from .verbosity import verbosity
 from .wrapping import WRAPPING, wrapped_command
 
 
@@ -60,7 +60,7 @@ def command(
     wrapped = wrapped_command(context, command_line, ("test", "sim", "fuzz", "replay"))
     from pyfrc_core.measure.profile import ProfileOptions, profiling
 
-    options = ProfileOptions(outfile, html, as_json, top, loudness().quiet)
+    options = ProfileOptions(outfile, html, as_json, top, verbosity().quiet)
     with profiling(wrapped.project, options, f"pyfrc {' '.join(command_line)}"):
         status = wrapped.run()
     sys.exit(status)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import click
 
-from .loudness import hint
 from .project_options import chosen_project, project_options
+from .verbosity import hint
 
 
 @click.command("replay", context_settings={"help_option_names": ["-h", "--help"]})

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from .loudness import loudness
+from .verbosity import verbosity
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.progress import Conversation
@@ -143,7 +143,7 @@ def conversation(choice: RobotChoice, as_json: bool = False) -> Conversation:
             text=lambda question: str(click.prompt(question, prompt_suffix=" ")),
             yes=lambda question: click.confirm(question),
         )
-    progress = progress_for(as_json, loudness().quiet)
+    progress = progress_for(as_json, verbosity().quiet)
     progress.name_robot = lambda text: naming_robot(text, choice.robot, choice.team)
     return Conversation(progress, ask)
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import click
 
-from .loudness import loudness
 from .project_options import chosen_project, project_options
+from .verbosity import verbosity
 
 _FILE = click.Path(path_type=Path, dir_okay=False)
 
@@ -74,4 +74,4 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None, 
     from pyfrc_core.sim.simulate import SimRequest, simulate
 
     project = chosen_project(directory, main, robot_class)
-    sys.exit(simulate(project, SimRequest(**request, quiet=loudness().quiet), partial(click.echo, nl=False)))
+    sys.exit(simulate(project, SimRequest(**request, quiet=verbosity().quiet), partial(click.echo, nl=False)))

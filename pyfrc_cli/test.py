@@ -8,8 +8,8 @@ from typing import Literal
 
 import click
 
-from .loudness import loudness
 from .project_options import chosen_project, project_options
+from .verbosity import verbosity
 
 
 def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int | Literal["auto"] | None:
@@ -94,7 +94,7 @@ def command(
     if no_isolation and isolation not in (None, "none"):
         raise click.UsageError(f"--no-isolation and --isolation {isolation} cannot both be.")
     project = chosen_project(directory, main, robot_class)
-    told = loudness()
+    told = verbosity()
     as_pytest_has_it = ["-q"] * told.quiet + ["-v"] * told.verbose
     from pyfrc_core.measure.coverage import CoverageOptions, measuring
 

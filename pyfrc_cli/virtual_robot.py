@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from .loudness import loudness
+from .verbosity import verbosity
 
 
 @click.command("virtual-robot", context_settings={"help_option_names": ["-h", "--help"]})
@@ -43,5 +43,5 @@ def command(directory: Path | None, port: int | None, fresh: bool, command: tupl
     if command:
         sys.exit(run_command(command, directory, port, fresh))
     # Asked for here: news come from other threads, too.
-    quiet = loudness().quiet
+    quiet = verbosity().quiet
     show(directory, port, fresh, click.echo, (lambda text: None) if quiet else click.echo)

@@ -90,7 +90,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
             LoopLimit(run, project.files, settings)
             try:
                 seed_generators(script.seed)
-                with judged_if_kept(run, project, script), traced(run, written) as recorder:
+                with oracle_if_fuzzed(run, project, script), traced(run, written) as recorder:
                     with _taken_down(failures, project):
                         construct(project, run, robot_class)
                         Player(script, run).play(until_us)
@@ -135,22 +135,22 @@ def _taken_down(failures: list[PyfrcError], project: Project) -> Iterator[None]:
 def _how_its_process_ends(project: Project, script: InputScript) -> str | None:
     """Of a script that fuzzing has kept since the robot's process ended with it, how that was; tried in another one."""
     from .fuzz.failure import PROCESS_ENDED
-    from .fuzz.robots import robots_of
+    from .fuzz.match_executor import open_match_executor
 
-    with robots_of(project, jobs=1) as robots:
-        failure = robots.follow(script).failure
+    with open_match_executor(project, jobs=1) as executor:
+        failure = executor.replay(script).failure
     return failure.text if failure is not None and failure.kind == PROCESS_ENDED else None
 
 
 @contextmanager
-def judged_if_kept(run: RobotRun, project: Project, script: InputScript) -> Iterator[None]:
+def oracle_if_fuzzed(run: RobotRun, project: Project, script: InputScript) -> Iterator[None]:
     """Of a script that fuzzing has kept, take for a failure what fuzzing does."""
     if not script.story:
         yield
         return
-    from .fuzz.judge import judged
+    from .fuzz.oracle import attach_oracle
 
-    with judged(run, project.files, project.settings.fuzz):
+    with attach_oracle(run, project.files, project.settings.fuzz):
         yield
 
 

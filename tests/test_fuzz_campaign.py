@@ -19,10 +19,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pyfrc_core.fuzz.describe import story_of
-from pyfrc_core.fuzz.failure import Failure
-from pyfrc_core.fuzz.match import Follow, Played, Task
-from pyfrc_core.fuzz.recipes import Recipes
-from pyfrc_core.fuzz.robots import Robots
+from pyfrc_core.fuzz.failure import FuzzFailure
+from pyfrc_core.fuzz.match import MatchResult, ReplayTask, Task
+from pyfrc_core.fuzz.match_executor import MatchExecutor
+from pyfrc_core.fuzz.seed_schedule import SeedScheduler
 from pyfrc_core.fuzz.shrink import Shrinker
 from pyfrc_core.fuzz.values import SPANS, Kind, can_be, nearest, simpler
 from pyfrc_core.project import Project
@@ -369,33 +369,33 @@ def test_where_every_process_dies_the_share_of_lines_is_not_told(make_project) -
     assert re.search("^2 matches, .*robot time, 1 failure$", result.stdout, re.MULTILINE), result.output
 
 
-# -- recipes ---------------------------------------------------------------------------------------------------------
+# -- schedules ---------------------------------------------------------------------------------------------------------
 
 
 def test_recipes_follow_from_the_seed_and_what_was_learned() -> None:
-    def recipes(seed: int) -> list[object]:
-        made = Recipes(seed)
-        found = [made.recipe(number) for number in range(10)]
+    def schedules(seed: int) -> list[object]:
+        made = SeedScheduler(seed)
+        found = [made.schedule(number) for number in range(10)]
         made.learn(found[3], {("robot.py", 12): 4_000_000})
-        return [*found, *(made.recipe(number) for number in range(10, 40))]
+        return [*found, *(made.schedule(number) for number in range(10, 40))]
 
-    assert recipes(1) == recipes(1) != recipes(2)
-    continued = [recipe for recipe in recipes(1) if len(recipe.turns) == 2]  # type: ignore[attr-defined]
+    assert schedules(1) == schedules(1) != schedules(2)
+    continued = [schedule for schedule in schedules(1) if len(schedule.seeds) == 2]  # type: ignore[attr-defined]
     assert 5 < len(continued) < 25
-    for recipe in continued:
-        assert recipe.turns[0] == (0, "fuzz 1 3")  # type: ignore[attr-defined]
-        assert 4_000_000 <= recipe.turns[1][0] < 5_000_000  # type: ignore[attr-defined]
+    for schedule in continued:
+        assert schedule.seeds[0] == (0, "fuzz 1 3")  # type: ignore[attr-defined]
+        assert 4_000_000 <= schedule.seeds[1][0] < 5_000_000  # type: ignore[attr-defined]
 
 
 CONTINUED = """
-    from pyfrc_core.fuzz.match import Mash
-    from pyfrc_core.fuzz.recipes import Recipe
-    from pyfrc_core.fuzz.robots import robots_of
+    from pyfrc_core.fuzz.match import FuzzTask
+    from pyfrc_core.fuzz.seed_schedule import SeedSchedule
+    from pyfrc_core.fuzz.match_executor import open_match_executor
     from pyfrc_core.project import find_project
 
-    with robots_of(find_project(), 1) as robots:
-        recipes = Recipe(((0, "a"),)), Recipe(((0, "a"), (3_000_000, "b")))
-        one, other = (played.script.steps for played in robots.play(map(Mash, recipes)))
+    with open_match_executor(find_project(), 1) as executor:
+        schedules = SeedSchedule(((0, "a"),)), SeedSchedule(((0, "a"), (3_000_000, "b")))
+        one, other = (played.script.steps for played in executor.play(map(FuzzTask, schedules)))
     same = [step for step in one if step.at_us < 3_000_000]
     assert len(same) > 20
     assert same == [step for step in other if step.at_us < 3_000_000]
@@ -413,7 +413,7 @@ def test_a_match_that_goes_on_from_another_is_the_same_until_then(make_project) 
 # -- shrinking -------------------------------------------------------------------------------------------------------
 
 
-class Imagined(Robots):
+class Imagined(MatchExecutor):
     """Robots that fail when, of what they are told, these come together."""
 
     def __init__(self, needed: frozenset[str]) -> None:
@@ -424,27 +424,27 @@ class Imagined(Robots):
     def lines(self) -> frozenset[tuple[str, int]]:
         return frozenset()
 
-    def play(self, tasks: Iterable[Task]) -> Generator[Played, None, None]:
+    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
         for task in tasks:
-            assert isinstance(task, Follow)
+            assert isinstance(task, ReplayTask)
             told: set[str] = set()
             failure, end_us = None, task.script.end_us
             for step in task.script.steps:
                 told |= step.writes.keys()
                 if self._needed <= told:
                     failure, end_us = (
-                        Failure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3"),
+                        FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3"),
                         step.at_us + 20_000,
                     )
                     break
-            yield Played(failure, InputScript(task.script.steps, end_us))
+            yield MatchResult(failure, InputScript(task.script.steps, end_us))
 
 
 @given(count=st.integers(1, 300), needed=st.sets(st.integers(0, 299), max_size=4))
 def test_only_what_is_needed_is_left(count: int, needed: set[int]) -> None:
     targets = frozenset(f"dio[{number % count}].value" for number in needed)
     steps = tuple(Step(20_000 * number, {f"dio[{number}].value": True}) for number in range(count))
-    failure = Failure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3")
+    failure = FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3")
     shrinker = Shrinker(Imagined(targets), InputScript(steps, 20_000 * count), failure, {})
     shrinker.shrink()
     if not targets:  # it fails with its first step, whatever that is
@@ -457,7 +457,7 @@ def test_only_what_is_needed_is_left(count: int, needed: set[int]) -> None:
 
 def test_no_more_robots_are_run_than_allowed() -> None:
     steps = tuple(Step(20_000 * number, {f"dio[{number}].value": True}) for number in range(100))
-    failure = Failure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3")
+    failure = FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3")
     needed = frozenset({"dio[3].value", "dio[60].value", "dio[90].value"})
     shrinker = Shrinker(Imagined(needed), InputScript(steps, 2_000_000), failure, {}, most_runs=10)
     shrinker.shrink()
@@ -484,7 +484,7 @@ def test_the_story_is_one_that_people_tell() -> None:
         Step(21_340_000, {"joysticks[0].buttons[3]": True}),
         Step(21_400_000, {"joysticks[0].plugged": False, "dio[2].value": True}),
     )
-    failure = Failure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3\nmore")
+    failure = FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3\nmore")
     assert story_of(InputScript(steps, 22_020_000), failure) == (
         "at 0.00 s disabled begins: alliance station 'red2'",
         "at 0.50 s teleoperated begins",

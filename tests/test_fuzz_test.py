@@ -49,7 +49,7 @@ MASH = """
     import pytest
     from pyfrc_core.fuzz.gamepads import find_gamepads
     from pyfrc_core.fuzz.inputs import find_controls, find_sensors
-    from pyfrc_core.fuzz.masher import MatchMasher
+    from pyfrc_core.fuzz.input_generator import InputGenerator
     from pyfrc_core.fuzz.values import can_be
     from pyfrc_core.runtime.scripts.script import InputScript, Step
     from pyfrc_core.runtime.scripts.targets import Targets
@@ -57,20 +57,20 @@ MASH = """
     @pytest.mark.parametrize("seed", range(SEEDS))
     def test_mash(seed, control, fake_time, hal_data, robot):
         run = fake_time.run
-        masher = MatchMasher(
+        generator = InputGenerator(
             random.Random(seed), run, seconds=20, physics_inputs=frozenset(PHYSICS), game_messages=("LRL", "RLR")
         )
         targets, written, steps = Targets(hal_data), [], []
 
         def on_step(now):
             now_us = run.clock.now_us
-            writes = masher.writes(now_us)
+            writes = generator.writes(now_us)
             steps.append(Step(now_us, writes))
             for target, value in writes.items():
                 written.append((now_us, target, value))
                 targets.write(target, value, now_us)
             targets.count_down(now_us)
-            return not masher.over(now_us)
+            return not generator.over(now_us)
 
         on_step(0.0)
         control.run_test(on_step)
@@ -90,7 +90,7 @@ Written = list[tuple[int, str, object]]
 
 
 def mash(make_project, seeds: int, physics: tuple[str, ...] = (), robot: str = EVERYTHING, **env: str) -> list[Written]:
-    """What the masher wrote in matches from the seeds 0, 1, ..."""
+    """What the generator wrote in matches from the seeds 0, 1, ..."""
     test = MASH.replace("SEEDS", str(seeds)).replace("PHYSICS", repr(physics))
     project = make_project({"robot.py": robot, "tests/test_mash.py": test})
     result = project.run("test", env=env)

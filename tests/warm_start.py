@@ -55,7 +55,7 @@ _IMPORTED = (
     "pyfrc_core.measure.coverage",
     "pyfrc_core.tests",
     "pyfrc_core.test_support.pytest_plugin",
-    "pyfrc_core.fuzz.masher",
+    "pyfrc_core.fuzz.input_generator",
     "pyfrc_core.fuzz.describe",
     "pyfrc_core.config.sim_file",
     "pyfrc_core.physics.engine",

@@ -12,13 +12,13 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from ..project import Project
+from .corpus import Corpus, CorpusEntry
 from .describe import story_of
-from .failure import Failure
-from .kept import Kept, KeptScripts
+from .failure import FuzzFailure
 from .lines import Line, share
-from .match import Follow, Mash, Played
-from .recipes import Recipes
-from .robots import Robots, robots_of
+from .match import FuzzTask, MatchResult, ReplayTask
+from .match_executor import MatchExecutor, open_match_executor
+from .seed_schedule import SeedScheduler
 from .shrink import Shrinker
 
 _BATCH = 32
@@ -41,7 +41,7 @@ class CampaignOptions:
 
 
 @dataclass
-class Progress:
+class CampaignProgress:
     """How far a campaign has come.
 
     :param simulated: robot time, in seconds
@@ -59,7 +59,7 @@ class Progress:
 
 
 @dataclass(frozen=True)
-class Found:
+class FuzzFinding:
     """A failure, for people.
 
     :param story: what happens, moment by moment; the failure last
@@ -69,9 +69,9 @@ class Found:
     :param writes: how many things the shortest way writes
     """
 
-    failure: Failure
+    failure: FuzzFailure
     story: tuple[str, ...]
-    kept: Kept | None
+    kept: CorpusEntry | None
     known: bool = False
     runs: int = 0
     writes: int = 0
@@ -84,30 +84,30 @@ class Campaign:
     :param interrupted: whether somebody has ended it
     """
 
-    progress: Progress = field(default_factory=Progress)
-    found: list[Found] = field(default_factory=list)
+    progress: CampaignProgress = field(default_factory=CampaignProgress)
+    found: list[FuzzFinding] = field(default_factory=list)
     interrupted: bool = False
 
 
-class Listener(Protocol):
+class CampaignListener(Protocol):
     """Whoever is told how a campaign goes."""
 
-    def on_progress(self, progress: Progress) -> None: ...
+    def on_progress(self, progress: CampaignProgress) -> None: ...
 
-    def on_found(self, found: Found) -> None: ...
+    def on_found(self, found: FuzzFinding) -> None: ...
 
 
-def run_campaign(project: Project, options: CampaignOptions, listener: Listener) -> Campaign:
+def run_campaign(project: Project, options: CampaignOptions, listener: CampaignListener) -> Campaign:
     """Run a campaign to its end, or until Ctrl-C: then what it has found is kept, too.
 
     :raises RobotCodeError: when the robot's code cannot be imported
     :raises ScriptError: when a script that was kept before is none
     """
     deadline = None if options.seconds is None else time.monotonic() + options.seconds
-    with robots_of(project, options.jobs) as robots:
-        runner = _Runner(robots, options, deadline, listener)
+    with open_match_executor(project, options.jobs) as executor:
+        runner = _Runner(executor, options, deadline, listener)
         try:
-            with robots.interruptible():
+            with executor.interruptible():
                 runner.look_at_kept()
                 runner.run()
         except KeyboardInterrupt:
@@ -117,28 +117,30 @@ def run_campaign(project: Project, options: CampaignOptions, listener: Listener)
 
 
 class _Runner:
-    def __init__(self, robots: Robots, options: CampaignOptions, deadline: float | None, listener: Listener) -> None:
+    def __init__(
+        self, executor: MatchExecutor, options: CampaignOptions, deadline: float | None, listener: CampaignListener
+    ) -> None:
         self.campaign = Campaign()
-        self._robots = robots
+        self._executor = executor
         self._options = options
         self._deadline = deadline
         self._listener = listener
-        self._kept = KeptScripts(robots.project)
-        self._recipes = Recipes(options.seed)
-        self._all_lines = robots.lines
+        self._kept = Corpus(executor.project)
+        self._scheduler = SeedScheduler(options.seed)
+        self._all_lines = executor.lines
         self._reached: frozenset[Line] = frozenset()
-        self._failures: list[Failure] = []
+        self._failures: list[FuzzFailure] = []
         #: Found, and not made short yet.
-        self._waiting: list[Played] = []
+        self._waiting: list[MatchResult] = []
         self._shrinking: Shrinker | None = None
 
     def look_at_kept(self) -> None:
         """What earlier campaigns have found, and is not repaired, is not found anew."""
         scripts = list(self._kept.all())
-        with closing(self._robots.play(Follow(kept.script) for kept in scripts)) as results:
+        with closing(self._executor.play(ReplayTask(kept.script) for kept in scripts)) as results:
             for kept, played in zip(scripts, results, strict=True):
                 if played.failure is not None and self._is_new(played.failure):
-                    self._tell(Found(played.failure, story_of(kept.script, played.failure), kept, known=True))
+                    self._tell(FuzzFinding(played.failure, story_of(kept.script, played.failure), kept, known=True))
 
     def run(self) -> None:
         """Play batch after batch."""
@@ -159,12 +161,12 @@ class _Runner:
 
     def _play(self, numbers: range) -> None:
         progress = self.campaign.progress
-        recipes = [self._recipes.recipe(number) for number in numbers]
+        schedules = [self._scheduler.schedule(number) for number in numbers]
         known = self._reached
-        with closing(self._robots.play(Mash(recipe, known) for recipe in recipes)) as results:
-            for recipe, played in zip(recipes, results, strict=True):
+        with closing(self._executor.play(FuzzTask(schedule, known) for schedule in schedules)) as results:
+            for schedule, played in zip(schedules, results, strict=True):
                 new = {line: at_us for line, at_us in played.reached.items() if line not in self._reached}
-                self._recipes.learn(recipe, new)
+                self._scheduler.learn(schedule, new)
                 self._reached |= new.keys()
                 progress.matches += 1
                 progress.simulated += played.script.end_us / 1e6
@@ -176,7 +178,7 @@ class _Runner:
                 if self._over(0):
                     return
 
-    def _is_new(self, failure: Failure) -> bool:
+    def _is_new(self, failure: FuzzFailure) -> bool:
         if any(failure.same_as(other) for other in self._failures):
             return False
         self._failures.append(failure)
@@ -184,7 +186,7 @@ class _Runner:
 
     # -- keeping -----------------------------------------------------------------------------------------------
 
-    def _keep(self, played: Played) -> None:
+    def _keep(self, played: MatchResult) -> None:
         assert played.failure is not None
         progress = self.campaign.progress
 
@@ -192,7 +194,7 @@ class _Runner:
             progress.doing = f"making it short: run {runs}"
             self._listener.on_progress(progress)
 
-        shrinker = Shrinker(self._robots, played.script, played.failure, played.inputs, tell=tell)
+        shrinker = Shrinker(self._executor, played.script, played.failure, played.inputs, tell=tell)
         self._shrinking = shrinker
         shrinker.shrink()
         self._write(shrinker, repeats=shrinker.repeats and shrinker.play_again())
@@ -203,16 +205,16 @@ class _Runner:
         for played in self._waiting:
             assert played.failure is not None
             shrinker, self._shrinking = self._shrinking, None
-            self._write(shrinker or Shrinker(self._robots, played.script, played.failure, {}), repeats=True)
+            self._write(shrinker or Shrinker(self._executor, played.script, played.failure, {}), repeats=True)
         self._waiting.clear()
 
     def _write(self, shrinker: Shrinker, repeats: bool) -> None:
         script, failure = shrinker.script, shrinker.failure
         kept = self._kept.keep(script, failure) if repeats else None
         writes = sum(len(step.writes) for step in script.steps)
-        self._tell(Found(failure, story_of(script, failure), kept, runs=shrinker.runs, writes=writes))
+        self._tell(FuzzFinding(failure, story_of(script, failure), kept, runs=shrinker.runs, writes=writes))
 
-    def _tell(self, found: Found) -> None:
+    def _tell(self, found: FuzzFinding) -> None:
         self.campaign.found.append(found)
         self.campaign.progress.crashes = len(self._failures)
         self._listener.on_found(found)

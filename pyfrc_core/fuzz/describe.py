@@ -9,7 +9,7 @@ from typing import Any
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.script import InputScript
 from ..runtime.scripts.targets import MATCH_TIME, MODE, NETWORK
-from .failure import Failure
+from .failure import FuzzFailure
 from .values import NOT_PRESSED
 
 _MODES = {
@@ -34,7 +34,7 @@ _NAMES = {
 }
 
 
-def story_of(script: InputScript, failure: Failure) -> tuple[str, ...]:
+def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
     """What happens, a line for each moment; the last says what comes of it."""
     told = []
     mode = "disabled"

@@ -22,7 +22,7 @@ PROCESS_ENDED = "process_ended"
 _ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]+")
 
 
-class Misbehaved(NamesItsPlace):
+class MisbehaviorError(NamesItsPlace):
     """The robot has done, without an exception, what no robot should.
 
     :param kind: the setting that switches this off
@@ -36,7 +36,7 @@ class Misbehaved(NamesItsPlace):
 
 
 @dataclass(frozen=True)
-class Failure:
+class FuzzFailure:
     """What went wrong.
 
     :param kind: an exception's type, or what else it is
@@ -51,24 +51,24 @@ class Failure:
     function: str
     text: str
 
-    def same_as(self, other: Failure | None) -> bool:
+    def same_as(self, other: FuzzFailure | None) -> bool:
         """Whether this is the same mistake."""
         return other is not None and (self.kind, self.place) == (other.kind, other.place)
 
 
-def failure_of(error: BaseException, files: RobotFiles) -> Failure:
+def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
     """What an error says that a run has ended with."""
-    if isinstance(error, Misbehaved):
-        return Failure(error.kind, error.place, error.function, str(error))
+    if isinstance(error, MisbehaviorError):
+        return FuzzFailure(error.kind, error.place, error.function, str(error))
     if isinstance(error, LoopWaitsError):  # which of its lines waits is chance
-        return Failure(WAITS, error.begins_at, error.function, str(error))
+        return FuzzFailure(WAITS, error.begins_at, error.function, str(error))
     code, line = _innermost(error.__traceback__, files)
     text = _ADDRESS.sub("", headline(error, files) or text_of(error))
     if isinstance(error, TestFroze):
         place, function = _place(code, files), code.co_name if code else ""
-        return Failure(HANGS, place, function, f"{place}: {function}() hangs" if place else "the robot code hangs")
+        return FuzzFailure(HANGS, place, function, f"{place}: {function}() hangs" if place else "the robot code hangs")
     place = f"{files.relative(code.co_filename)}:{line}" if code else ""
-    return Failure(type(error).__name__, place, code.co_name if code else "", text)
+    return FuzzFailure(type(error).__name__, place, code.co_name if code else "", text)
 
 
 def user_frame(frame: FrameType | None, files: RobotFiles) -> FrameType | None:

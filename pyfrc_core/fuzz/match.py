@@ -21,13 +21,13 @@ from ..runtime.scripts.player import Player
 from ..runtime.scripts.script import InputScript, ScriptError
 from ..runtime.seeds import seed_generators
 from ..runtime.watchdog import Watchdog
-from .failure import Failure, failure_of
+from .failure import FuzzFailure, failure_of
+from .fuzz_run import FuzzRun
+from .input_generator import InputGenerator
 from .inputs import Input
-from .judge import judged
 from .lines import Line, RobotLines
-from .masher import MatchMasher
-from .mashing import Mashing
-from .recipes import Recipe
+from .oracle import attach_oracle
+from .seed_schedule import SeedSchedule
 
 if TYPE_CHECKING:
     from ..runtime.own_process import LastWords
@@ -38,34 +38,34 @@ ROBOT_SEED = 0
 
 
 @dataclass(frozen=True)
-class Mash:
+class FuzzTask:
     """To be done: mash a match.
 
     :param known: the lines that are reached already
-    :param diary: a file for what is written, in case that the process ends before it can tell
+    :param journal: a file for what is written, in case that the process ends before it can tell
     """
 
-    recipe: Recipe
+    schedule: SeedSchedule
     known: frozenset[Line] = frozenset()
-    diary: Path | None = None
+    journal: Path | None = None
 
 
 @dataclass(frozen=True)
-class Follow:
+class ReplayTask:
     """To be done: run the robot as a script says.
 
-    :param judged: whether more than exceptions is a failure
+    :param use_oracle: whether more than exceptions is a failure
     """
 
     script: InputScript
-    judged: bool = True
+    use_oracle: bool = True
 
 
-Task = Mash | Follow
+Task = FuzzTask | ReplayTask
 
 
 @dataclass(frozen=True)
-class Played:
+class MatchResult:
     """What came of a match.
 
     :param failure: what went wrong, if something did
@@ -74,20 +74,20 @@ class Played:
     :param inputs: what the robot has to be mashed, by target
     """
 
-    failure: Failure | None
+    failure: FuzzFailure | None
     script: InputScript
     reached: dict[Line, int] = field(default_factory=dict)
     inputs: dict[str, Input] = field(default_factory=dict)
 
 
-def play(project: Project, task: Task, words: LastWords) -> Played:
+def play(project: Project, task: Task, words: LastWords) -> MatchResult:
     """Do one task; the process is its own, and ends with it.
 
     :param words: where to leave word when the robot's code cannot be stopped
     """
-    if isinstance(task, Follow):
-        return _follow(project, task, words)
-    return _mash(project, task, words)
+    if isinstance(task, ReplayTask):
+        return _replay(project, task, words)
+    return _fuzz(project, task, words)
 
 
 @lru_cache(maxsize=1)
@@ -111,26 +111,26 @@ def load(project: Project) -> type[Any]:
     return robot_class
 
 
-def _mash(project: Project, task: Mash, words: LastWords) -> Played:
+def _fuzz(project: Project, task: FuzzTask, words: LastWords) -> MatchResult:
     lines = robot_lines(project)
     seconds = project.settings.fuzz.match_seconds
-    chance = task.recipe.chance()
+    rng = task.schedule.rng()
     before_us = 0
     with _robot(project, words, ROBOT_SEED) as run, ExitStack() as closing:
-        masher = MatchMasher(
-            chance,
+        generator = InputGenerator(
+            rng,
             run,
             seconds=seconds,
             settings=project.settings.match,
             game_messages=project.game_specific_messages,
         )
-        mashing = Mashing(run, masher, closing.enter_context(task.diary.open("wb", 0)) if task.diary else None)
+        fuzz_run = FuzzRun(run, generator, closing.enter_context(task.journal.open("wb", 0)) if task.journal else None)
 
         def step(now: float) -> None:
             nonlocal before_us
-            task.recipe.turn(chance, before_us, run.clock.now_us)
+            task.schedule.reseed(rng, before_us, run.clock.now_us)
             before_us = run.clock.now_us
-            if not mashing.on_packet(now):
+            if not fuzz_run.on_packet(now):
                 run.clock.halted = True
 
         run.clock.before_packet.insert(0, step)
@@ -139,19 +139,21 @@ def _mash(project: Project, task: Mash, words: LastWords) -> Played:
         with lines.watched(task.known, lambda: run.clock.now_us) as reached:
             try:
                 construct(project, run, load(project))
-                mashing.write()
+                fuzz_run.write()
                 run.start()
                 run.run_until(run.clock.limit_us + 1)
             except (TestEnded, TestRanTooLong):
                 pass
             except BaseException as error:  # robot code may call exit(), too
                 failure = failure_of(error, project.files)
-        return Played(failure, mashing.script(project.main_file.name, ROBOT_SEED), dict(reached), masher.inputs)
+        return MatchResult(
+            failure, fuzz_run.script(project.main_file.name, ROBOT_SEED), dict(reached), generator.inputs
+        )
 
 
-def _follow(project: Project, task: Follow, words: LastWords) -> Played:
+def _replay(project: Project, task: ReplayTask, words: LastWords) -> MatchResult:
     script = task.script
-    with _robot(project, words, script.seed, task.judged) as run:
+    with _robot(project, words, script.seed, task.use_oracle) as run:
         failure = None
         try:
             construct(project, run, load(project))
@@ -164,11 +166,11 @@ def _follow(project: Project, task: Follow, words: LastWords) -> Played:
             failure = failure_of(error, project.files)
         end_us = run.clock.now_us + PACKET_US
         steps = tuple(step for step in script.steps if step.at_us < end_us)
-        return Played(failure, InputScript(steps, end_us, robot=script.robot, seed=script.seed))
+        return MatchResult(failure, InputScript(steps, end_us, robot=script.robot, seed=script.seed))
 
 
 @contextmanager
-def _robot(project: Project, words: LastWords, seed: int, is_judged: bool = True) -> Iterator[RobotRun]:
+def _robot(project: Project, words: LastWords, seed: int, use_oracle: bool = True) -> Iterator[RobotRun]:
     """A run, open, watched and judged. It is not ended: its process is."""
     load(project)  # before robot time begins
     run = RobotRun()
@@ -178,6 +180,6 @@ def _robot(project: Project, words: LastWords, seed: int, is_judged: bool = True
         run.open()
         words.follow(run)
         LoopLimit(run, project.files, project.settings)
-        with judged(run, project.files, settings) if is_judged else nullcontext():
+        with attach_oracle(run, project.files, settings) if use_oracle else nullcontext():
             seed_generators(seed)
             yield run

@@ -22,7 +22,7 @@ _BEFORE = {"autonomous": "disabled autonomous", "teleop": "disabled", "test": "d
 
 
 @dataclass(frozen=True)
-class Event:
+class MatchEvent:
     """Something that happens in a match.
 
     :param at_us: when; at a packet
@@ -39,39 +39,39 @@ class _Period:
 
 
 def plan_match(
-    chance: random.Random, seconds: float, settings: MatchSettings, messages: Sequence[str] = ()
-) -> list[Event]:
+    rng: random.Random, seconds: float, settings: MatchSettings, messages: Sequence[str] = ()
+) -> list[MatchEvent]:
     """All events of a match, in order.
 
     :param seconds: how long the match is; its periods are as in `settings`, or shorter
     :param messages: those that the field may send, if that is known
     """
-    planner = _Planner(chance, tuple(messages))
+    planner = _Planner(rng, tuple(messages))
     now = 0.0
     planner.before()
-    for period in _periods(chance, seconds, settings):
+    for period in _periods(rng, seconds, settings):
         planner.period(now, period)
         now += period.seconds
-    if chance.random() < 0.03:
-        planner.stop_for_good(chance.uniform(0.9, 1) * seconds)
+    if rng.random() < 0.03:
+        planner.stop_for_good(rng.uniform(0.9, 1) * seconds)
     return sorted(planner.events, key=lambda event: event.at_us)
 
 
-def _periods(chance: random.Random, seconds: float, settings: MatchSettings) -> list[_Period]:
+def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> list[_Period]:
     """Most often those of a match; else what happens to robots in the pit, and in matches that begin anew."""
     before = min(settings.before, 0.05 * seconds)
     autonomous = min(settings.autonomous, 0.3 * seconds)
     pause = min(settings.pause, 0.05 * seconds)
     teleop = seconds - before - autonomous - pause
-    ready = _Period("disabled autonomous" if chance.random() < 0.7 else "disabled", before)
+    ready = _Period("disabled autonomous" if rng.random() < 0.7 else "disabled", before)
     periods = [ready, _Period("autonomous", autonomous), _Period("disabled", pause)]
-    how = chance.random()
+    how = rng.random()
     if how < 0.08:  # no autonomous
         periods = [_Period("disabled", before)]
     elif how < 0.14:  # the pit crew tries test mode
         periods = [_Period("disabled test", before), _Period("test", 0.1 * teleop), *periods]
     elif how < 0.24:  # the first autonomous is broken off
-        periods = [ready, _Period("autonomous", chance.uniform(0.1, 0.9) * autonomous), *periods]
+        periods = [ready, _Period("autonomous", rng.uniform(0.1, 0.9) * autonomous), *periods]
     elif how < 0.29:  # the drivers practise before
         periods = [_Period("disabled", before), _Period("teleop", 0.3 * teleop), *periods]
     elif how < 0.4:  # no pause
@@ -80,15 +80,15 @@ def _periods(chance: random.Random, seconds: float, settings: MatchSettings) -> 
 
 
 class _Planner:
-    def __init__(self, chance: random.Random, messages: tuple[str, ...]) -> None:
-        self.events: list[Event] = []
-        self._chance = chance
+    def __init__(self, rng: random.Random, messages: tuple[str, ...]) -> None:
+        self.events: list[MatchEvent] = []
+        self._rng = rng
         self._messages = messages
         #: When the field sends the game's message: at once, with autonomous, in teleoperated (2020), or never.
-        self._message_with = chance.choice(("at once", "autonomous", "autonomous", "autonomous", "teleop", "never"))
+        self._message_with = rng.choice(("at once", "autonomous", "autonomous", "autonomous", "teleop", "never"))
 
     def add(self, at: float, writes: dict[str, Any]) -> None:
-        self.events.append(Event(round(at * 1_000_000 / PACKET_US) * PACKET_US, writes))
+        self.events.append(MatchEvent(round(at * 1_000_000 / PACKET_US) * PACKET_US, writes))
 
     def stop_for_good(self, at: float) -> None:
         """An emergency stop: the driver station enables the robot no more."""
@@ -100,27 +100,27 @@ class _Planner:
 
     def before(self) -> None:
         """What holds when the robot starts."""
-        chance = self._chance
+        rng = self._rng
         now: dict[str, Any] = {}
-        station = chance.choice(_STATIONS)
-        if chance.random() < 0.1:  # the robot is ready before its driver station
+        station = rng.choice(_STATIONS)
+        if rng.random() < 0.1:  # the robot is ready before its driver station
             now |= {"control.dsAttached": False, "alliance_station": "unknown"}
-            self.add(chance.uniform(0.1, 0.5), {"control.dsAttached": True, "alliance_station": station})
+            self.add(rng.uniform(0.1, 0.5), {"control.dsAttached": True, "alliance_station": station})
         else:
             now["alliance_station"] = station
-        if chance.random() < 0.5:
-            now |= {"control.fmsAttached": True, "event.match_type": chance.choice(("qualification", "elimination"))}
-            now["event.match_number"] = chance.randint(1, 90)
+        if rng.random() < 0.5:
+            now |= {"control.fmsAttached": True, "event.match_type": rng.choice(("qualification", "elimination"))}
+            now["event.match_number"] = rng.randint(1, 90)
         if self._message_with == "at once":
             now["event.game_specific_message"] = self._message()
         self.add(0, now)
 
     def period(self, start: float, period: _Period) -> None:
         """One period, and what goes wrong in it."""
-        chance, enabled = self._chance, period.mode in _BEFORE
+        rng, enabled = self._rng, period.mode in _BEFORE
         now: dict[str, Any] = {MODE: period.mode, MATCH_TIME: round(period.seconds, 3) if enabled else 0.0}
         if period.mode == self._message_with:
-            late = 0.0 if chance.random() < 0.7 else chance.uniform(0, period.seconds)
+            late = 0.0 if rng.random() < 0.7 else rng.uniform(0, period.seconds)
             if late:
                 self.add(start + late, {"event.game_specific_message": self._message()})
             else:
@@ -128,17 +128,17 @@ class _Planner:
         self.add(start, now)
         if enabled and period.seconds > 1:
             # Never two at a time: each in its own part of the period.
-            parts = chance.choice((0, 1, 1, 2, 2, 3, 4))
+            parts = rng.choice((0, 1, 1, 2, 2, 3, 4))
             for part in range(parts):
                 length = period.seconds / parts
                 self._mishap(start + part * length, length, period.mode)
 
     def _mishap(self, start: float, length: float, mode: str) -> None:
         """Something awkward between `start` and `length` seconds later, over before those are."""
-        chance = self._chance
-        lasts = min(chance.choice((0.02, 0.04, 0.1, 0.5, 1.0, 2.0)), 0.4 * length)
-        begin = start + chance.uniform(0.1, 0.5) * length
-        sort = chance.random()
+        rng = self._rng
+        lasts = min(rng.choice((0.02, 0.04, 0.1, 0.5, 1.0, 2.0)), 0.4 * length)
+        begin = start + rng.uniform(0.1, 0.5) * length
+        sort = rng.random()
         if sort < 0.45:
             self.add(begin, {MODE: _BEFORE[mode]})
             self.add(begin + lasts, {MODE: mode})
@@ -146,26 +146,26 @@ class _Planner:
             self.add(begin, {"control.dsAttached": False})
             self.add(begin + lasts, {"control.dsAttached": True})
         else:
-            (port,) = chance.choices(range(JOYSTICKS), _UNPLUGGED)
+            (port,) = rng.choices(range(JOYSTICKS), _UNPLUGGED)
             self.add(begin, {plugged(port): False})
             self.add(begin + max(lasts, 0.1), {plugged(port): True})
 
     def _message(self) -> str:
-        chance = self._chance
-        known = chance.choice(self._messages) if self._messages else _sides(chance)
-        sort = chance.random()
+        rng = self._rng
+        known = rng.choice(self._messages) if self._messages else _sides(rng)
+        sort = rng.random()
         if sort < 0.8:
             return known
         if sort < 0.9:
             return ""
-        return "".join(chance.choice("LRXBGY?") for _ in known)
+        return "".join(rng.choice("LRXBGY?") for _ in known)
 
 
-def _sides(chance: random.Random) -> str:
+def _sides(rng: random.Random) -> str:
     """As in 2018 a letter for each of three plates, as in 2020 a colour, as in 2024 and 2026 an alliance."""
-    if chance.random() < 0.6:
-        return "".join(chance.choice("LR") for _ in range(3))
-    return chance.choice("RGBY")
+    if rng.random() < 0.6:
+        return "".join(rng.choice("LR") for _ in range(3))
+    return rng.choice("RGBY")
 
 
 def seconds_of(settings: MatchSettings) -> float:

@@ -19,10 +19,10 @@ from typing import Any
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.script import InputScript, Step
 from ..runtime.scripts.targets import MODE
-from .failure import HANGS, PROCESS_ENDED, Failure
+from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .inputs import Input
-from .match import Follow
-from .robots import Robots
+from .match import ReplayTask
+from .match_executor import MatchExecutor
 from .values import simpler
 
 #: How many robots are run at most.
@@ -49,27 +49,27 @@ class Shrinker:
     :param script: one that has failed
     :param inputs: what sort of values its targets have, as far as that is known
     :param most_runs: how many robots to run
-    :param judged: whether more than exceptions is a failure
+    :param use_oracle: whether more than exceptions is a failure
     :param tell: called with how many that were, as it goes
     """
 
     def __init__(
         self,
-        robots: Robots,
+        executor: MatchExecutor,
         script: InputScript,
-        failure: Failure,
+        failure: FuzzFailure,
         inputs: Mapping[str, Input],
         most_runs: int = MOST_RUNS,
-        judged: bool = True,
+        use_oracle: bool = True,
         tell: Callable[[int], None] = lambda runs: None,
     ) -> None:
         self.failure = failure
         self.runs = 0
         #: Whether what is the shortest so far has failed when it was played.
         self.repeats = False
-        self._judged = judged
+        self._use_oracle = use_oracle
         self._tell = tell
-        self._robots = robots
+        self._executor = executor
         self._inputs = inputs
         self._most_runs = min(most_runs, _MOST_HANGING_RUNS) if failure.kind == HANGS else most_runs
         self._header = replace(script, steps=())
@@ -101,7 +101,7 @@ class Shrinker:
 
     def play_again(self) -> bool:
         """Whether the shortest fails as it should, once more."""
-        (played,) = self._robots.play([self._follow(self._writes, self._end_us)])
+        (played,) = self._executor.play([self._follow(self._writes, self._end_us)])
         return self.failure.same_as(played.failure)
 
     # -- trying ----------------------------------------------------------------------------------------------------
@@ -118,7 +118,7 @@ class Shrinker:
                 self._tried.add(writes)
                 new.append((index, writes))
         tasks = (self._follow(writes, self._end_us) for _, writes in new)
-        with closing(self._robots.play(tasks)) as results:
+        with closing(self._executor.play(tasks)) as results:
             for (index, writes), played in zip(new, results, strict=True):
                 self.runs += 1
                 self._tell(self.runs)
@@ -132,8 +132,8 @@ class Shrinker:
                     return index
         return None
 
-    def _follow(self, writes: Sequence[_Write], end_us: int) -> Follow:
-        return Follow(self._script(writes, end_us), self._judged)
+    def _follow(self, writes: Sequence[_Write], end_us: int) -> ReplayTask:
+        return ReplayTask(self._script(writes, end_us), self._use_oracle)
 
     def _script(self, writes: Sequence[_Write], end_us: int) -> InputScript:
         steps = tuple(
@@ -204,7 +204,7 @@ class Shrinker:
             if end_us >= self._end_us or self.runs >= self._most_runs:
                 return
             self.runs += 1
-            (played,) = self._robots.play([self._follow(self._writes, end_us)])
+            (played,) = self._executor.play([self._follow(self._writes, end_us)])
             if self.failure.same_as(played.failure):
                 self._end_us = end_us
                 return

@@ -13,9 +13,9 @@ from ..runtime.forks import FORK_IS_SAFE
 from ..runtime.own_process import LastWords
 from ..runtime.scripts.script import InputScript
 from .describe import story_of
-from .failure import Failure
+from .failure import FuzzFailure
 from .inputs import Input
-from .robots import robots_of
+from .match_executor import open_match_executor
 from .shrink import Shrinker
 
 
@@ -34,7 +34,7 @@ class Shrunk:
 
 
 def shrunk_apart(
-    project: Project, script: InputScript, failure: Failure, inputs: Mapping[str, Input], most_runs: int
+    project: Project, script: InputScript, failure: FuzzFailure, inputs: Mapping[str, Input], most_runs: int
 ) -> Shrunk:
     """Make a script short, which has made a robot raise something in this process.
 
@@ -53,13 +53,13 @@ def _shrink(
     project: Project,
     words: LastWords,
     script: InputScript,
-    failure: Failure,
+    failure: FuzzFailure,
     inputs: dict[str, Input],
     most_runs: int,
 ) -> Shrunk:
     # One at a time: other tests are run beside this one.
-    with robots_of(project, jobs=1) as robots:
-        shrinker = Shrinker(robots, script, failure, inputs, most_runs, judged=False)
+    with open_match_executor(project, jobs=1) as executor:
+        shrinker = Shrinker(executor, script, failure, inputs, most_runs, use_oracle=False)
         shrinker.shrink()
         if not shrinker.repeats or not shrinker.play_again():
             return Shrunk(None, why_not="the robot did not fail in the same way again")

@@ -86,7 +86,7 @@ _FACTORS = (0.5, 1.0, 2.0)
 _DIGITS = 3
 
 
-def draw(kind: Kind, chance: random.Random, options: tuple[Any, ...] = (), now: Any = 0) -> Any:
+def draw(kind: Kind, rng: random.Random, options: tuple[Any, ...] = (), now: Any = 0) -> Any:
     """A value that this kind of input may have.
 
     :param options: of kinds that have a few values only, those
@@ -94,33 +94,33 @@ def draw(kind: Kind, chance: random.Random, options: tuple[Any, ...] = (), now: 
     """
     span = SPANS.get(kind)
     if kind == "axis":
-        return _axis(chance)
+        return _axis(rng)
     if kind == "pov":
-        return chance.choice(POV_ANGLES)
+        return rng.choice(POV_ANGLES)
     if kind in ("option", "choice"):
-        return chance.choice(options)
+        return rng.choice(options)
     if kind == "command":
         return True
     if kind == "number":
-        return now * chance.choice(_FACTORS)
+        return now * rng.choice(_FACTORS)
     if span is None:
-        return chance.random() < 0.5
-    if span.typical and chance.random() < 0.5:
-        return chance.choice(span.typical)
-    value = chance.uniform(span.low, span.high)
+        return rng.random() < 0.5
+    if span.typical and rng.random() < 0.5:
+        return rng.choice(span.typical)
+    value = rng.uniform(span.low, span.high)
     return round(value) if span.whole else round(value, _DIGITS)
 
 
-def _axis(chance: random.Random) -> float:
+def _axis(rng: random.Random) -> float:
     """Most often a stick that is pushed is pushed to its end, or nearly there."""
-    sort = chance.random()
+    sort = rng.random()
     if sort < 0.4:
-        return chance.choice((-1.0, 1.0))
+        return rng.choice((-1.0, 1.0))
     if sort < 0.55:
-        return round(chance.choice((-1, 1)) * chance.uniform(0.9, 1), _DIGITS)
+        return round(rng.choice((-1, 1)) * rng.uniform(0.9, 1), _DIGITS)
     if sort < 0.7:
-        return chance.choice(SPANS["axis"].typical)
-    return round(chance.uniform(-1, 1), _DIGITS)
+        return rng.choice(SPANS["axis"].typical)
+    return round(rng.uniform(-1, 1), _DIGITS)
 
 
 def nearest(kind: Kind, value: float) -> float:

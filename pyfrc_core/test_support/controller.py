@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..config.settings import MatchSettings
 from ..hal import modes
-from ..replay import judged_if_kept
+from ..replay import oracle_if_fuzzed
 from ..runtime.clock import to_us
 from ..runtime.endings import TestEnded
 from ..runtime.scripts.player import Player
@@ -159,7 +159,7 @@ class TestController:
             seed_generators(script.seed)
         with ExitStack() as closing:
             if self.project is not None:
-                closing.enter_context(judged_if_kept(self._run, self.project, script))
+                closing.enter_context(oracle_if_fuzzed(self._run, self.project, script))
             closing.callback(self._run.end)
             Player(script, self._run).play()
 

@@ -11,8 +11,8 @@ import random
 from pathlib import Path
 from typing import Any
 
-from ..fuzz.masher import MatchMasher
-from ..fuzz.mashing import Mashing
+from ..fuzz.fuzz_run import FuzzRun
+from ..fuzz.input_generator import InputGenerator
 from ..fuzz.match_plan import seconds_of
 from ..hal import HalData, modes
 from ..project import Project, find_project
@@ -33,29 +33,29 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
     """Runs through a whole game randomly setting components."""
     __tracebackhide__ = True
     clock, project, seed = fake_time.run.clock, control.project or find_project(), control.seed
-    masher = MatchMasher(
+    generator = InputGenerator(
         random.Random(f"fuzz {seed}"),  # not the generator that the robot's own code draws from
         fake_time.run,
         seconds=seconds_of(project.settings.match),
         settings=project.settings.match,
         game_messages=project.game_specific_messages,
     )
-    mashing = Mashing(fake_time.run, masher)
-    mashing.write()
+    fuzz_run = FuzzRun(fake_time.run, generator)
+    fuzz_run.write()
     try:
-        control.run_test(mashing.on_packet)
+        control.run_test(fuzz_run.on_packet)
     except Exception as error:
         print(f"The robot failed at {clock.now:.2f} s of a match with everything mashed, in {modes.mode_name()} mode.")
-        _keep(project, mashing.script(project.main_file.name, seed), masher, error)
+        _keep(project, fuzz_run.script(project.main_file.name, seed), generator, error)
         raise
 
 
-def _keep(project: Project, script: InputScript, masher: MatchMasher, error: Exception) -> None:
+def _keep(project: Project, script: InputScript, generator: InputGenerator, error: Exception) -> None:
     """Write it where a next run with the same seed finds it, out of version control; as short as it can be made."""
     from ..fuzz.failure import failure_of
     from ..fuzz.shrink_apart import shrunk_apart
 
-    shrunk = shrunk_apart(project, script, failure_of(error, project.files), masher.inputs, _MOST_RUNS)
+    shrunk = shrunk_apart(project, script, failure_of(error, project.files), generator.inputs, _MOST_RUNS)
     file = project.root / _KEPT / f"seed-{script.seed}.jsonl"
     (shrunk.script or script).save(file)
     ignored = project.root / _KEPT.parts[0] / ".gitignore"

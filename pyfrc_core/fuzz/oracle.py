@@ -12,9 +12,9 @@ from ..hal import modes
 from ..robot_files import RobotFiles
 from ..runtime.robot import RobotRun
 from ..runtime.timed_loop import Periodic
-from .commands import heard
-from .failure import Misbehaved, place_of, user_frame
+from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
+from .motor_calls import intercept_motor_calls
 
 #: So long after it was disabled, a robot may still tell its motors to move: its loop has to come round.
 _STOPS_WITHIN_US = 500_000
@@ -27,20 +27,20 @@ _NOTHING = 0.02
 
 
 @contextmanager
-def judged(run: RobotRun, files: RobotFiles, settings: FuzzSettings) -> Iterator[None]:
+def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings) -> Iterator[None]:
     """Watch a run, which is open and has not started, while this lasts."""
     with ExitStack() as closing:
-        judge = _Judge(run, files, settings, closing.enter_context(hal_reports()) if settings.hal_errors else None)
+        oracle = _Oracle(run, files, settings, closing.enter_context(hal_reports()) if settings.hal_errors else None)
         if settings.not_a_number or settings.out_of_range or settings.motors_while_disabled:
-            closing.enter_context(heard(judge.hear))
+            closing.enter_context(intercept_motor_calls(oracle.on_motor_call))
         if settings.slow_loops:
-            run.timed_loop.after_call = judge.after_call
-        run.clock.before_packet.append(judge.before_packet)
-        run.observe(judge.look)
+            run.timed_loop.after_call = oracle.after_call
+        run.clock.before_packet.append(oracle.before_packet)
+        run.observe(oracle.look)
         yield
 
 
-class _Judge:
+class _Oracle:
     def __init__(self, run: RobotRun, files: RobotFiles, settings: FuzzSettings, reports: HalReports | None) -> None:
         self._run = run
         self._files = files
@@ -57,11 +57,11 @@ class _Judge:
         threads = self._run.threads
         if threads.failure is None and not threads.ending:
             where = f"\n  (Switch this off with {kind} = false under [tool.pyfrc.fuzz] in pyproject.toml.)"
-            threads.fail(Misbehaved(what + where, kind, *place))
+            threads.fail(MisbehaviorError(what + where, kind, *place))
 
     # -- motors ------------------------------------------------------------------------------------------------
 
-    def hear(self, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
+    def on_motor_call(self, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
         """Robot code calls a motor, or a drive."""
         settings = self._settings
         for number in numbers:

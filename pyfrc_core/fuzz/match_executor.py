@@ -25,11 +25,11 @@ from ..runtime.clock import to_us
 from ..runtime.forks import FORK_IS_SAFE, reasons_not_to_fork, wait_for_any
 from ..runtime.own_process import LastWords
 from ..runtime.scripts.script import InputScript
-from .failure import HANGS, PROCESS_ENDED, Failure
+from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .forked_work import ForkedWork
+from .fuzz_run import read_journal
 from .lines import Line
-from .mashing import steps_in
-from .match import ROBOT_SEED, Follow, Mash, Played, Task, play, robot_lines
+from .match import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task, play, robot_lines
 
 Answer = TypeVar("Answer")
 
@@ -39,7 +39,7 @@ _LOOK_SECONDS = 0.1
 _MEANWHILE = "in the middle of the match"
 
 
-class Robots(ABC):
+class MatchExecutor(ABC):
     """Plays matches of one project.
 
     :param jobs: how many at a time
@@ -53,7 +53,7 @@ class Robots(ABC):
         #: handler would be lost if it came while a process is being forked.)
         self.interrupted = False
         self._directory = directory
-        self._diaries = 0
+        self._journals = 0
 
     @property
     @abstractmethod
@@ -61,12 +61,12 @@ class Robots(ABC):
         """The lines of the robot's functions."""
 
     @abstractmethod
-    def play(self, tasks: Iterable[Task]) -> Generator[Played, None, None]:
+    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
         """What came of each, in their order, as soon as it is known; those that nobody asks for any more are ended."""
 
-    def follow(self, script: InputScript) -> Played:
+    def replay(self, script: InputScript) -> MatchResult:
         """Run the robot as a script says."""
-        (played,) = self.play([Follow(script)])
+        (played,) = self.play([ReplayTask(script)])
         return played
 
     @contextmanager
@@ -88,60 +88,60 @@ class Robots(ABC):
             raise KeyboardInterrupt
 
     @contextmanager
-    def _diary(self, task: Task) -> Iterator[None]:
+    def _journal(self, task: Task) -> Iterator[None]:
         """While this lasts, what it notes may be read."""
         try:
             yield
         finally:
-            if isinstance(task, Mash) and task.diary is not None:
-                task.diary.unlink(missing_ok=True)
+            if isinstance(task, FuzzTask) and task.journal is not None:
+                task.journal.unlink(missing_ok=True)
 
-    def _with_diary(self, task: Task) -> Task:
-        if isinstance(task, Follow):
+    def _with_journal(self, task: Task) -> Task:
+        if isinstance(task, ReplayTask):
             return task
-        self._diaries += 1
-        return replace(task, diary=self._directory / str(self._diaries))
+        self._journals += 1
+        return replace(task, journal=self._directory / str(self._journals))
 
-    def _died(self, task: Task, text: str) -> Played:
+    def _died(self, task: Task, text: str) -> MatchResult:
         """A process has ended without an answer; what is known of that."""
         headline = text.partition("\n")[0]
         place, _, what = headline.partition(": ")
         if not what:
             place = ""
-        failure = Failure(HANGS if " hangs here" in headline else PROCESS_ENDED, place, "", headline)
-        if isinstance(task, Follow):
-            return Played(failure, task.script)
-        steps = tuple(steps_in(task.diary)) if task.diary is not None else ()
+        failure = FuzzFailure(HANGS if " hangs here" in headline else PROCESS_ENDED, place, "", headline)
+        if isinstance(task, ReplayTask):
+            return MatchResult(failure, task.script)
+        steps = tuple(read_journal(task.journal)) if task.journal is not None else ()
         end_us = to_us(self.project.settings.fuzz.match_seconds)
-        return Played(failure, InputScript(steps, end_us, robot=self.project.main_file.name, seed=ROBOT_SEED))
+        return MatchResult(failure, InputScript(steps, end_us, robot=self.project.main_file.name, seed=ROBOT_SEED))
 
 
 @contextmanager
-def robots_of(project: Project, jobs: int) -> Iterator[Robots]:
+def open_match_executor(project: Project, jobs: int) -> Iterator[MatchExecutor]:
     """Where this project's matches are played.
 
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary:
         if project.settings.test.isolation == "spawn" or not FORK_IS_SAFE:
-            yield SpawnedRobots(project, jobs, Path(temporary))
+            yield SpawnedMatchExecutor(project, jobs, Path(temporary))
             return
-        with closing(ForkedRobots(project, jobs, Path(temporary))) as robots:
-            yield robots
+        with closing(ForkedMatchExecutor(project, jobs, Path(temporary))) as executor:
+            yield executor
 
 
-class SpawnedRobots(Robots):
+class SpawnedMatchExecutor(MatchExecutor):
     """Each match in a new interpreter."""
 
     @property
     def lines(self) -> frozenset[Line]:
         return run_apart(_all_lines, self.project, "while it was imported")
 
-    def play(self, tasks: Iterable[Task]) -> Generator[Played, None, None]:
+    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
         with ThreadPoolExecutor(self.jobs) as pool:
-            waiting: deque[tuple[Task, Future[Played]]] = deque()
+            waiting: deque[tuple[Task, Future[MatchResult]]] = deque()
             try:
-                for task in map(self._with_diary, tasks):
+                for task in map(self._with_journal, tasks):
                     waiting.append((task, pool.submit(run_apart, partial(_play, task=task), self.project, _MEANWHILE)))
                     if len(waiting) >= self.jobs:
                         yield self._result(*waiting.popleft())
@@ -151,8 +151,8 @@ class SpawnedRobots(Robots):
                 for _, future in waiting:
                     future.cancel()
 
-    def _result(self, task: Task, future: Future[Played]) -> Played:
-        with self._diary(task):
+    def _result(self, task: Task, future: Future[MatchResult]) -> MatchResult:
+        with self._journal(task):
             while not future.done():
                 wait([future], _LOOK_SECONDS)
                 self._see_whether_interrupted()
@@ -163,7 +163,7 @@ class SpawnedRobots(Robots):
                 return self._died(task, str(ended))
 
 
-def _play(project: Project, words: LastWords, task: Task) -> Played:
+def _play(project: Project, words: LastWords, task: Task) -> MatchResult:
     return play(project, task, words)
 
 
@@ -171,12 +171,12 @@ def _all_lines(project: Project, words: LastWords) -> frozenset[Line]:
     return robot_lines(project).all()
 
 
-class ForkedRobots(Robots):
+class ForkedMatchExecutor(MatchExecutor):
     """Each match in a fork of this process, which has imported the robot, unless that would leave threads behind."""
 
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
-        self._running: list[ForkedWork[Played]] = []
+        self._running: list[ForkedWork[MatchResult]] = []
 
         def survey() -> tuple[bool, frozenset[Line]]:
             lines = robot_lines(project).all()
@@ -192,9 +192,9 @@ class ForkedRobots(Robots):
     def lines(self) -> frozenset[Line]:
         return self._lines
 
-    def play(self, tasks: Iterable[Task]) -> Generator[Played, None, None]:
-        waiting: deque[tuple[Task, ForkedWork[Played]]] = deque()
-        left = map(self._with_diary, tasks)
+    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
+        waiting: deque[tuple[Task, ForkedWork[MatchResult]]] = deque()
+        left = map(self._with_journal, tasks)
         try:
             more = True
             while more or waiting:
@@ -223,14 +223,14 @@ class ForkedRobots(Robots):
         for work in self._running:
             work.close()
 
-    def _begin(self, task: Task) -> ForkedWork[Played]:
+    def _begin(self, task: Task) -> ForkedWork[MatchResult]:
         work = ForkedWork(lambda words: play(self.project, task, words))
         self._running.append(work)
         return work
 
-    def _result(self, task: Task, work: ForkedWork[Played]) -> Played:
+    def _result(self, task: Task, work: ForkedWork[MatchResult]) -> MatchResult:
         self._running.remove(work)
-        with self._diary(task), closing(work):
+        with self._journal(task), closing(work):
             try:
                 return work.answer(self.project, _MEANWHILE)
             except RobotCodeError as ended:

@@ -40,11 +40,11 @@ def find_dashboard() -> Iterator[Input]:
             yield Input(NETWORK + name, "number", name)
 
 
-class Dashboard:
+class DashboardGenerator:
     """One match's people at the dashboard."""
 
-    def __init__(self, chance: random.Random) -> None:
-        self._chance = chance
+    def __init__(self, rng: random.Random) -> None:
+        self._rng = rng
         self.next_us = 0
         self._inputs: list[Input] = []
         self._numbers: dict[str, float] = {}
@@ -60,14 +60,14 @@ class Dashboard:
 
     def write(self, now_us: int, found: dict[str, Any]) -> None:
         """Add what is to be written now: a choice for each new chooser, and now and then something."""
-        chance = self._chance
+        rng = self._rng
         for each in self._inputs:
             if each.kind == "choice" and each.target not in self._chosen:
                 self._chosen.add(each.target)
                 self._choose(each, found)
         if self._inputs and self.next_us:
-            self._choose(chance.choice(self._inputs), found)
-        self.next_us = now_us + PACKET_US + round(chance.expovariate(1 / _PAUSE) * 50) * PACKET_US
+            self._choose(rng.choice(self._inputs), found)
+        self.next_us = now_us + PACKET_US + round(rng.expovariate(1 / _PAUSE) * 50) * PACKET_US
 
     def _choose(self, each: Input, found: dict[str, Any]) -> None:
-        found[each.target] = draw(each.kind, self._chance, each.options, self._numbers.get(each.target))
+        found[each.target] = draw(each.kind, self._rng, each.options, self._numbers.get(each.target))

@@ -9,7 +9,7 @@ import click
 
 
 @dataclass
-class Loudness:
+class Verbosity:
     """What the user has said about it.
 
     :param verbose: the traceback of an error is told, too
@@ -20,14 +20,14 @@ class Loudness:
     quiet: bool = False
 
 
-def loudness() -> Loudness:
+def verbosity() -> Verbosity:
     """That of the command which is running."""
     return _of(click.get_current_context())
 
 
 def hint(text: str, **style: Any) -> None:
     """Print what somebody who wants it quiet does not want to know: progress, what to do next, praise."""
-    if not loudness().quiet:
+    if not verbosity().quiet:
         click.secho(text, **style)
 
 
@@ -37,8 +37,8 @@ def add_options(command: click.Command) -> None:
         command.params += [VERBOSE, QUIET]
 
 
-def _of(context: click.Context) -> Loudness:
-    found: Loudness = context.ensure_object(Loudness)
+def _of(context: click.Context) -> Verbosity:
+    found: Verbosity = context.ensure_object(Verbosity)
     return found
 
 

@@ -11,7 +11,7 @@ import wpilib.drive
 import wpilib.interfaces
 
 #: Called with the name of what was called, its numbers, and whether they are a motor's power from -1 to 1.
-Hear = Callable[[str, tuple[float, ...], bool], None]
+OnMotorCall = Callable[[str, tuple[float, ...], bool], None]
 
 _DRIVES = (
     (wpilib.drive.DifferentialDrive, ("arcadeDrive", "curvatureDrive", "tankDrive")),
@@ -20,10 +20,10 @@ _DRIVES = (
 
 
 @contextmanager
-def heard(hear: Hear) -> Iterator[None]:
-    """While this lasts, `hear` is told of every call; the robot's modules are imported by then."""
+def intercept_motor_calls(on_motor_call: OnMotorCall) -> Iterator[None]:
+    """While this lasts, `on_motor_call` is told of every call; the robot's modules are imported by then."""
     before = []
-    for owner, name, wrapped in list(_wrapped(hear)):
+    for owner, name, wrapped in list(_wrapped(on_motor_call)):
         before.append((owner, name, vars(owner)[name]))
         setattr(owner, name, wrapped)
     try:
@@ -33,14 +33,14 @@ def heard(hear: Hear) -> Iterator[None]:
             setattr(owner, name, original)
 
 
-def _wrapped(hear: Hear) -> Iterator[tuple[type, str, Callable[..., Any]]]:
+def _wrapped(on_motor_call: OnMotorCall) -> Iterator[tuple[type, str, Callable[..., Any]]]:
     for owner in _with_derived(wpilib.interfaces.MotorController):
         for name, wrap in (("set", _set), ("setVoltage", _set_voltage)):
             if name in vars(owner):
-                yield owner, name, wrap(vars(owner)[name], hear)
+                yield owner, name, wrap(vars(owner)[name], on_motor_call)
     for drive, names in _DRIVES:
         for name in names:
-            yield drive, name, _drive(vars(drive)[name], name, hear)
+            yield drive, name, _drive(vars(drive)[name], name, on_motor_call)
 
 
 def _with_derived(base: type[Any]) -> Iterator[type[Any]]:
@@ -54,25 +54,25 @@ def _with_derived(base: type[Any]) -> Iterator[type[Any]]:
 # one of `super()`, as it is where a robot's own class overrides the method.
 
 
-def _set(real: Callable[..., Any], hear: Hear) -> Callable[..., Any]:
+def _set(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callable[..., Any]:
     def set(self: Any, *args: Any, **kwargs: Any) -> Any:
-        hear("set", _numbers(args, kwargs), True)
+        on_motor_call("set", _numbers(args, kwargs), True)
         return real(self, *args, **kwargs)
 
     return set
 
 
-def _set_voltage(real: Callable[..., Any], hear: Hear) -> Callable[..., Any]:
+def _set_voltage(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callable[..., Any]:
     def setVoltage(self: Any, *args: Any, **kwargs: Any) -> Any:
-        hear("setVoltage", _numbers(args, kwargs), False)
+        on_motor_call("setVoltage", _numbers(args, kwargs), False)
         return real(self, *args, **kwargs)
 
     return setVoltage
 
 
-def _drive(real: Callable[..., Any], name: str, hear: Hear) -> Callable[..., Any]:
+def _drive(real: Callable[..., Any], name: str, on_motor_call: OnMotorCall) -> Callable[..., Any]:
     def drive(self: Any, *args: Any, **kwargs: Any) -> Any:
-        hear(name, _numbers(args, kwargs), False)
+        on_motor_call(name, _numbers(args, kwargs), False)
         return real(self, *args, **kwargs)
 
     return drive

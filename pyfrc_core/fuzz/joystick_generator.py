@@ -31,11 +31,11 @@ _AXES = (0, 0, 1, 1, 1, 2, 2, 2, 4)
 _RELEASED: dict[Kind, Any] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": NOT_PRESSED}
 
 
-class Sticks:
+class JoystickGenerator:
     """One match's hands."""
 
-    def __init__(self, chance: random.Random) -> None:
-        self._chance = chance
+    def __init__(self, rng: random.Random) -> None:
+        self._rng = rng
         self.next_us = 0
         #: Ports without a joystick: writing to them would plug one in.
         self.unplugged: set[int] = set()
@@ -89,24 +89,24 @@ class Sticks:
             self._set(control, round(start + (end - start) * done, 3), found)
         if self._trembling is not None:
             held = self._held.get(self._trembling, 0.0)
-            found[self._trembling.target] = round(min(1.0, max(-1.0, held + self._chance.uniform(-0.02, 0.02))), 3)
+            found[self._trembling.target] = round(min(1.0, max(-1.0, held + self._rng.uniform(-0.02, 0.02))), 3)
         step = [now_us + _STEP_US] if self._moving or self._trembling is not None else []
         self.next_us = min([self._pose_until_us, *step, *(at for at, _, _ in self._taps)])
 
     def _pose(self, now_us: int, found: dict[str, Any]) -> None:
-        chance = self._chance
+        rng = self._rng
         self._finish(found)
-        for control in [control for control in self._held if chance.random() < 0.75]:
+        for control in [control for control in self._held if rng.random() < 0.75]:
             self._set(control, _RELEASED[control.kind], found)
         there = [port for port in range(JOYSTICKS) if port not in self.unplugged and any(self._ports[port])]
         # Evenly over the orders of magnitude from two packets to two seconds.
-        lasts_us = max(PACKET_US, round(math.exp(chance.uniform(math.log(0.04), math.log(2))) * 50) * PACKET_US)
+        lasts_us = max(PACKET_US, round(math.exp(rng.uniform(math.log(0.04), math.log(2))) * 50) * PACKET_US)
         self._pose_until_us = now_us + lasts_us
-        if not there or chance.random() < 0.1:  # hands off
+        if not there or rng.random() < 0.1:  # hands off
             for control in list(self._held):
                 self._set(control, _RELEASED[control.kind], found)
             return
-        ports = chance.choices(there, [self._weights[port] for port in there], k=chance.choice((1, 1, 1, 2)))
+        ports = rng.choices(there, [self._weights[port] for port in there], k=rng.choice((1, 1, 1, 2)))
         for port in dict.fromkeys(ports):
             self._press(*self._ports[port], now_us, found)
 
@@ -124,27 +124,27 @@ class Sticks:
     def _press(
         self, buttons: list[Input], axes: list[Input], povs: list[Input], now_us: int, found: dict[str, Any]
     ) -> None:
-        chance = self._chance
-        for button in _some(chance, buttons, chance.choice(_BUTTONS)):
+        rng = self._rng
+        for button in _some(rng, buttons, rng.choice(_BUTTONS)):
             self._set(button, True, found)
-        for axis in _some(chance, axes, chance.choice(_AXES)):
-            value = draw(axis.kind, chance)
-            how = chance.random()
+        for axis in _some(rng, axes, rng.choice(_AXES)):
+            value = draw(axis.kind, rng)
+            how = rng.random()
             if how < 0.2:
                 self._moving[axis] = (now_us, self._held.get(axis, 0.0), value)
             else:
                 self._set(axis, value, found)
                 if how < 0.25 and axis.kind == "axis":
                     self._trembling = axis
-        if povs and chance.random() < 0.35:
-            self._set(chance.choice(povs), draw("pov", chance), found)
-        for button in _some(chance, buttons, chance.choice((0, 0, 1, 2))):
+        if povs and rng.random() < 0.35:
+            self._set(rng.choice(povs), draw("pov", rng), found)
+        for button in _some(rng, buttons, rng.choice((0, 0, 1, 2))):
             if button not in self._held:
-                pressed_us = now_us + chance.randint(0, 10) * PACKET_US
+                pressed_us = now_us + rng.randint(0, 10) * PACKET_US
                 if pressed_us + PACKET_US <= self._pose_until_us:
                     self._taps += [
                         (pressed_us, button, True),
-                        (pressed_us + chance.randint(1, 3) * PACKET_US, button, False),
+                        (pressed_us + rng.randint(1, 3) * PACKET_US, button, False),
                     ]
         self._taps.sort()
 
@@ -159,13 +159,13 @@ class Sticks:
             self._held[control] = value
 
 
-def _some(chance: random.Random, controls: Sequence[Input], count: int) -> list[Input]:
+def _some(rng: random.Random, controls: Sequence[Input], count: int) -> list[Input]:
     """So many different ones, those with low numbers more often: what gamepads have, and what robots ask for."""
     left, found = list(controls), []
     for _ in range(min(count, len(left))):
         # The first ten (axes: six) are on every gamepad.
         common = 10 if left[0].kind == "button" else 6
         weights = [8 if index < common else 1 for index in range(len(left))]
-        (chosen,) = chance.choices(range(len(left)), weights)
+        (chosen,) = rng.choices(range(len(left)), weights)
         found.append(left.pop(chosen))
     return found

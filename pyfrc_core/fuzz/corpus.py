@@ -13,7 +13,7 @@ from ..project import Project
 from ..runtime.scripts.script import InputScript, load_script
 from ..text_files import write_whole
 from .describe import story_of
-from .failure import Failure
+from .failure import FuzzFailure
 
 DIRECTORY = "fuzz"
 TEST_FILE = "test_fuzz_regressions.py"
@@ -36,7 +36,7 @@ def test_it_is_repaired(script, control, robot):
 
 
 @dataclass(frozen=True)
-class Kept:
+class CorpusEntry:
     """A script that was kept."""
 
     file: Path
@@ -48,7 +48,7 @@ class Kept:
         return os.path.relpath(self.file) if self.file.is_relative_to(Path.cwd()) else str(self.file)
 
 
-class KeptScripts:
+class Corpus:
     """The scripts in a project's tests."""
 
     def __init__(self, project: Project) -> None:
@@ -56,15 +56,15 @@ class KeptScripts:
         # Beside the tests there are; where there are none, beside the robot.
         self._tests = project.find_tests() or project.test_directories[0]
 
-    def all(self) -> Iterator[Kept]:
+    def all(self) -> Iterator[CorpusEntry]:
         """Those that earlier campaigns have left.
 
         :raises ScriptError: when one is not what it must be
         """
         for file in sorted((self._tests / DIRECTORY).glob("*.jsonl")):
-            yield Kept(file, load_script(file))
+            yield CorpusEntry(file, load_script(file))
 
-    def keep(self, script: InputScript, failure: Failure) -> Kept:
+    def keep(self, script: InputScript, failure: FuzzFailure) -> CorpusEntry:
         """Write a script under a name of its own, and the test file if there is none."""
         kept = replace(
             script,
@@ -76,7 +76,7 @@ class KeptScripts:
         test_file = self._tests / TEST_FILE
         if not test_file.exists():
             write_whole(test_file, [_TEST])
-        return Kept(file, kept)
+        return CorpusEntry(file, kept)
 
     def _free_name(self, name: str) -> Path:
         directory = self._tests / DIRECTORY
@@ -87,7 +87,7 @@ class KeptScripts:
         return file
 
 
-def _name_of(failure: Failure) -> str:
+def _name_of(failure: FuzzFailure) -> str:
     """Without a line's number, which changes with every line above it."""
     module = failure.place.partition(":")[0].removesuffix(".py")
     parts = [failure.kind, *re.split(r"[/\\]", module), failure.function]

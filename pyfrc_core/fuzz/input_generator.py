@@ -12,12 +12,12 @@ import wpilib
 from ..config.settings import MatchSettings
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.targets import MODE
-from .dashboard import Dashboard, find_dashboard
+from .dashboard_generator import DashboardGenerator, find_dashboard
 from .gamepads import find_gamepads
 from .inputs import Input, find_controls, find_sensors
+from .joystick_generator import JoystickGenerator
 from .match_plan import plan_match
-from .sensors import Sensors
-from .sticks import Sticks
+from .sensor_generator import SensorGenerator
 
 if TYPE_CHECKING:
     from ..runtime.robot import RobotRun
@@ -36,8 +36,8 @@ _DRIVEN_US = 5 * _SECOND_US
 _PLUGGED = re.compile(r"joysticks\[(\d)\]\.plugged")
 
 
-class MatchMasher:
-    """One match's mashing. The same numbers mash the same robot in the same way.
+class InputGenerator:
+    """One match's fuzz_run. The same numbers mash the same robot in the same way.
 
     :param chance: where all its randomness comes from
     :param run: the robot's run, only to look at
@@ -50,7 +50,7 @@ class MatchMasher:
 
     def __init__(
         self,
-        chance: random.Random,
+        rng: random.Random,
         run: RobotRun,
         *,
         seconds: float,
@@ -60,15 +60,15 @@ class MatchMasher:
     ) -> None:
         #: What it has found to mash, by target.
         self.inputs: dict[str, Input] = {}
-        self._chance = chance
+        self._rng = rng
         self._run = run
         self._hal_data = run.hal_data
         self._end_us = to_us(seconds)
-        self._plan = plan_match(chance, seconds, settings or MatchSettings(), game_messages)
+        self._plan = plan_match(rng, seconds, settings or MatchSettings(), game_messages)
         self._planned = 0
-        self._sticks = Sticks(chance)
-        self._sensors = Sensors(chance, self._hal_data)
-        self._dashboard = Dashboard(chance)
+        self._sticks = JoystickGenerator(rng)
+        self._sensors = SensorGenerator(rng, self._hal_data)
+        self._dashboard = DashboardGenerator(rng)
         self._driven = set(physics_inputs)
         self._sensors.waits = not physics_inputs and _is_simulated(run)
         self._enabled_since_us: int | None = None
@@ -100,7 +100,7 @@ class MatchMasher:
             self._find_inputs(now_us)
         if now_us >= self._look_us:
             self._look_for_physics(now_us)
-        parts: list[Sticks | Sensors | Dashboard] = [self._sensors]
+        parts: list[JoystickGenerator | SensorGenerator | DashboardGenerator] = [self._sensors]
         if self._attached:  # else nothing that people do arrives
             parts += [self._sticks, self._dashboard]
         for part in parts:
@@ -124,7 +124,7 @@ class MatchMasher:
         if self._enabled_since_us is not None:
             self._enabled_us += now_us - self._enabled_since_us
         self._enabled_since_us = None if mode.startswith("disabled") else now_us
-        if self._chance.random() < 0.3:  # in the very packet
+        if self._rng.random() < 0.3:  # in the very packet
             self._sticks.change_pose(now_us)
 
     def _find_inputs(self, now_us: int) -> None:

@@ -1,4 +1,4 @@
-"""A match being mashed: the masher's writes, made and kept."""
+"""A match being mashed: the generator's writes, made and kept."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ from ..runtime.clock import PACKET_US
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript, Step
 from ..runtime.scripts.targets import Targets
-from .masher import MatchMasher
+from .input_generator import InputGenerator
 
 
-class Mashing:
-    """Has a masher write to a run.
+class FuzzRun:
+    """Has a generator write to a run.
 
     :param run: the robot has been constructed, and not started
-    :param diary: where to note what is written, before it is
+    :param journal: where to note what is written, before it is
     """
 
-    def __init__(self, run: RobotRun, masher: MatchMasher, diary: IO[bytes] | None = None) -> None:
+    def __init__(self, run: RobotRun, generator: InputGenerator, journal: IO[bytes] | None = None) -> None:
         self.steps: list[Step] = []
         self._run = run
-        self._masher = masher
-        self._diary = diary
+        self._generator = generator
+        self._journal = journal
         self._targets = Targets(run.hal_data, run.connection.packet)
 
     def write(self) -> None:
         """What there is to be written now; to be called once before the robot starts."""
         now_us = self._run.clock.now_us
-        writes = self._masher.writes(now_us)
+        writes = self._generator.writes(now_us)
         if writes:
             self.steps.append(Step(now_us, writes))
-            if self._diary is not None:
-                self._diary.write(pickle.dumps(self.steps[-1]))
+            if self._journal is not None:
+                self._journal.write(pickle.dumps(self.steps[-1]))
         for target, value in writes.items():
             self._targets.write(target, value, now_us)
 
@@ -44,17 +44,17 @@ class Mashing:
         self.write()
         now_us = self._run.clock.now_us
         self._targets.count_down(now_us)
-        return not self._masher.over(now_us)
+        return not self._generator.over(now_us)
 
     def script(self, robot: str, seed: int) -> InputScript:
         """What was written up to now, as a script that ends after this packet."""
         return InputScript(tuple(self.steps), self._run.clock.now_us + PACKET_US, robot=robot, seed=seed)
 
 
-def steps_in(diary: Path) -> Iterator[Step]:
-    """What was noted in a diary."""
-    if diary.is_file():
-        with diary.open("rb") as file:
+def read_journal(journal: Path) -> Iterator[Step]:
+    """What was noted in a journal."""
+    if journal.is_file():
+        with journal.open("rb") as file:
             while True:
                 try:
                     yield pickle.load(file)

@@ -25,11 +25,11 @@ _SELDOM = ("power", "fpga_button", "pdp")
 _Going = Callable[[int, dict[str, Any]], "int | None"]
 
 
-class Sensors:
+class SensorGenerator:
     """One match's measurements."""
 
-    def __init__(self, chance: random.Random, hal_data: HalData) -> None:
-        self._chance = chance
+    def __init__(self, rng: random.Random, hal_data: HalData) -> None:
+        self._rng = rng
         self._hal_data = hal_data
         self.next_us = 0
         #: Devices that are not to be touched yet, or any more.
@@ -68,7 +68,7 @@ class Sensors:
         if now_us >= self._change_us:
             self._change(now_us, now)
             mean = max(_SHORTEST_PAUSE, _PAUSE / (1 + sum(self._weights)))
-            self._change_us = now_us + PACKET_US + round(self._chance.expovariate(1 / mean) * 50) * PACKET_US
+            self._change_us = now_us + PACKET_US + round(self._rng.expovariate(1 / mean) * 50) * PACKET_US
         self.next_us = min([self._change_us, *(due_us for due_us, _ in self._going.values())])
         self._known |= now
         found |= now
@@ -89,10 +89,10 @@ class Sensors:
             known[each.target] = now
 
     def _change(self, now_us: int, found: dict[str, Any]) -> None:
-        chance = self._chance
+        rng = self._rng
         if not self._names or self.waits:
             return
-        (device,) = chance.choices(self._names, self._weights)
+        (device,) = rng.choices(self._names, self._weights)
         if device in self.left_alone:
             return
         inputs = self._devices[device]
@@ -100,28 +100,28 @@ class Sensors:
         if inputs[0].kind == "count":
             begun = self._turn_wheel(device, now_us, found)
         else:
-            begun = self._measure(chance.choice(inputs), now_us, found)
+            begun = self._measure(rng.choice(inputs), now_us, found)
         if begun is not None:
             self._going[device] = begun
 
     def _measure(self, each: Input, now_us: int, found: dict[str, Any]) -> tuple[int, _Going] | None:
-        chance = self._chance
+        rng = self._rng
         before = self._hal_data.read(each.target)
         if each.kind in ("connected", "battery"):  # a loose contact, a heavy load: soon over
-            value = not before if each.kind == "connected" else draw(each.kind, chance)
+            value = not before if each.kind == "connected" else draw(each.kind, rng)
             found[each.target] = value
-            rest = before if each.kind == "connected" else round(chance.uniform(11.5, 12.8), 2)
-            return now_us + chance.choice((1, 2, 5, 25, 50)) * PACKET_US, _back(each, rest)
+            rest = before if each.kind == "connected" else round(rng.uniform(11.5, 12.8), 2)
+            return now_us + rng.choice((1, 2, 5, 25, 50)) * PACKET_US, _back(each, rest)
         if each.kind == "switch":
             found[each.target] = not before
-            if chance.random() < 0.5:
-                return now_us + chance.choice((1, 1, 2, 5, 25)) * PACKET_US, _back(each, before)
+            if rng.random() < 0.5:
+                return now_us + rng.choice((1, 1, 2, 5, 25)) * PACKET_US, _back(each, before)
             return None
-        value = draw(each.kind, chance, each.options)
-        if each.kind not in SPANS or SPANS[each.kind].whole or chance.random() < 0.6 or not can_be(each.kind, before):
+        value = draw(each.kind, rng, each.options)
+        if each.kind not in SPANS or SPANS[each.kind].whole or rng.random() < 0.6 or not can_be(each.kind, before):
             found[each.target] = value
             return None
-        end_us = now_us + round(chance.uniform(0.3, 4) * 50) * PACKET_US
+        end_us = now_us + round(rng.uniform(0.3, 4) * 50) * PACKET_US
 
         def go(at_us: int, found: dict[str, Any]) -> int | None:
             done = min(1.0, (at_us - now_us) / (end_us - now_us))
@@ -132,15 +132,15 @@ class Sensors:
 
     def _turn_wheel(self, device: str, now_us: int, found: dict[str, Any]) -> tuple[int, _Going] | None:
         """An encoder: its count goes on from where it is, since robots reset it."""
-        chance, hal_data = self._chance, self._hal_data
+        rng, hal_data = self._rng, self._hal_data
         target, rate_target = f"{device}.count", f"{device}.rate"
-        how = chance.random()
+        how = rng.random()
         if how < 0.25:  # somebody has turned it, or it has slipped
-            jump = chance.choice((-1, 1)) * chance.choice((1, 10, 500, 20_000))
+            jump = rng.choice((-1, 1)) * rng.choice((1, 10, 500, 20_000))
             found[target] = nearest("count", hal_data.read(target) + jump)
             return None
-        speed = chance.choice((-1, 1)) * math.exp(chance.uniform(math.log(10), math.log(5000)))
-        end_us = now_us + round(chance.uniform(0.1, 2) * 50) * PACKET_US
+        speed = rng.choice((-1, 1)) * math.exp(rng.uniform(math.log(10), math.log(5000)))
+        end_us = now_us + round(rng.uniform(0.1, 2) * 50) * PACKET_US
         found[rate_target] = nearest("rate", speed * abs(hal_data.read(f"{device}.distance_per_pulse")))
 
         def go(at_us: int, found: dict[str, Any]) -> int | None:

@@ -17,58 +17,58 @@ _MOST_KEPT = 64
 
 
 @dataclass(frozen=True)
-class Recipe:
+class SeedSchedule:
     """How to mash one match.
 
     :param turns: where its chance comes from: by the microsecond from which that holds, the first at 0
     """
 
-    turns: tuple[tuple[int, str], ...]
+    seeds: tuple[tuple[int, str], ...]
 
-    def chance(self) -> random.Random:
+    def rng(self) -> random.Random:
         """The generator at the beginning; see `turn`."""
-        return random.Random(self.turns[0][1])
+        return random.Random(self.seeds[0][1])
 
-    def turn(self, chance: random.Random, before_us: int, now_us: int) -> None:
+    def reseed(self, rng: random.Random, before_us: int, now_us: int) -> None:
         """Begin anew what is to begin anew now.
 
         The robot, told the same, does the same: so a match goes as another did until then, without anything being kept
         of that but where its chance came from.
         """
-        for at_us, seed in self.turns[1:]:
+        for at_us, seed in self.seeds[1:]:
             if before_us < at_us <= now_us:
-                chance.seed(seed)
+                rng.seed(seed)
 
 
 @dataclass(frozen=True)
 class _Worthwhile:
-    recipe: Recipe
+    schedule: SeedSchedule
     reached_us: tuple[int, ...]
 
 
-class Recipes:
-    """The recipes of one campaign: the same for the same seed and the same lines, told in the same order."""
+class SeedScheduler:
+    """The schedules of one campaign: the same for the same seed and the same lines, told in the same order."""
 
     def __init__(self, seed: int) -> None:
         self._seed = seed
         self._worthwhile: list[_Worthwhile] = []
 
-    def recipe(self, number: int) -> Recipe:
+    def schedule(self, number: int) -> SeedSchedule:
         """How to mash the match of this number."""
         own = f"fuzz {self._seed} {number}"
-        chance = random.Random(f"recipe {own}")
-        if not self._worthwhile or chance.random() >= _CONTINUED:
-            return Recipe(((0, own),))
-        base = chance.choice(self._worthwhile)
-        from_us = chance.choice(base.reached_us) + chance.randrange(0, _GOES_ON_US, PACKET_US)
-        before = tuple(turn for turn in base.recipe.turns if turn[0] < from_us)
-        return Recipe((*before, (from_us, own)))
+        rng = random.Random(f"recipe {own}")
+        if not self._worthwhile or rng.random() >= _CONTINUED:
+            return SeedSchedule(((0, own),))
+        base = rng.choice(self._worthwhile)
+        from_us = rng.choice(base.reached_us) + rng.randrange(0, _GOES_ON_US, PACKET_US)
+        before = tuple(turn for turn in base.schedule.seeds if turn[0] < from_us)
+        return SeedSchedule((*before, (from_us, own)))
 
-    def learn(self, recipe: Recipe, reached: dict[Line, int]) -> None:
+    def learn(self, schedule: SeedSchedule, reached: dict[Line, int]) -> None:
         """A match has been the first to reach these lines.
 
         :param reached: when it reached each, in microseconds
         """
         if reached:
             moments = tuple(sorted(set(reached.values())))
-            self._worthwhile = [*self._worthwhile, _Worthwhile(recipe, moments)][-_MOST_KEPT:]
+            self._worthwhile = [*self._worthwhile, _Worthwhile(schedule, moments)][-_MOST_KEPT:]
