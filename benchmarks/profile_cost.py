@@ -29,7 +29,7 @@ def measure(way: str) -> float:
     from pyfrc_core.measure.processes import announced
     from pyfrc_core.project import find_project
     from pyfrc_core.runtime.loading import load_robot
-    from pyfrc_core.runtime.redirect import redirection
+    from pyfrc_core.runtime.patches import patches
     from pyfrc_core.runtime.robot import RobotRun
 
     project = find_project(Path.cwd())
@@ -43,7 +43,7 @@ def measure(way: str) -> float:
                 "calls": way == "cProfile",
             }
             closing.enter_context(announced("profile", settings))
-        redirection.install(project.files)
+        patches.install(project.files)
         run = RobotRun()
         robot_class = load_robot(project)
         run.open()

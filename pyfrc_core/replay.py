@@ -20,15 +20,15 @@ from .project import Project
 from .runtime.clock import to_us
 from .runtime.data_logs import LogPlace
 from .runtime.failures import as_robot_code_error
+from .runtime.hang_detector import HangDetector
 from .runtime.loading import load_robot
 from .runtime.loop_limit import LoopLimit
-from .runtime.redirect import redirection
+from .runtime.patches import patches
 from .runtime.robot import RobotRun
 from .runtime.scripts.files import trace_beside, traced
 from .runtime.scripts.player import Player
 from .runtime.scripts.script import InputScript, load_script
 from .runtime.seeds import seed_generators
-from .runtime.watchdog import Watchdog
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     script = load_script(file)
     if script.story and (ended := _how_its_process_ends(project, script)) is not None:
         return Replayed(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
-    redirection.install(project.files)
+    patches.install(project.files)
     robot_class = load_robot(project)
     until_us = None if until is None else to_us(until)
     with TemporaryDirectory() as temporary:
@@ -85,7 +85,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
         failures: list[PyfrcError] = []
         settings = project.settings
         hang_seconds = settings.fuzz.hang_seconds if script.story else settings.test.hang_seconds
-        with Watchdog(run, project.files, hang_seconds).watching():
+        with HangDetector(run, project.files, hang_seconds).watching():
             run.open()
             LoopLimit(run, project.files, settings)
             try:

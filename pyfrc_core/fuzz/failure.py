@@ -8,7 +8,7 @@ from types import CodeType, FrameType, TracebackType
 
 from ..errors import text_of
 from ..robot_files import RobotFiles
-from ..runtime.endings import TestFroze
+from ..runtime.exceptions import TestFroze
 from ..runtime.failures import NamesItsPlace, headline
 from ..runtime.loop_limit import LoopWaitsError
 

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 from ..physics.construct import construct
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
-from ..runtime.endings import TestEnded, TestRanTooLong
+from ..runtime.exceptions import TestEnded, TestRanTooLong
+from ..runtime.hang_detector import HangDetector
 from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
-from ..runtime.redirect import redirection
+from ..runtime.patches import patches
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.player import Player
 from ..runtime.scripts.script import InputScript, ScriptError
 from ..runtime.seeds import seed_generators
-from ..runtime.watchdog import Watchdog
 from .failure import FuzzFailure, failure_of
 from .fuzz_run import FuzzRun
 from .input_generator import InputGenerator
@@ -102,7 +102,7 @@ def load(project: Project) -> type[Any]:
 
     :raises RobotCodeError: when its code fails
     """
-    redirection.install(project.files)
+    patches.install(project.files)
     robot_class = load_robot(project)
     if project.physics_file.is_file():
         from ..physics.engine import load_physics
@@ -175,8 +175,8 @@ def _robot(project: Project, words: LastWords, seed: int, use_oracle: bool = Tru
     load(project)  # before robot time begins
     run = RobotRun()
     settings = project.settings.fuzz
-    watchdog = Watchdog(run, project.files, settings.hang_seconds, words.write, words.descriptor)
-    with watchdog.watching():
+    hang_detector = HangDetector(run, project.files, settings.hang_seconds, words.write, words.descriptor)
+    with hang_detector.watching():
         run.open()
         words.follow(run)
         LoopLimit(run, project.files, project.settings)

@@ -1,6 +1,6 @@
 """WPILib's simulated FPGA clock and driver-station packets: the two things the runtime drives.
 
-The functions are bound here when this module is imported, before the runtime redirects the names that tests
+The functions are bound here when this module is imported, before the runtime patches the names that tests
 and robot code call (`wpilib.simulation.stepTiming` and its kin), so they always reach the HAL itself.
 """
 

@@ -14,7 +14,7 @@ from types import FrameType
 
 from ..robot_files import RobotFiles, is_pyfrc
 from ..runtime.cooperative import real_thread_start
-from ..runtime.redirect import redirection
+from ..runtime.patches import patches
 from ..runtime.robot import RobotRun
 from ..runtime.threads import real_allocate_lock, real_thread_join
 from .figures import Figures
@@ -82,7 +82,7 @@ class Sampler:
             figures.sampling_ns += perf_counter_ns() - now
 
     def _look(self, spent_ns: int) -> None:
-        run = redirection.run
+        run = patches.run
         if run is None or not run.in_motion:
             return
         running = run.threads.running

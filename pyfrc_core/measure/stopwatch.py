@@ -21,7 +21,7 @@ from wpilib import TimedRobot
 
 from ..hal import modes
 from ..robot_files import RobotFiles
-from ..runtime.redirect import redirection
+from ..runtime.patches import patches
 from ..runtime.threads import RobotThread, RobotThreads
 from .figures import Figures, Line, Measurand, Overrun
 
@@ -165,10 +165,10 @@ class Stopwatch:
         within = [call for call in self._long if call.thread == get_ident() and call.begin_ns >= begin]
         if what is WHOLE_LOOP:
             self._long.clear()
-        if took > period_ns and redirection.run is not None:
+        if took > period_ns and patches.run is not None:
             # The innermost function is over first.
             culprit = next((call for call in within if call.took_ns >= took / 2), _Call(what, begin, took, 0))
-            began = redirection.run.clock.now - robot_ns / 1e9
+            began = patches.run.clock.now - robot_ns / 1e9
             test = environ.get("PYTEST_CURRENT_TEST", "").rpartition(" (")[0]
             self._figures.overruns.append(
                 Overrun(began, modes.get_mode(), culprit.what, took, culprit.took_ns, held_up_ns, period_ns, test)
@@ -216,7 +216,7 @@ class Stopwatch:
                 self._figures.on_line(line, 0, robot_ns)
 
     def _is_own_loop(self) -> bool:
-        run = redirection.run
+        run = patches.run
         own_loop = run.own_loop if run is not None else None
         if run is None or own_loop is None or own_loop.ident != get_ident():
             return False
@@ -231,7 +231,7 @@ class Stopwatch:
             begin, waits = self._turn
             took = perf_counter_ns() - begin
             if took > _LONG_NS or waits != self.waits:
-                seconds = getattr(redirection.run and redirection.run.robot, "control_loop_wait_time", 0.02)
+                seconds = getattr(patches.run and patches.run.robot, "control_loop_wait_time", 0.02)
                 took = self._turn_is_over(WHOLE_LOOP, begin, took, round(seconds * 1e9))
             self._take_down_turn(took)
         try:

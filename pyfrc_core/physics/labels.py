@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ..runtime.redirect import redirection
+from ..runtime.patches import patches
 
 
 def show_label(label: str, value: object) -> None:
     """Show `value` as text in a box with this label; does nothing while no robot runs."""
-    if redirection.run is not None:
-        redirection.run.hal_data["custom"][label] = value
+    if patches.run is not None:
+        patches.run.hal_data["custom"][label] = value

@@ -15,7 +15,7 @@ from collections.abc import Callable, MutableSequence
 from heapq import heappop, heappush
 
 from ..hal.timing import deliver_packet, step_us, stop_and_zero
-from .endings import TestEnded, TestRanTooLong
+from .exceptions import TestEnded, TestRanTooLong
 
 #: The driver station sends a packet every 20 ms.
 PACKET_US = 20_000

@@ -14,10 +14,10 @@ from ..errors import ProjectError, RobotCodeError, text_of
 from ..hidden_libraries import LIBRARIES, find_hidden_by_any_name
 from ..keyboard_input import refuse_keyboard_input
 from ..project import Project
-from .endings import TestFroze
+from .exceptions import TestFroze
+from .hang_detector import importing
 from .own_process import explained_exit
 from .robot_class import choose_robot_class
-from .watchdog import importing
 
 #: Part of Python's messages about a file that it cannot decode.
 _ENCODING_MESSAGE = re.compile(r"null bytes|Non-UTF-8|codec can't decode")

@@ -97,7 +97,7 @@ class Notifier:
     :param handler: called at the notification time
     """
 
-    #: The threads of the active run; set by `redirect` while there is one.
+    #: The threads of the active run; set by `patches` while there is one.
     threads: RobotThreads | None = None
 
     def __init__(self, handler: Callable[[], object]) -> None:

@@ -17,7 +17,7 @@ from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 from ..robot_files import RobotFiles, is_pyfrc
-from .watchdog import EXIT_HANGS
+from .hang_detector import EXIT_HANGS
 
 if TYPE_CHECKING:
     from .robot import RobotRun

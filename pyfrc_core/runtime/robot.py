@@ -24,11 +24,11 @@ from ..hal.output_gate import OutputGate
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .data_logs import DataLogs, LogPlace
-from .endings import TestEnded, TestFroze, WrongThread
+from .exceptions import TestEnded, TestFroze, WrongThread
 from .loop_watchdog import LoopOverruns, end_wpilibs_thread
 from .motor_safety import MotorSafetyCheck
 from .notifier import Alarms
-from .redirect import redirection
+from .patches import patches
 from .simulation_periodic import gate_robot, gate_subsystems
 from .threads import RobotThread, RobotThreads
 from .timed_loop import TimedLoop
@@ -81,7 +81,7 @@ class RobotRun:
 
     def open(self) -> None:
         """Take charge of the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
-        self._closing.enter_context(redirection.active(self))
+        self._closing.enter_context(patches.active(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
         ntcore.NetworkTableInstance.getDefault().startLocal()
         if not devices_exist():  # of an earlier run in this process, only its inputs are left

@@ -25,9 +25,9 @@ from pathlib import Path
 from types import TracebackType
 
 from .clock import WAKE_UP, Clock
-from .endings import TestEnded, TestFroze
+from .exceptions import TestEnded, TestFroze
 
-# Bound before the redirection of these names for robot code: this module needs the real ones.
+# Bound before these names are patched for robot code: this module needs the real ones.
 real_allocate_lock = _thread.allocate_lock
 real_thread_join = threading.Thread.join
 _process_time = time.process_time

@@ -12,7 +12,7 @@ from ..config.settings import MatchSettings
 from ..hal import modes
 from ..replay import oracle_if_fuzzed
 from ..runtime.clock import to_us
-from ..runtime.endings import TestEnded
+from ..runtime.exceptions import TestEnded
 from ..runtime.scripts.player import Player
 from ..runtime.scripts.script import load_script
 from ..runtime.seeds import seed_generators

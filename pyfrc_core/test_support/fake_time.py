@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..runtime.clock import DEFAULT_TIME_LIMIT, to_us
-from ..runtime.endings import TestEnded, TestFroze, TestRanTooLong
+from ..runtime.exceptions import TestEnded, TestFroze, TestRanTooLong
 from ..runtime.robot import RobotRun
 
 __all__ = ["FakeTime", "TestEnded", "TestFroze", "TestRanTooLong"]

@@ -23,15 +23,15 @@ from ..hal import HalData
 from ..project import Project
 from ..runtime.data_logs import TEST_LOGS, LogPlace
 from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_pyfrc, names_its_place
+from ..runtime.hang_detector import HangDetector
 from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
-from ..runtime.redirect import redirection
+from ..runtime.patches import patches
 from ..runtime.refresh import explain_missing_refresh
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.files import recorded, traced
 from ..runtime.seeds import seed_generators
 from ..runtime.threads import RobotThread
-from ..runtime.watchdog import Watchdog
 from . import controller
 from .controller import TestController
 from .fake_time import FakeTime
@@ -88,7 +88,7 @@ class PyFrcPlugin:
         self._robot_class = robot_class
         self._robot_file = str(Path(robot_file).resolve())
         self._robot_path = str(Path(robot_path).resolve())
-        redirection.install(self.project.files)
+        patches.install(self.project.files)
         if self._robot_path not in sys.path:
             sys.path.insert(0, self._robot_path)
 
@@ -168,10 +168,10 @@ class PyFrcPlugin:
         self.robot_class()  # the robot's modules are imported before robot time begins
         name = _file_name(request.node.nodeid).removesuffix(".jsonl")
         run = RobotRun(LogPlace.of_test(self.project.root, name))
-        watchdog = Watchdog(
+        hang_detector = HangDetector(
             run, self.project.files, self.options.hang_seconds, self.last_words, self.when_python_is_stuck
         )
-        with watchdog.watching(), ExitStack() as closing:
+        with hang_detector.watching(), ExitStack() as closing:
             run.open()
             self.when_opened(run)
             LoopLimit(run, self.project.files, self.project.settings)

@@ -15,13 +15,13 @@ from wpilib.simulation import SimDeviceSim
 from ...errors import PyfrcError, RobotCodeError
 from ...hal import HalData
 from ...project import Project
-from ...runtime.endings import TestEnded, TestRanTooLong
+from ...runtime.exceptions import TestEnded, TestRanTooLong
 from ...runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ...runtime.hang_detector import HangDetector
 from ...runtime.loading import load_robot
 from ...runtime.own_process import LastWords
-from ...runtime.redirect import redirection
+from ...runtime.patches import patches
 from ...runtime.robot import RobotRun
-from ...runtime.watchdog import Watchdog
 from .names import Found, Name, Place, find_devices, one_line
 from .sticks import Responses, try_sticks
 
@@ -129,11 +129,11 @@ def survey(project: Project, last_words: LastWords) -> Survey:
     :param last_words: of this process, which ends when the robot's code hangs and cannot be stopped
     :raises RobotCodeError: when the robot's code fails before it can be driven, naming the user's line
     """
-    redirection.install(project.files)
+    patches.install(project.files)
     robot_class = load_robot(project)
     run = RobotRun()
     hang_seconds = project.settings.test.hang_seconds
-    with Watchdog(run, project.files, hang_seconds, last_words.write, last_words.descriptor).watching():
+    with HangDetector(run, project.files, hang_seconds, last_words.write, last_words.descriptor).watching():
         try:
             run.open()
             run.clock.limit_us = _LIMIT_US

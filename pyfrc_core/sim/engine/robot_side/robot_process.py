@@ -24,12 +24,12 @@ from ....robot_files import is_pyfrc
 from ....runtime import own_process
 from ....runtime.data_logs import LogPlace
 from ....runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ....runtime.hang_detector import HangDetector
 from ....runtime.loading import load_robot
 from ....runtime.own_process import LastWords
-from ....runtime.redirect import redirection
+from ....runtime.patches import patches
 from ....runtime.robot import RobotRun
 from ....runtime.seeds import seed_generators
-from ....runtime.watchdog import Watchdog
 from ..extensions import WINDOW, load_extensions
 from ..field import tags_of
 from ..messages import Failed, Job, Ready, WindowClosed
@@ -64,12 +64,12 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
     loaded = False
     try:
         keep_no_bytecode_of_new_code(project.root)
-        redirection.install(files)
+        patches.install(files)
         robot_class = load_robot(project)
         physics = load_physics(project) if project.physics_file.is_file() else None
         loaded = True
-        watchdog = Watchdog(run, files, project.settings.test.hang_seconds, words.write, words.descriptor)
-        with watchdog.watching(), ExitStack() as closing:
+        hang_detector = HangDetector(run, files, project.settings.test.hang_seconds, words.write, words.descriptor)
+        with hang_detector.watching(), ExitStack() as closing:
             run.open()
             closing.callback(run.data_logs.close)
             seed_generators(job.script.seed)

@@ -13,7 +13,7 @@ from ....errors import PyfrcError
 from ....hal import modes
 from ....physics.core import PhysicsInterface
 from ....runtime.clock import INPUT, OBSERVE, PACKET_US
-from ....runtime.endings import TestEnded
+from ....runtime.exceptions import TestEnded
 from ....runtime.loop_limit import LoopLimit
 from ....runtime.refresh import RefreshCheck
 from ....runtime.robot import RobotRun

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol
 
 from ....errors import UsageError
-from ....runtime.redirect import redirection
+from ....runtime.patches import patches
 from ..scene import Line, Point, Pose, Text
 
 #: So many drawings stay on the field; when there are more, the oldest go.
@@ -161,7 +161,7 @@ class UserRenderer:
 
 def get_user_renderer() -> UserRenderer | None:
     """What draws on the simulated field; None where no field is to be seen, as in tests."""
-    run = redirection.run
+    run = patches.run
     renderer = None if run is None else run.renderer
     return renderer if isinstance(renderer, UserRenderer) else None
 

@@ -21,7 +21,7 @@ from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from .endings import TestFroze
+from .exceptions import TestFroze
 
 if TYPE_CHECKING:
     from ..robot_files import RobotFiles
@@ -107,7 +107,7 @@ def importing(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
                 busy = 0.0
                 interruption.interrupt(ident, f"the robot code hangs here, through {hang_seconds:g} s of computing")
 
-    thread = threading.Thread(target=watch, name="pyfrc import watchdog", daemon=True)
+    thread = threading.Thread(target=watch, name="pyfrc import hang detector", daemon=True)
     with interruption.possible():
         _start_thread(thread)
         try:
@@ -126,7 +126,7 @@ def _cpu_of_this_thread() -> Callable[[], float]:
     return partial(time.clock_gettime, time.pthread_getcpuclockid(_thread.get_ident()))
 
 
-class Watchdog:
+class HangDetector:
     """Watches one robot run from a thread of its own.
 
     :param hang_seconds: processor seconds without a microsecond of robot time, after which code counts as hanging
@@ -154,7 +154,7 @@ class Watchdog:
     @contextmanager
     def watching(self) -> Iterator[None]:
         """Watch while this lasts; code that hangs is interrupted with `TestFroze`."""
-        thread = threading.Thread(target=self._watch, name="pyfrc watchdog", daemon=True)
+        thread = threading.Thread(target=self._watch, name="pyfrc hang detector", daemon=True)
         with self._interruption.possible():
             _start_thread(thread)
             try:

@@ -27,7 +27,7 @@ import wpilib.simulation
 from . import cooperative, data_logs, driver_station, locks, robot_stack
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
-from .endings import TestEnded
+from .exceptions import TestEnded
 from .loop_watchdog import Watchdog
 from .notifier import Notifier
 from .replacements import as_original
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 _real_sleep = time.sleep
 
 
-class Redirection:
+class Patches:
     """The replaced names of this process. There is one, since what it replaces is the process's own."""
 
     def __init__(self) -> None:
@@ -299,5 +299,5 @@ class _Instant(float):
         return _Instant(round(float(self) - other, 6))
 
 
-#: The redirection of this process.
-redirection = Redirection()
+#: The patches of this process.
+patches = Patches()
