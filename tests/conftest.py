@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import compileall
+import faulthandler
 import functools
 import os
 import re
@@ -42,6 +43,11 @@ settings.register_profile(
     "suite", deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("suite")
+
+#: Seconds that one test may take, its fixtures included. The slowest takes a fifth of that on a busy machine.
+TEST_LIMIT = 300.0
+
+_STDERR = pytest.StashKey[int]()
 
 #: Guards of tests that need what not every machine has.
 pytest_plugins = ["skips"]
@@ -106,9 +112,30 @@ def _environment() -> dict[str, str]:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Compile our packages, as installing them does: commands would do it each time, since they keep nothing."""
+    config.stash[_STDERR] = os.dup(2)  # while a test runs, its own goes to pytest's capture
     if not hasattr(config, "workerinput"):
         for package in ("pyfrc", "pyfrc_cli", "pyfrc_core"):
             compileall.compile_dir(Path(__file__).parents[1] / package, quiet=2)
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Close what `pytest_configure` has opened."""
+    os.close(config.stash[_STDERR])
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    """End this process with the stacks of all its threads when a test takes longer than `TEST_LIMIT`.
+
+    No wait of a test needs a time limit of its own: this one ends each of them, in fixtures and in C code, too.
+    Processes that the test has started see their pipes and sockets close. With xdist, the worker's crash is this
+    test's failure.
+    """
+    faulthandler.dump_traceback_later(TEST_LIMIT, exit=True, file=item.config.stash[_STDERR])
+    try:
+        return (yield)
+    finally:
+        faulthandler.cancel_dump_traceback_later()
 
 
 @functools.cache

@@ -13,18 +13,21 @@ from typing import Any
 
 PROJECT, ROBOT = sys.argv[1:]
 
+#: Seconds that one command may take.
+LIMIT = 300.0
+
 
 def pyfrc(*words: str) -> None:
     """Run a command about the robot, and show it."""
     words = (*words, "--robot", ROBOT)
     print(f"\n$ pyfrc {' '.join(words)}", flush=True)
-    subprocess.run([sys.executable, "-m", "pyfrc", *words], check=True)
+    subprocess.run([sys.executable, "-m", "pyfrc", *words], check=True, timeout=LIMIT)
 
 
 def ask(*words: str) -> dict[str, Any]:
     """Run a command about the robot, and return the result that it has for tools."""
     command = [sys.executable, "-m", "pyfrc", *words, "--robot", ROBOT, "--json"]
-    printed = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+    printed = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, timeout=LIMIT).stdout
     result: dict[str, Any] = json.loads(printed.splitlines()[-1])
     return result
 
