@@ -2,3 +2,6 @@
 
 PYTEST_DONT_REWRITE
 """
+
+#: The environment variable in which a shell asks for completions of a command line; click chooses the name.
+COMPLETE_VARIABLE = "_PYFRC_COMPLETE"

@@ -15,6 +15,7 @@ import click
 
 from pyfrc_core._version import __version__
 
+from . import COMPLETE_VARIABLE
 from .verbosity import QUIET, VERBOSE, Verbosity, add_options
 
 if TYPE_CHECKING:
@@ -42,9 +43,6 @@ COMMANDS = {
     "doctor": ("pyfrc_cli.doctor", "Find out what is missing here, or does not fit together."),
     "completion": ("pyfrc_cli.completion", "Print the script for completion in your shell."),
 }
-
-#: The environment variable by which a shell asks how a command line can go on; click's name for it.
-COMPLETE_VARIABLE = "_PYFRC_COMPLETE"
 
 
 class Commands(click.Group):

@@ -46,8 +46,8 @@ def chosen_project(directory: Path | None, main: Path | None, robot_class: str |
 
     :raises ProjectError: also when one of its files hides a library
     """
-    from pyfrc_core.hidden_libraries import refuse_hidden_libraries
     from pyfrc_core.project import find_project
+    from pyfrc_core.project.hidden_libraries import refuse_hidden_libraries
 
     project = find_project(directory, main, robot_class)
     refuse_hidden_libraries(project.root, project.main_file)

@@ -73,6 +73,8 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     :raises ScriptError: when the script is not one, or does not fit the robot
     :raises RobotCodeError: when the robot's code cannot be imported
     """
+    from .fuzz.oracle import oracle_if_fuzzed
+
     script = load_script(file)
     if script.story and (ended := _how_its_process_ends(project, script)) is not None:
         return Replayed(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
@@ -140,18 +142,6 @@ def _how_its_process_ends(project: Project, script: InputScript) -> str | None:
     with open_match_executor(project, jobs=1) as executor:
         failure = executor.replay(script).failure
     return failure.text if failure is not None and failure.kind == PROCESS_ENDED else None
-
-
-@contextmanager
-def oracle_if_fuzzed(run: RobotRun, project: Project, script: InputScript) -> Iterator[None]:
-    """Of a script that fuzzing has kept, take for a failure what fuzzing does."""
-    if not script.story:
-        yield
-        return
-    from .fuzz.oracle import attach_oracle
-
-    with attach_oracle(run, project.files, project.settings.fuzz):
-        yield
 
 
 def _first_difference(recorded: Path, replayed: Path, run_us: int | None) -> Difference | None:

@@ -12,8 +12,8 @@ from contextlib import ExitStack, suppress
 import pytest
 
 from pyfrc_core.deploy import discovery
-from pyfrc_core.deploy.discovery import Address, addresses_of, find_robot, parse_address
-from pyfrc_core.deploy.errors import OnTheFieldError, RobotNotFoundError
+from pyfrc_core.deploy.discovery import Address, RobotNotFoundError, addresses_of, find_robot, parse_address
+from pyfrc_core.deploy.errors import OnTheFieldError
 from pyfrc_core.errors import UsageError
 
 BANNER = b"SSH-2.0-look-alike\r\n"

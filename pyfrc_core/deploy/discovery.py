@@ -16,7 +16,7 @@ from functools import partial
 from typing import Any
 
 from ..errors import UsageError
-from .errors import OnTheFieldError, RobotNotFoundError
+from .errors import DeployError, OnTheFieldError
 
 #: Where the Driver Station, on the same computer, tells which robot it is connected to.
 DRIVER_STATION = ("127.0.0.1", 1742)
@@ -68,6 +68,15 @@ class Tried:
     address: Address
     kind: str
     why: str
+
+
+class RobotNotFoundError(DeployError):
+    """No robot answered at any of the addresses tried.
+
+    :ivar tried: the addresses, each with the reason
+    """
+
+    tried: tuple[Tried, ...] = ()
 
 
 @dataclass(frozen=True)

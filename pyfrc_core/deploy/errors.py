@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ..errors import PyfrcError
-
-if TYPE_CHECKING:
-    from .discovery import Tried
 
 
 class DeployError(PyfrcError):
     """The robot has not been changed, or starts a whole program all the same; the message says what to do."""
-
-
-class RobotNotFoundError(DeployError):
-    """No robot has answered at any of the addresses tried: `tried` has them, with the reasons."""
-
-    tried: tuple[Tried, ...] = ()
 
 
 class ConnectionFailedError(DeployError):

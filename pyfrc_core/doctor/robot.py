@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 from ..config.robotpy import load_robot_packages
 from ..deploy.connection import Connection, connect
-from ..deploy.discovery import addresses_of, find_robot, parse_address
-from ..deploy.errors import HostKeyError, NoPythonError, OnTheFieldError, RobotNotFoundError
+from ..deploy.discovery import RobotNotFoundError, addresses_of, find_robot, parse_address
+from ..deploy.errors import HostKeyError, NoPythonError, OnTheFieldError
 from ..deploy.facts import RobotFacts
 from ..deploy.preparing import other_languages_notice
 from ..deploy.reach import keys_of_robot

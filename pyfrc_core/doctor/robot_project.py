@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from ..config.robotpy import load_robot_packages
 from ..errors import PyfrcError, SettingsError
-from ..hidden_libraries import find_hidden_libraries
-from ..misspelled_methods import MisspelledMethod, find_misspelled_methods
 from ..project import Project
+from ..project.hidden_libraries import find_hidden_libraries
 from ..runtime.apart import run_apart
 from ..runtime.loading import load_robot
+from ..runtime.misspelled_methods import MisspelledMethod, find_misspelled_methods
 from .findings import Finding, hint, ok, problem
 from .installed import Installed, fits
 

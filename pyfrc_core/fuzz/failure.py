@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
 
 from ..errors import text_of
-from ..robot_files import RobotFiles
+from ..project.robot_files import RobotFiles
 from ..runtime.exceptions import TestFroze
 from ..runtime.failures import NamesItsPlace, headline
 from ..runtime.loop_limit import LoopWaitsError

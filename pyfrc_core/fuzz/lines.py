@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from types import CodeType, FrameType, FunctionType
 from typing import Any
 
-from ..robot_files import RobotFiles
+from ..project.robot_files import RobotFiles
 
 #: A file, relative to the project, and the number of a line.
 Line = tuple[str, int]

@@ -9,8 +9,10 @@ from types import FrameType
 
 from ..config.settings import FuzzSettings
 from ..hal import modes
-from ..robot_files import RobotFiles
+from ..project import Project
+from ..project.robot_files import RobotFiles
 from ..runtime.robot import RobotRun
+from ..runtime.scripts.script import InputScript
 from ..runtime.timed_loop import Periodic
 from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
@@ -37,6 +39,16 @@ def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings) -> I
             run.timed_loop.after_call = oracle.after_call
         run.clock.before_packet.append(oracle.before_packet)
         run.observe(oracle.look)
+        yield
+
+
+@contextmanager
+def oracle_if_fuzzed(run: RobotRun, project: Project, script: InputScript) -> Iterator[None]:
+    """Attach the oracle to the run of a script that fuzzing has written; other scripts run without it."""
+    if not script.story:
+        yield
+        return
+    with attach_oracle(run, project.files, project.settings.fuzz):
         yield
 
 

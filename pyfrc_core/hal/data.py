@@ -190,7 +190,7 @@ class HalData(LiveDict):
 
     def _recorder(self) -> Recording:
         if self._recording is None:
-            self._recording = Recording(self)
+            self._recording = Recording(self, self.modules)
         return self._recording
 
     def snapshot(self) -> dict[str, Any]:

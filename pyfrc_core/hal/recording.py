@@ -8,26 +8,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import hal.simulation
 
 from . import driver_station
 from .containers import LiveDict, Slot, plain
 from .devices import KINDS
+from .modules import Modules
 from .paths import join
-
-if TYPE_CHECKING:
-    from .data import HalData
 
 Leaf = tuple[str, Callable[[], Any]]
 
 
 class Recording:
-    """The compiled list of what `HalData.leaves` tells."""
+    """The compiled list of what `HalData.leaves` yields.
 
-    def __init__(self, tree: HalData) -> None:
+    :param tree: the root of the tree
+    :param modules: the pneumatics and power distribution modules in it
+    """
+
+    def __init__(self, tree: LiveDict, modules: Modules) -> None:
         self._tree = tree
+        self._modules = modules
         self._always = list(self._fixed())
         event = list(_of(tree["event"]))
         self._at_rest = [
@@ -36,7 +39,7 @@ class Recording:
         ]
         self._kinds = [(kind, [slot.get for slot in kind.initialized()]) for kind in KINDS]
         slots = [slot for kind in KINDS for slot in kind.initialized()]
-        slots += [*tree.modules.initialized(), tree["accelerometer"]._slot("active")]
+        slots += [*modules.initialized(), tree["accelerometer"]._slot("active")]
         self._devices = MadeDevices(slots)
         self._state: Any = None
         self._here: list[str] = []
@@ -52,7 +55,7 @@ class Recording:
     def devices_made(self) -> list[str]:
         """Return the devices that exist, as ``pwm[3]``, and last whether a thread of WPILib's waits for an alarm."""
         slots = [join(kind.name, index) for kind in KINDS for index, _ in enumerate(kind.initialized())]
-        slots += ["pneumatics or power distribution"] * len(list(self._tree.modules.initialized()))
+        slots += ["pneumatics or power distribution"] * len(list(self._modules.initialized()))
         slots.append("accelerometer")
         made = [name for name, there in zip(slots, self._devices.made(), strict=True) if there]
         if self._tree["CAN"].signature():
@@ -101,7 +104,7 @@ class Recording:
             for index, tells in enumerate(channels):
                 if tells():
                     yield from _of(tree[kind.name][index])
-        modules = tree.modules
+        modules = self._modules
         for pneumatics in (modules.pcm_solenoids(), modules.hub_solenoids()):
             for solenoids in pneumatics:
                 for solenoid in solenoids:

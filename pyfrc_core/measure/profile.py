@@ -17,7 +17,7 @@ from typing import Any
 
 from ..errors import UsageError
 from ..project import Project
-from ..robot_files import RobotFiles
+from ..project.robot_files import RobotFiles
 from ..text_files import write_whole
 from .figures import Figures, added_up
 from .flame import flame_is_to_be_had, write_flame

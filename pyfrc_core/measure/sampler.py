@@ -12,7 +12,7 @@ from _thread import get_ident
 from time import perf_counter_ns
 from types import FrameType
 
-from ..robot_files import RobotFiles, is_pyfrc
+from ..project.robot_files import RobotFiles, is_pyfrc
 from ..runtime.cooperative import real_thread_start
 from ..runtime.patches import patches
 from ..runtime.robot import RobotRun

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 from wpilib import TimedRobot
 
 from ..hal import modes
-from ..robot_files import RobotFiles
+from ..project.robot_files import RobotFiles
 from ..runtime.patches import patches
 from ..runtime.threads import RobotThread, RobotThreads
 from .figures import Figures, Line, Measurand, Overrun

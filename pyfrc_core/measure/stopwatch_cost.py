@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from timeit import repeat
 
-from ..robot_files import RobotFiles
+from ..project.robot_files import RobotFiles
 from .figures import Figures, Measurand
 from .stopwatch import Stopwatch
 

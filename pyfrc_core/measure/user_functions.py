@@ -17,7 +17,7 @@ import wpilib
 import wpilib.event
 import wpiutil
 
-from ..robot_files import RobotFiles
+from ..project.robot_files import RobotFiles
 from ..runtime.clock import to_us
 from ..runtime.notifier import Notifier
 from ..runtime.robot import RobotRun

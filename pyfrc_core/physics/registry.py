@@ -10,10 +10,12 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .units import UnitRegistry
+    from typing import TypeAlias
+
+    UnitRegistry: TypeAlias = "pint.UnitRegistry[Any]"
 
 
 @contextmanager

@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 
     import pint
 
+    from .registry import UnitRegistry
+
     Quantity: TypeAlias = pint.Quantity[Any]
-    UnitRegistry: TypeAlias = pint.UnitRegistry[Any]
 
 
 def _registry() -> UnitRegistry:

@@ -11,7 +11,7 @@ from warnings import warn_explicit
 
 from ..config.findings import SettingsWarning, settings_error
 from ..config.settings import Settings, load_settings
-from ..robot_files import RobotFiles
+from .robot_files import RobotFiles
 
 if TYPE_CHECKING:
     from ..config.sim import SimConfig

@@ -7,7 +7,7 @@ import sys
 from types import CodeType, ModuleType
 
 from ..errors import PyfrcError, RobotCodeError, UsageError, text_of
-from ..robot_files import RobotFiles, is_pyfrc
+from ..project.robot_files import RobotFiles, is_pyfrc
 from .exceptions import TestFroze
 
 _STACK_ENTRY = re.compile(r'  File "([^"]+)", line \d+, in [^\n]*\n(?:    [^\n]*\n)?\n?')

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 from .exceptions import TestFroze
 
 if TYPE_CHECKING:
-    from ..robot_files import RobotFiles
+    from ..project.robot_files import RobotFiles
     from .robot import RobotRun
 
 #: Wall seconds blocked without any processor time, after which robot code counts as hanging, too.

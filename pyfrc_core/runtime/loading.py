@@ -11,11 +11,11 @@ from typing import Any
 
 from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, RobotCodeError, text_of
-from ..hidden_libraries import LIBRARIES, find_hidden_by_any_name
-from ..keyboard_input import refuse_keyboard_input
 from ..project import Project
+from ..project.hidden_libraries import LIBRARIES, find_hidden_by_any_name
 from .exceptions import TestFroze
 from .hang_detector import importing
+from .keyboard_input import refuse_keyboard_input
 from .own_process import explained_exit
 from .robot_class import choose_robot_class
 

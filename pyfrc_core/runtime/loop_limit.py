@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from ..config.settings import Settings
 from ..hal import modes
-from ..robot_files import RobotFiles, is_pyfrc
+from ..project.robot_files import RobotFiles, is_pyfrc
 from .clock import OBSERVE, PACKET_US, to_us
 from .failures import NamesItsPlace
 

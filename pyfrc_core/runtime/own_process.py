@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
-from ..robot_files import RobotFiles, is_pyfrc
+from ..project.robot_files import RobotFiles, is_pyfrc
 from .hang_detector import EXIT_HANGS
 
 if TYPE_CHECKING:

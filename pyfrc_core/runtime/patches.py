@@ -33,7 +33,7 @@ from .notifier import Notifier
 from .replacements import as_original
 
 if TYPE_CHECKING:
-    from ..robot_files import RobotFiles
+    from ..project.robot_files import RobotFiles
     from .robot import RobotRun
 
 _real_sleep = time.sleep

@@ -14,7 +14,7 @@ import wpilib
 import wpiutil._wpiutil
 
 if TYPE_CHECKING:
-    from ..robot_files import RobotFiles
+    from ..project.robot_files import RobotFiles
 
 _hook_of_wpilib: Callable[[Any], None] | None = getattr(wpiutil._wpiutil, "_setup_stack_trace_hook", None)
 

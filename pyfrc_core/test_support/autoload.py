@@ -46,8 +46,8 @@ def _register(config: pytest.Config, directory: Path) -> None:
     import pytest
 
     from ..errors import PyfrcError
-    from ..hidden_libraries import refuse_hidden_libraries
     from ..project import find_project
+    from ..project.hidden_libraries import refuse_hidden_libraries
     from .isolation.loop import IsolatedTests
     from .pytest_plugin import PyFrcPlugin
     from .summary import Summary

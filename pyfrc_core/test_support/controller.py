@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from ..config.settings import MatchSettings
 from ..hal import modes
-from ..replay import oracle_if_fuzzed
 from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
+from ..runtime.match import MatchPeriods
 from ..runtime.scripts.player import Player
 from ..runtime.scripts.script import load_script
 from ..runtime.seeds import seed_generators
 from .fake_time import FakeTime
-from .practice_match import PracticeMatch
 
 if TYPE_CHECKING:
     from ..project import Project
@@ -43,7 +42,7 @@ class TestController:
         self.project = project
         #: What the random generators started from.
         self.seed = seed
-        self._practice_match: PracticeMatch | None = None
+        self._practice_match: _PracticeMatch | None = None
         #: What the field sends with autonomous mode, such as ``"LRL"``.
         self.game_specific_message: str | None = None
 
@@ -76,7 +75,7 @@ class TestController:
         """
         if self._run.started:
             raise RuntimeError("set_practice_match() must be called before run_test()")
-        self._practice_match = PracticeMatch(self, self.project.settings.match if self.project else MatchSettings())
+        self._practice_match = _PracticeMatch(self, self.project.settings.match if self.project else MatchSettings())
 
     # -- running, as documented ------------------------------------------------------------------------------
 
@@ -159,6 +158,8 @@ class TestController:
             seed_generators(script.seed)
         with ExitStack() as closing:
             if self.project is not None:
+                from ..fuzz.oracle import oracle_if_fuzzed  # few tests replay a script
+
                 closing.enter_context(oracle_if_fuzzed(self._run, self.project, script))
             closing.callback(self._run.end)
             Player(script, self._run).play()
@@ -250,3 +251,27 @@ def _answering(on_step: OnStep) -> OnStep:
         return answer
 
     return step
+
+
+class _PracticeMatch:
+    """A whole match in a test, with the match time that the robot can ask for."""
+
+    def __init__(self, control: TestController, settings: MatchSettings) -> None:
+        self._control = control
+        self._mode: modes.Mode | None = None
+        self._periods = MatchPeriods(settings)
+
+    def on_step(self, now: float) -> bool:
+        """Put the robot into the mode of this moment; return whether the match still goes on."""
+        period = self._periods.at(to_us(now))
+        if period is None:
+            return False
+        mode, left = period
+        if mode != self._mode:
+            self._mode = mode
+            if mode == "autonomous":
+                self._control.set_autonomous()
+            else:
+                self._control.set_operator_control(enabled=mode == "teleop")
+        modes.set_match_time(left)
+        return True

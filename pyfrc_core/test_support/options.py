@@ -13,6 +13,9 @@ Isolation: TypeAlias = Literal["auto", "fork", "spawn", "none"]
 
 DEFAULT_SEED = 0
 
+#: The package of the ready-made tests; they use this one, which imports none of them.
+READY_MADE_TESTS = "pyfrc_core.tests"
+
 
 @dataclass(frozen=True)
 class TestOptions:

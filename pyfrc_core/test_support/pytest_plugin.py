@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from .. import tests as ready_made
 from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, PyfrcError
 from ..hal import HalData
@@ -35,7 +34,7 @@ from ..runtime.threads import RobotThread
 from . import controller
 from .controller import TestController
 from .fake_time import FakeTime
-from .options import TestOptions
+from .options import READY_MADE_TESTS, TestOptions
 from .reporting import BUG, bug_of, put_first
 
 if TYPE_CHECKING:
@@ -44,6 +43,8 @@ if TYPE_CHECKING:
 
 #: The fixtures that have to do with the robot: a test that asks for one runs in a process of its own.
 ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller", "robot", "wpilib"})
+
+_READY_MADE_DIRECTORY = Path(__file__).parents[1] / "tests"
 
 
 class ThreadStillRunningError(NamesItsPlace):
@@ -180,7 +181,7 @@ class PyFrcPlugin:
             closing.enter_context(self._written_down(run, request.node))
             yield run
             run.end()
-            if getattr(request.function, "__module__", "").startswith(ready_made.__name__):
+            if getattr(request.function, "__module__", "").startswith(READY_MADE_TESTS):
                 self._warn_of_missing_refresh(run)
         if run.still_running:
             raise ThreadStillRunningError("\n".join(self._still_running(record) for record in run.still_running))
@@ -209,7 +210,7 @@ class PyFrcPlugin:
 
     def pytest_pycollect_makemodule(self, module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
         """Names the ready-made tests after the module that users import them from, wherever pyfrc is installed."""
-        if module_path.parent != Path(ready_made.__file__).parent:
+        if module_path.parent != _READY_MADE_DIRECTORY:
             return None
         return pytest.Module.from_parent(parent, path=module_path, nodeid="pyfrc.tests")
 

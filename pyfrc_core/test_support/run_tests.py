@@ -9,13 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from .. import tests as ready_made
 from ..errors import PyfrcError, UsageError
 from ..project import Project
 from ..runtime.forks import FORK_IS_SAFE, reasons_not_to_fork
 from .isolation.loop import IsolatedTests
 from .isolation.spare import Spare
-from .options import TestOptions
+from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
 from .summary import Summary, warn_of_misspelled_methods
 
@@ -91,7 +90,7 @@ def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> l
     if directory is not None:
         return [*args, str(directory)]
     if builtin:
-        return [*args, "--pyargs", f"{ready_made.__name__}.basic"]
+        return [*args, "--pyargs", f"{READY_MADE_TESTS}.basic"]
     looked = " and ".join(str(path) for path in project.test_directories)
     raise NoTestsError(
         f"this project has no tests: looked for files named test_*.py or *_test.py in {looked}",

@@ -12,8 +12,8 @@ from typing import Any, TextIO
 
 import pytest
 
-from ..misspelled_methods import find_misspelled_methods
 from ..project import Project
+from ..runtime.misspelled_methods import find_misspelled_methods
 from .reporting import BUG, put_first
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from ..robot_files import RobotFiles
+from ..project.robot_files import RobotFiles
 
 __all__ = ["ignore_object", "test_docstrings"]
 

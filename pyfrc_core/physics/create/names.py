@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import wpilib
 
 from ...hal.devices import encoder_channels
-from ...robot_files import RobotFiles
+from ...project.robot_files import RobotFiles
 
 #: How many attributes stand between the robot and a device at most, and how many parts of a list are looked at.
 _DEPTH, _PARTS = 6, 64

@@ -19,7 +19,7 @@ from typing import Any
 
 import pytest
 
-from ...robot_files import RobotFiles
+from ...project.robot_files import RobotFiles
 from ...runtime.failures import headline_is_the_robots
 from ...runtime.forks import FORK_IS_SAFE, reasons_not_to_fork
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section

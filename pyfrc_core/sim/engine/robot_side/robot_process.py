@@ -17,15 +17,15 @@ from typing import Any
 import hal
 
 from ....errors import PyfrcError
-from ....misspelled_methods import find_misspelled_methods
 from ....physics.engine import load_physics
 from ....project import Project
-from ....robot_files import is_pyfrc
+from ....project.robot_files import is_pyfrc
 from ....runtime import own_process
 from ....runtime.data_logs import LogPlace
 from ....runtime.failures import as_robot_code_error, leave_out_pyfrc
 from ....runtime.hang_detector import HangDetector
 from ....runtime.loading import load_robot
+from ....runtime.misspelled_methods import find_misspelled_methods
 from ....runtime.own_process import LastWords
 from ....runtime.patches import patches
 from ....runtime.robot import RobotRun

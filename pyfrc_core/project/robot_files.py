@@ -10,7 +10,7 @@ from types import FrameType, TracebackType
 # A virtual environment inside the project holds other people's code.
 _NOT_OURS = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
 _PYFRC = tuple(
-    str(Path(__file__).resolve().parents[1] / package) + os.sep for package in ("pyfrc_core", "pyfrc", "pyfrc_cli")
+    str(Path(__file__).resolve().parents[2] / package) + os.sep for package in ("pyfrc_core", "pyfrc", "pyfrc_cli")
 )
 
 

@@ -6,10 +6,10 @@ import builtins
 import sys
 from typing import TYPE_CHECKING
 
-from .errors import RobotCodeError
+from ..errors import RobotCodeError
 
 if TYPE_CHECKING:
-    from .robot_files import RobotFiles
+    from ..project.robot_files import RobotFiles
 
 _real_input = builtins.input
 _files: list[RobotFiles] = []

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from importlib.machinery import FrozenImporter, PathFinder
 from pathlib import Path
 
-from .errors import ProjectError
+from ..errors import ProjectError
 
 #: Libraries that robots, their tests or pyfrc import. They only count where they are installed.
 LIBRARIES = frozenset(

@@ -16,7 +16,7 @@ from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .project import Project
+    from ..project import Project
 
 #: The libraries whose classes have methods to be overridden.
 _LIBRARIES = ("wpilib", "commands2", "magicbot")
