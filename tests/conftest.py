@@ -7,6 +7,7 @@ import faulthandler
 import functools
 import os
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Mapping
@@ -48,6 +49,10 @@ settings.load_profile("suite")
 TEST_LIMIT = 300.0
 
 _STDERR = pytest.StashKey[int]()
+
+# A suite that a shell has started in the background ignores Ctrl-C. The commands that are tested must not inherit that.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 #: Guards of tests that need what not every machine has.
 pytest_plugins = ["skips"]
