@@ -1,0 +1,42 @@
+"""A clock with threads, and a robot's run, each for one test in this process."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+
+import pytest
+
+from pyfrc_core.hal import modes, timing
+from pyfrc_core.runtime import cooperative
+from pyfrc_core.runtime.notifier import Notifier
+from pyfrc_core.runtime.robot import RobotRun
+
+from .timeline import Timeline
+
+
+@pytest.fixture
+def timeline() -> Generator[Timeline]:
+    """A clock at 0, and its threads; this thread drives it."""
+    timeline = Timeline()
+    cooperative.scope.threads = Notifier.threads = timeline.threads
+    try:
+        yield timeline
+    finally:
+        try:
+            timeline.threads.end()
+        finally:
+            cooperative.scope.threads = Notifier.threads = None
+            timeline.clock.forget()
+            timing.run_freely()
+
+
+@pytest.fixture
+def run() -> Generator[RobotRun]:
+    """A run that is open, with no robot yet."""
+    run = RobotRun()
+    run.open()
+    try:
+        yield run
+    finally:
+        run.close()
+        modes.reset_driver_station()

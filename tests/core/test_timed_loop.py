@@ -1,0 +1,192 @@
+"""The loop of a `TimedRobot`: what is called when, and what an overrun does to it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from pyfrc_core.runtime.clock import PACKET, PHYSICS, WAKE_UP
+from pyfrc_core.runtime.timed_loop import Periodic, TimedLoop
+
+from .timeline import Timeline
+
+
+class Robot:
+    """As much of a `TimedRobot` as its loop needs."""
+
+    def __init__(self, timeline: Timeline, turn: Callable[[], object]) -> None:
+        self._note = timeline.note
+        self._loopFunc = turn
+
+    def robotInit(self) -> None:
+        self._note("robotInit")
+
+    def _simulationInit(self) -> None:
+        self._note("_simulationInit")
+
+    def getPeriod(self) -> float:
+        return 0.02
+
+
+def make_loop(timeline: Timeline, turn: Callable[[], object] | None = None, start: bool = True) -> TimedLoop:
+    """A loop of 20 ms whose overruns are in the log."""
+    loop = TimedLoop(
+        timeline.clock,
+        timeline.clock.now_us,
+        lambda: timeline.note("initialized"),
+        lambda took_us: timeline.note(f"took {took_us / 1000:g}"),
+    )
+    if start:
+        loop.begin(Robot(timeline, turn or (lambda: timeline.note("loop"))))  # type: ignore[arg-type]
+        timeline.log.clear()
+        loop.run_in_place()
+    return loop
+
+
+def test_the_robots_initialisation_comes_first_and_then_the_first_turn_after_one_period(timeline: Timeline) -> None:
+    loop = make_loop(timeline, start=False)
+    loop.add(lambda: timeline.note("of the constructor"), 0.02)
+    assert not loop.in_place
+    loop.begin(Robot(timeline, lambda: timeline.note("loop")))  # type: ignore[arg-type]
+    assert timeline.log == ["0 robotInit", "0 _simulationInit", "0 initialized"]
+    loop.run_in_place()
+    assert loop.in_place
+    # The loop was added last, and comes before all others.
+    assert timeline.run_until(40)[3:] == ["20 loop", "20 of the constructor", "40 loop", "40 of the constructor"]
+
+
+def test_within_a_packet_the_order_is_packet_threads_loop_physics(timeline: Timeline) -> None:
+    make_loop(timeline)
+    timeline.at(20, PHYSICS, "physics")
+    timeline.at(20, WAKE_UP, "thread")
+    timeline.at(20, PACKET, "packet")
+    assert timeline.run_until(20) == ["20 packet", "20 thread", "20 loop", "20 physics"]
+
+
+def test_periods_and_offsets_count_from_the_robots_construction(timeline: Timeline) -> None:
+    timeline.run_until(3)
+    loop = make_loop(timeline)
+    loop.add(lambda: timeline.note("offset"), 0.01, 0.004)
+    timeline.run_until(18)
+    assert timeline.log == ["17 offset"]
+    loop.add(lambda: timeline.note("late"), 0.005)
+    assert timeline.run_until(34)[1:] == ["23 loop", "23 late", "27 offset", "28 late", "33 late"]
+
+
+def test_a_callback_that_is_added_within_the_loop_is_called_after_its_first_period(timeline: Timeline) -> None:
+    def turn() -> None:
+        timeline.note("loop")
+        if timeline.clock.now_us == 20_000:
+            loop.add(lambda: timeline.note("added"), 0.006)
+
+    loop = make_loop(timeline, turn)
+    assert timeline.run_until(41) == ["20 loop", "24 added", "30 added", "36 added", "40 loop"]
+
+
+@pytest.mark.parametrize("period", [0, -0.01, 0.0000001])
+def test_a_period_must_be_longer_than_nothing(period: float, timeline: Timeline) -> None:
+    with pytest.raises(ValueError, match=r"^addPeriodic: the period must be longer than 0 s, not"):
+        make_loop(timeline).add(lambda: None, period)
+
+
+def test_an_overrun_skips_the_periods_that_it_has_missed(timeline: Timeline) -> None:
+    durations = iter([0, 50, 0, 20, 20.001, 0])
+
+    def turn() -> None:
+        timeline.note("loop")
+        if duration := next(durations, 0):
+            timeline.sleep(duration)
+
+    make_loop(timeline, turn)
+    assert timeline.run_until(200) == [
+        "20 loop",
+        "40 loop",
+        "90 took 50",
+        "90 loop",
+        "100 loop",
+        "120 loop",
+        "140.001 took 20.001",
+        "140.001 loop",
+        "160 loop",
+        "180 loop",
+        "200 loop",
+    ]
+
+
+def test_callbacks_of_one_turn_follow_each_other_and_one_that_sleeps_is_not_interrupted(timeline: Timeline) -> None:
+    def turn() -> None:
+        timeline.note("loop")
+        timeline.note(f"in turn: {loop.in_turn}")
+        timeline.sleep(8)
+        timeline.note("loop ends")
+
+    loop = make_loop(timeline, turn)
+    loop.add(lambda: timeline.note("often"), 0.005)
+    loop.after_call = lambda callback: timeline.note(f"after {callback.period_us}")
+    timeline.at(23, PHYSICS, "physics")
+    timeline.run_until(19)
+    timeline.log.clear()
+    assert not loop.in_turn
+    timeline.run_until(35)
+    assert timeline.log == [
+        "20 loop",
+        "20 in turn: True",
+        "23 physics",
+        "28 loop ends",
+        "28 after 20000",
+        "28 often",
+        "28 after 5000",
+        "28 often",
+        "28 after 5000",
+        "30 often",
+        "30 after 5000",
+        "35 often",
+        "35 after 5000",
+    ]
+    assert loop.loop_start_us == 35_000
+
+
+def test_a_loop_that_was_stopped_makes_no_further_call(timeline: Timeline) -> None:
+    def turn() -> None:
+        timeline.note("loop")
+        loop.stopped = timeline.clock.now_us >= 40_000
+
+    loop = make_loop(timeline, turn)
+    loop.add(lambda: timeline.note("other"), 0.02)
+    assert timeline.run_until(100) == ["20 loop", "20 other", "40 loop"]
+
+
+def test_a_loop_on_a_thread_of_its_own_makes_the_same_calls(timeline: Timeline) -> None:
+    def turn() -> None:
+        timeline.note(f"loop {loop.in_turn}")
+        if timeline.clock.now_us == 40_000:
+            timeline.sleep(25)
+
+    loop = make_loop(timeline, start=False)
+    loop.begin(Robot(timeline, turn))  # type: ignore[arg-type]
+    timeline.log.clear()
+    loop.add(lambda: timeline.note("other"), 0.03)
+    timeline.thread("robot", lambda: loop.run_blocking(timeline.threads))
+    timeline.run_until(79)
+    assert not loop.in_turn
+    assert timeline.log == [
+        "20 loop True",
+        "30 other",
+        "40 loop True",
+        "65 took 25",
+        "65 loop True",
+        "65 other",
+    ]
+    loop.stopped = True
+    assert timeline.run_until(200)[-1].startswith(("80", "65"))
+
+
+@pytest.mark.parametrize(
+    ("called_at", "next_due"),
+    [(100, 110), (109, 110), (110, 120), (119, 120), (135, 140)],
+)
+def test_the_next_time_is_the_next_whole_period_after_the_call(called_at: int, next_due: int) -> None:
+    periodic = Periodic(lambda: None, 100, 10)
+    periodic.move_on(called_at)
+    assert periodic.due_us == next_due

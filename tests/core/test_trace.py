@@ -1,0 +1,95 @@
+"""Traces: which lines they have, and that the same run has the same hash."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+from typing import Any
+
+from pyfrc_core.runtime.trace import FORMAT, Trace
+
+
+class Tree:
+    """As much of `hal_data` as a trace looks at."""
+
+    def __init__(self) -> None:
+        self.paths: list[str] = []
+        self.values: list[Any] = []
+
+    def paths_and_values(self) -> tuple[list[str], list[Any]]:
+        return self.paths, self.values
+
+
+def trace_of(*looks: dict[str, Any], digest: bool = False) -> list[Any]:
+    """The lines of a trace of these values, a look for each; the paths stay one list while they are the same."""
+    tree, out = Tree(), io.StringIO()
+    trace = Trace(tree, out)  # type: ignore[arg-type]
+    for number, values in enumerate(looks):
+        if list(values) != tree.paths:
+            tree.paths = list(values)
+        tree.values = list(values.values())
+        trace.look(number * 0.02)
+    assert trace.finish() == trace.digest()
+    lines = [json.loads(line) for line in out.getvalue().splitlines()]
+    assert lines[0] == {"format": FORMAT}
+    assert lines[-1] == {"sha256": trace.digest()}
+    return [lines[-1]] if digest else lines[1:-1]
+
+
+def test_each_packet_has_what_has_changed() -> None:
+    assert trace_of({"a": 1, "b": 2}, {"a": 1, "b": 2}, {"a": 1, "b": 3}, {"a": 0, "b": 3}) == [
+        {"t": 0.0, "set": {"a": 1, "b": 2}},
+        {"t": 0.04, "set": {"b": 3}},
+        {"t": 0.06, "set": {"a": 0}},
+    ]
+
+
+def test_what_comes_and_goes() -> None:
+    assert trace_of({"a": 1}, {"a": 1, "b": 2}, {"b": 2}, {"b": 2}, {}, {}) == [
+        {"t": 0.0, "set": {"a": 1}},
+        {"t": 0.02, "set": {"b": 2}},
+        {"t": 0.04, "set": {}, "gone": ["a"]},
+        {"t": 0.08, "set": {}, "gone": ["b"]},
+    ]
+
+
+def test_nan_is_no_change_of_nan() -> None:
+    nan = float("nan")
+    lines = trace_of(
+        {"a": nan, "b": 1},
+        {"a": float("nan"), "b": 1},
+        {"a": float("nan"), "b": 2},
+        {"a": 1.0, "b": 2},
+        {"a": nan, "b": 2},
+    )
+    assert [sorted(line["set"]) for line in lines] == [["a", "b"], ["b"], ["a"], ["a"]]
+    assert math.isnan(lines[0]["set"]["a"])
+    # Also where something else has come or gone.
+    lines = trace_of({"a": nan}, {"a": other, "b": 1}, {"a": 2.0})
+    assert [sorted(line["set"]) for line in lines] == [["a"], ["b"], ["a"]]
+
+
+def test_numbers_that_are_equal_are_no_change() -> None:
+    assert len(trace_of({"a": 1}, {"a": 1.0}, {"a": True}, {"a": 0.0}, {"a": -0.0})) == 2
+
+
+def test_the_hash_is_of_all_lines_in_their_order() -> None:
+    def digest(*looks: dict[str, Any]) -> list[Any]:
+        return trace_of(*looks, digest=True)
+
+    assert digest({"a": 1}, {"a": 2}) == digest({"a": 1}, {"a": 2})
+    assert digest({"a": 1}, {"a": 2}) == digest({"a": 1}, {"a": 2}, {"a": 2})
+    assert digest({"a": 1}, {"a": 2}) != digest({"a": 2}, {"a": 1})
+    assert digest({"a": 1}) != digest({"b": 1})
+    assert digest({"a": 1, "b": 2}) == digest({"b": 2, "a": 1})
+
+
+def test_a_trace_without_a_file_has_the_same_hash() -> None:
+    tree, out = Tree(), io.StringIO()
+    tree.paths, tree.values = ["a"], [1.5]
+    quiet, written = Trace(tree), Trace(tree, out)  # type: ignore[arg-type]
+    for trace in (quiet, written):
+        trace.look(0.0199999999)
+    assert json.loads(out.getvalue().splitlines()[1]) == {"t": 0.02, "set": {"a": 1.5}}
+    assert quiet.finish() == written.finish()
