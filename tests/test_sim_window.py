@@ -527,7 +527,9 @@ def test_there_is_room_for_every_word(make_project: MakeProject, sit: Sit) -> No
     beside = match._grid.grid_slaves(match._message.grid_info()["row"], 0)
     assert [label.cget("text") for label in beside] == ["Game data"]
     hint, pose = user.window.center._how, user.window.center._pose
-    assert (hint.cget("text"), hint.winfo_width()) == ("Wheel: zoom, drag: move", hint.winfo_reqwidth())
+    user.until(lambda: hint.cget("text") == "Wheel: zoom, drag: move")  # its width comes late
+    user.shown()
+    assert hint.winfo_width() == hint.winfo_reqwidth()
     assert pose.winfo_width() == pose.winfo_reqwidth()
     assert pose.winfo_x() + pose.winfo_width() < hint.winfo_x()
 
