@@ -55,7 +55,7 @@ def test_what_comes_and_goes() -> None:
 
 
 def test_nan_is_no_change_of_nan() -> None:
-    nan = float("nan")
+    nan, other = float("nan"), float("nan")
     lines = trace_of(
         {"a": nan, "b": 1},
         {"a": float("nan"), "b": 1},
