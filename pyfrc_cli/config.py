@@ -36,7 +36,7 @@ def check(directory: Path | None, main: Path | None, robot_class: str | None, st
     from pyfrc_core.wording import counted
 
     loaded = _loaded(directory, main, robot_class)
-    warnings = [*loaded.warnings, *loaded.doubts()]
+    warnings = [*loaded.warnings, *loaded.lint()]
     for warning in warnings:
         click.secho(f"warning: {warning}", fg="yellow")
     what = "no mistakes" if loaded.text else "there is no such file, so everything is at its default"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from ._version import requirement
 from .errors import UsageError
+from .season import CURRENT
 from .text_files import write_whole
 
 if TYPE_CHECKING:
@@ -44,12 +45,12 @@ TEMPLATES = {
     "swerve": Template("swerve drive: four wheels that turn, and odometry"),
     "command": Template(
         "command-based: subsystems, commands, an autonomous chooser",
-        packages=("robotpy-commands-v2~=2026.2",),
+        packages=(CURRENT.packages.commands,),
         extras=("commands2",),
     ),
     "magic": Template(
         "MagicRobot: components, and state machines for shooting and autonomous",
-        packages=("robotpy-wpilib-utilities~=2026.1",),
+        packages=(CURRENT.packages.utilities,),
     ),
     "elevator-arm": Template("an elevator with an arm on it, driven to heights and angles"),
 }
@@ -155,6 +156,7 @@ def _values(template: Template, team: int | None) -> Mapping[str, str]:
         "requires": _toml_array([package for package in template.packages if package not in by_extras]),
         "packages": "\n".join((requirement(), *template.packages)),
         "team_number": number,
+        "robotpy_version": f'"{CURRENT.packages.wpilib}"',
     }
 
 

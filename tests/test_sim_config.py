@@ -264,7 +264,7 @@ def test_lines_may_end_in_any_way(root: Path, end: str) -> None:
 def test_what_is_surely_not_meant_is_doubted(load: Load, robot: dict[str, Any], expected: list[str]) -> None:
     loaded = load(json.dumps({"pyfrc": {"robot": robot}}))
     assert loaded.warnings == ()
-    doubts = loaded.doubts()
+    doubts = loaded.lint()
     assert len(doubts) == len(expected)
     for doubt, start in zip(doubts, expected, strict=True):
         assert str(doubt).startswith(f"sim/config.json:1: {start}")
@@ -279,11 +279,11 @@ def test_what_is_surely_not_meant_is_doubted(load: Load, robot: dict[str, Any], 
     ],
 )
 def test_what_may_be_meant_is_not_doubted(load: Load, robot: dict[str, Any]) -> None:
-    assert load(json.dumps({"pyfrc": {"robot": robot}})).doubts() == ()
+    assert load(json.dumps({"pyfrc": {"robot": robot}})).lint() == ()
 
 
 def test_what_the_file_does_not_say_is_not_doubted(load: Load) -> None:
-    assert load('{"pyfrc": {"field": {"w": 1, "h": 1}}}').doubts() == ()
+    assert load('{"pyfrc": {"field": {"w": 1, "h": 1}}}').lint() == ()
 
 
 def test_a_season_names_those_that_are_known(load: Load) -> None:

@@ -19,9 +19,9 @@ def document_of(config: SimConfig, file: Mapping[str, Any] | None = None) -> dic
     return _filled(file or {}, {"pyfrc": values})
 
 
-def _filled(given: Mapping[str, Any], in_effect: Mapping[str, Any]) -> dict[str, Any]:
+def _filled(given: Mapping[str, Any], resolved: Mapping[str, Any]) -> dict[str, Any]:
     filled = dict(given)
-    for key, value in in_effect.items():
+    for key, value in resolved.items():
         before = given.get(key)
         if isinstance(value, dict):
             filled[key] = _filled(before if isinstance(before, Mapping) else {}, value)

@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal
 
 from ..encoding import find_wrong_encoding
 from ..errors import SettingsError
+from ..season import CURRENT
 from .findings import Path as KeyPath
 from .findings import mistakes, settings_error
 from .toml_text import TomlText
@@ -58,10 +59,10 @@ class MatchSettings:
 
     #: Disabled on the field, before the match starts.
     before: Seconds = 1.0
-    autonomous: Seconds = 15.0
+    autonomous: Seconds = CURRENT.match.autonomous
     #: Disabled, between autonomous and teleoperated.
-    pause: Seconds = 3.0
-    teleop: Seconds = 135.0
+    pause: Seconds = CURRENT.match.pause
+    teleop: Seconds = CURRENT.match.teleop
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """``sim/config.json``: what stands under its key ``pyfrc``, as typed objects.
 
 Lengths are in feet, angles in degrees clockwise; x grows to the right, y grows downwards. Here are the keys, their
-types and defaults; `sim_file` reads the file, `in_effect` adds what a season brings.
+types and defaults; `sim_file` reads the file, `resolve` adds what a season brings.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
 
+from ..season import CURRENT, FIELDS
 from . import tables
-from .seasons import SEASONS, TODAY
 
-_TODAY = SEASONS[TODAY]
+_FIELD = CURRENT.field
 
 # JSON's strings are no numbers, and true is none either. The bound is what is finite, in the schema's terms.
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-sys.float_info.max, le=sys.float_info.max)]
@@ -105,12 +105,12 @@ def _year(value: Any) -> int | None:
         value = int(value)
     if type(value) is int and 1000 <= value <= 9999:
         return value
-    raise ValueError(f'input should be a year, such as {TODAY} or "{TODAY}"')
+    raise ValueError(f'input should be a year, such as {CURRENT.year} or "{CURRENT.year}"')
 
 
 _YEAR_SCHEMA = {
     "anyOf": [
-        {"enum": [*SEASONS, *map(str, SEASONS)]},
+        {"enum": [*FIELDS, *map(str, FIELDS)]},
         {"type": "integer", "minimum": 1000, "maximum": 9999},
         # The length too: to some, a line end may follow what the pattern ends with.
         {"type": "string", "pattern": "^[1-9][0-9]{3}$", "maxLength": 4},
@@ -127,15 +127,15 @@ class FieldConfig(_Part):
         description="The year whose field this is, as number or string. It decides w, h and px_per_ft, "
         "and brings that season's messages and auto_joysticks.",
     )
-    w: Positive = Field(default=_TODAY.w, description="Size of the field along x, in feet. Default: today's field.")
-    h: Positive = Field(default=_TODAY.h, description="Size of the field along y, in feet. Default: today's field.")
-    px_per_ft: Positive = Field(default=_TODAY.px_per_ft, description="Scale of the drawing, in pixels per foot.")
+    w: Positive = Field(default=_FIELD.w, description="Size of the field along x, in feet. Default: today's field.")
+    h: Positive = Field(default=_FIELD.h, description="Size of the field along y, in feet. Default: today's field.")
+    px_per_ft: Positive = Field(default=_FIELD.px_per_ft, description="Scale of the drawing, in pixels per foot.")
     image: str | None = Field(default=None, description="A picture under the robot; a path relative to sim/.")
     objects: Annotated[tuple[FieldObject, ...], tables.Array()] = Field(
         default=(), description="What is drawn on the field."
     )
     auto_joysticks: Flag = Field(
-        default=_TODAY.auto_joysticks,
+        default=_FIELD.auto_joysticks,
         description="Whether the robot gets joystick data in autonomous. Default: the season's, else false.",
     )
     disabled_joysticks: Flag = Field(default=False, description="Whether the robot gets joystick data while disabled.")
@@ -158,7 +158,7 @@ class SimConfig(_Part):
     robot: RobotConfig = RobotConfig()
     field: FieldConfig = FieldConfig()
     game_specific_messages: Annotated[tuple[str, ...], tables.Array()] = Field(
-        default=_TODAY.messages,
+        default=_FIELD.messages,
         description="The messages that the field may send; test_autonomous runs once for each. "
         "Default: the season's, else none.",
     )

@@ -13,11 +13,11 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from ..errors import nearest
-from .doubts import doubts
+from ..season import FIELDS
 from .findings import MOST_TOLD, Finding, Path, dotted, finding_at, in_order, mistakes, settings_error
-from .in_effect import FROM_SEASON, Origins, in_effect, without_effect
 from .json_text import MOST_BYTES, JsonText
-from .seasons import SEASONS
+from .lint import lint
+from .resolve import FROM_SEASON, Origins, ignored_keys, resolve
 from .sim import SimConfig, SimConfigFile
 from .tables import AXES
 
@@ -50,15 +50,15 @@ class LoadedSimConfig:
         """
         values = self.config.model_dump(mode="json")
         sources = {path: source for path, _, source in self.settings()}
-        if self.config.field.season not in SEASONS:
+        if self.config.field.season not in FIELDS:
             return {"pyfrc": values, "sources": sources}
         decided = {name: values["field"].pop(name) for name in FROM_SEASON}
         return {"pyfrc": values, "season": decided, "sources": sources}
 
-    def doubts(self) -> tuple[Finding, ...]:
-        """What the file says that is surely not meant, in the file's order."""
+    def lint(self) -> tuple[Finding, ...]:
+        """Return the values in the file that are probably a mistake, in the file's order."""
         found = {}
-        for path, why in doubts(self.config):
+        for path, why in lint(self.config):
             origin = self._origins.get(path, path)
             if self.text is not None and isinstance(origin, tuple) and self._has(origin):
                 whole = ("pyfrc", *origin)
@@ -94,7 +94,7 @@ def load_sim_config(root: File, *, shown_from: File | None = None) -> LoadedSimC
     shown_from = shown_from or root
     name = _shown(file, shown_from)
     if not (file.exists() or file.is_symlink()):
-        config, origins = in_effect(SimConfig())
+        config, origins = resolve(SimConfig())
         elsewhere = tuple(
             Finding(_shown(other, shown_from), None, "pyfrc does not read this file", f"Move it to {name}")
             for other in _misplaced(root)
@@ -105,7 +105,7 @@ def load_sim_config(root: File, *, shown_from: File | None = None) -> LoadedSimC
         given = SimConfigFile.model_validate(text.value).pyfrc
     except ValidationError as invalid:
         raise settings_error(mistakes(invalid, text.value, text)) from None
-    config, origins = in_effect(given)
+    config, origins = resolve(given)
     return LoadedSimConfig(config, name, _warnings(given, text, file.parent), text, origins)
 
 
@@ -152,7 +152,7 @@ def _find_warnings(given: SimConfig, text: JsonText, directory: File) -> Iterato
     for path, known in _unknown_keys(given, text.value["pyfrc"], ("pyfrc",)):
         # Of a long key, the beginning is enough to find the nearest.
         yield path, f"unknown key {dotted(path)!r}", nearest(str(path[-1])[:50], known)
-    for path, why in without_effect(given):
+    for path, why in ignored_keys(given):
         yield ("pyfrc", *path), f"{dotted(('pyfrc', *path))} = {text.excerpt(('pyfrc', *path))}: {why}", None
     image = given.field.image
     if image is not None and not _is_file(directory, image):

@@ -16,6 +16,7 @@ from functools import partial
 from typing import Any
 
 from ..errors import UsageError
+from ..season import CURRENT
 from .errors import DeployError, OnTheFieldError
 
 #: Where the Driver Station, on the same computer, tells which robot it is connected to.
@@ -32,7 +33,7 @@ DRIVER_STATION_SECONDS = 1.0
 MOST_TEAM = 25_599
 
 #: A robot's at the other end of a USB cable, whoever's it is.
-USB_CABLE = "172.22.11.2"
+USB_CABLE = CURRENT.controller.usb_address
 
 _BANNER = b"SSH-"
 
@@ -141,7 +142,7 @@ def addresses_of(team: int, resolve: bool = True) -> list[tuple[Address, str]]:
 
     :param resolve: with those that have to be looked up
     """
-    name = f"roboRIO-{team}-FRC"
+    name = CURRENT.controller.host_name.format(team=team)
     every = [
         (Address(f"10.{team // 100}.{team % 100}.2"), "radio or Ethernet"),
         (Address(f"{name}.local"), "name, by multicast"),

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..season import CURRENT
 from ..terminal_text import one_line
 from .agent import watching
 
@@ -110,9 +111,9 @@ class RobotFacts:
         image = fields.line_or_none("image")
         why = None
         if image is None:
-            why = "there is no roboRIO image on it"
+            why = f"there is no {CURRENT.controller.name} image on it"
         elif not fields.flag("home"):
-            why = "there is no /home/lvuser on it"
+            why = f"there is no {CURRENT.controller.home} on it"
         elif not fields.flag("kill_script"):
             why = "there is no frcKillRobot.sh on it"
         return cls(

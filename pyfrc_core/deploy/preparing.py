@@ -11,21 +11,21 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-#: The versions of the roboRIO image that the season's tools accept.
-ACCEPTED_IMAGES = ("2026_v1.2",)
+from ..season import CURRENT, SEASONS
 
 #: The image that a virtual robot names: it is none, and needs none.
 VIRTUAL_IMAGE = "virtual robot"
-
-#: The Python on the robot that each season's WPILib is built for.
-PYTHON_OF_SEASON = {2026: (3, 14)}
 
 #: The commands, in their order; the second needs the internet, the third the robot.
 COMMANDS = ("python -m pip install robotpy", "python -m robotpy sync", "python -m robotpy deploy")
 
 _SECTION = 'docs/deploy.md, "A freshly imaged robot", has every step.'
 
-IMAGE_IT = f"Image it with the roboRIO Imaging Tool of this season (image {ACCEPTED_IMAGES[-1]}). {_SECTION}"
+_NEWEST_IMAGE = CURRENT.controller.images[-1]
+
+IMAGE_IT = (
+    f"Image it with the {CURRENT.controller.name} Imaging Tool of this season (image {_NEWEST_IMAGE}). {_SECTION}"
+)
 
 PREPARE = (
     f"Prepare the robot: {COMMANDS[0]}; with internet: {COMMANDS[1]}; then at the robot: {COMMANDS[2]}. {_SECTION}"
@@ -92,12 +92,12 @@ def image_problem(image: str | None, wpilib: str) -> str | None:
     if found is None:
         return f"the robot's image is unknown ({image!r})"
     version, year = found.groups()
-    if version in ACCEPTED_IMAGES:
+    if version in CURRENT.controller.images:
         return None
     season = wpilib.partition(".")[0]
     if year != season:
         return f"the robot's image is of {year} ({version}), wpilib {wpilib} needs that of {season}"
-    return f"the robot's image is {version}, the season's is {ACCEPTED_IMAGES[-1]}"
+    return f"the robot's image is {version}, the season's is {_NEWEST_IMAGE}"
 
 
 def python_problem(python: str, wpilib: str) -> str | None:
@@ -107,9 +107,10 @@ def python_problem(python: str, wpilib: str) -> str | None:
     :param wpilib: the version of `wpilib` on this computer
     :return: none, where it is the right one
     """
-    season = PYTHON_OF_SEASON.get(int(wpilib.partition(".")[0]))
-    if season is None or python.split(".")[:2] in [
-        [str(part) for part in each[:2]] for each in (season, sys.version_info)
-    ]:
+    season = SEASONS.get(int(wpilib.partition(".")[0]))
+    if season is None:
         return None
-    return f"the robot has Python {python}, but wpilib {wpilib} is for Python {'.'.join(map(str, season))} there"
+    wanted = season.controller.python
+    if python.split(".")[:2] in [[str(part) for part in each[:2]] for each in (wanted, sys.version_info)]:
+        return None
+    return f"the robot has Python {python}, but wpilib {wpilib} is for Python {'.'.join(map(str, wanted))} there"

@@ -13,6 +13,7 @@ from pathlib import Path
 from packaging.utils import canonicalize_name
 
 from .._version import __version__, requirement
+from ..season import CURRENT
 from .findings import Finding, hint, ok, problem
 from .installed import Installed, Package, Unmet
 
@@ -22,9 +23,6 @@ OLDEST = (3, 10)
 
 #: The directory with the packages of the pyfrc that runs.
 CODE = Path(__file__).resolve().parents[2]
-
-#: The entry points by which the `robotpy` command finds its commands.
-ROBOTPY_PLUGINS = "robotpy_cli.2026"
 
 
 def examine_python(
@@ -72,7 +70,7 @@ def _mixed_up(copies: Sequence[Package]) -> Iterator[Finding]:
         where = named.origin if named else "nowhere"
         yield problem("pyfrc", f"import pyfrc finds another one: {where}", f"Rename that if it is yours; else: {anew}")
     ours = {"test", "sim", "coverage", "profiler", "create-physics", "add-tests"}
-    for command in importlib.metadata.entry_points(group=ROBOTPY_PLUGINS):
+    for command in importlib.metadata.entry_points(group=CURRENT.cli_plugins):
         if command.name in ours and not command.value.startswith("pyfrc_cli.") and command.dist is not None:
             other = command.dist.metadata["Name"]
             text = f"robotpy {command.name} is {other}'s as well as pyfrc's"

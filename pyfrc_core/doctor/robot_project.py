@@ -116,7 +116,7 @@ def _sim_config(project: Project) -> Iterator[Finding]:
     except (PyfrcError, OSError) as error:
         yield problem_of(topic, error, "pyfrc config check")
         return
-    doubtful = [*loaded.warnings, *loaded.doubts()]
+    doubtful = [*loaded.warnings, *loaded.lint()]
     if doubtful:
         more = f", and {len(doubtful) - 1} more" if len(doubtful) > 1 else ""
         yield hint(topic, f"{doubtful[0]}{more}", "See them all with: pyfrc config check")

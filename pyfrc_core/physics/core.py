@@ -12,7 +12,7 @@ from wpimath.geometry import Pose2d, Rotation2d, Transform2d
 from wpimath.kinematics import ChassisSpeeds
 
 from ..config.document import document_of
-from ..config.in_effect import config_of
+from ..config.resolve import resolve_document
 from ..config.sim import SimConfig
 from ..errors import RobotCodeError
 from ..hal import HalData
@@ -94,7 +94,7 @@ class PhysicsInterface:
         #: The targets that a `VisionSim` looks for, and those that it sees now.
         self.vision_targets: tuple[VisionSimTarget, ...] = ()
         self.vision_targets_in_view: tuple[VisionSimTarget, ...] = ()
-        config = config_obj if isinstance(config_obj, SimConfig) else config_of(config_obj)
+        config = config_obj if isinstance(config_obj, SimConfig) else resolve_document(config_obj)
         #: ``sim/config.json`` as a plain dict, with the default of each key that is not in the file:
         #: ``config_obj["pyfrc"]["robot"]["w"]``.
         self.config_obj = document_of(config) if isinstance(config_obj, SimConfig) else config_obj

@@ -15,6 +15,7 @@ from collections.abc import Callable, MutableSequence
 from heapq import heappop, heappush
 
 from ..hal.timing import deliver_packet, step_us, stop_and_zero
+from ..season import CURRENT
 from .exceptions import TestEnded, TestRanTooLong
 
 #: The driver station sends a packet every 20 ms.
@@ -22,8 +23,8 @@ PACKET_US = 20_000
 
 DEFAULT_TIME_LIMIT = 500.0
 
-#: The time of day in robot code at robot time 0: noon, Eastern time, of the 2026 season's kickoff, in seconds.
-KICKOFF = 1_768_064_400
+#: The time of day in robot code at robot time 0, in seconds since 1970: the season's kickoff.
+KICKOFF = int(CURRENT.kickoff.timestamp())
 
 # What is due at the same microsecond happens in this order: scripts write, the driver station speaks, then threads and
 # notifiers wake, then the robot's loop runs, then physics moves what it drives, then whoever watches looks at what came

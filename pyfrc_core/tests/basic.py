@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from ..season import CURRENT
 from ..test_support.controller import TestController
 from ..test_support.fake_time import FakeTime
 
 # How long each mode runs by itself, in seconds.
-_AUTONOMOUS_SECONDS = 15.0
+_AUTONOMOUS_SECONDS = CURRENT.match.autonomous
 _OTHER_SECONDS = 5.0
 
 

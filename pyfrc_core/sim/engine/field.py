@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ...errors import UsageError, nearest
 from ...physics.pose import METRES_PER_FOOT
+from ...season import CURRENT
 from .commands import ROBOT_ON_FIELD
 from .scene import Field, Pose, Shape, Tag
 
@@ -65,9 +66,7 @@ def tags_of(config: SimConfig) -> tuple[Tag, ...]:
         return ()
     from robotpy_apriltag import AprilTagField, AprilTagFieldLayout
 
-    from ...config.seasons import TODAY
-
-    season = str(config.field.season or TODAY)
+    season = str(config.field.season or CURRENT.year)
     named = [field for name, field in AprilTagField.__members__.items() if season in name]
     for name in named:
         layout = AprilTagFieldLayout.loadField(name)

@@ -1,4 +1,4 @@
-"""Values in ``sim/config.json`` that are allowed, but surely not meant: most often another unit."""
+"""Find values in ``sim/config.json`` that are allowed but probably a mistake, most often in the wrong unit."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _TINY = 0.5
 _EIGHTHS = [eighth * pi / 4 for eighth in (*range(-8, 0), *range(1, 9))]
 
 
-def doubts(config: SimConfig) -> Iterator[tuple[Path, str]]:
-    """The paths of the values in effect that are hard to believe, and why."""
+def lint(config: SimConfig) -> Iterator[tuple[Path, str]]:
+    """Yield the paths of values in effect that are implausible, each with the reason."""
     robot, field = config.robot, config.field
     size = f"{field.w:g} by {field.h:g} ft"
     for name, length in (("w", robot.w), ("l", robot.l)):
@@ -41,7 +41,7 @@ def _of_start(
 
 
 def _looks_like_radians(angle: float) -> bool:
-    """Whether it is an eighth of a turn, or several, as people write them: 0.785, 1.57, 3.14."""
-    if angle == round(angle, 1):  # 5.5 is near an eighth too, but nobody would be so rough
+    """Return whether this is a multiple of an eighth of a turn as people write it: 0.785, 1.57, 3.14."""
+    if angle == round(angle, 1):  # 5.5 is near an eighth too, but no one rounds so roughly
         return False
     return any(abs(angle - eighth) < 1e-3 or angle == round(eighth, 2) for eighth in _EIGHTHS)

@@ -1,24 +1,27 @@
-"""What follows from the values that stand in ``sim/config.json``: a season's data, older names, a single start."""
+"""Resolve the values of ``sim/config.json``: add a season's field, older names and the only start position."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ..season import CURRENT, FIELDS
 from .findings import Path
-from .seasons import SEASONS, TODAY
 from .sim import FieldConfig, Joystick, RobotConfig, SimConfig, SimConfigFile
 
-#: Of a value that is not the file's own: the key in the file that it follows from, or what it is in words.
+#: Where each derived value comes from: the path of another key in the file, or a description.
 Origins = dict[Path, Path | str]
 
 _BUTTONS = {1: "Trigger", 2: "Top"}
-#: Of a known season these are the field's, whatever the file says.
+#: A known season decides these keys of the field, whatever the file says.
 FROM_SEASON = ("w", "h", "px_per_ft")
 
 
-def in_effect(given: SimConfig) -> tuple[SimConfig, Origins]:
-    """The configuration that holds where `given` is what the file says, and where its derived values come from."""
+def resolve(given: SimConfig) -> tuple[SimConfig, Origins]:
+    """Return the values in effect, and the origins of those that `given` does not contain.
+
+    :param given: what the file says
+    """
     origins: Origins = {}
     config = given.model_copy(
         update={
@@ -31,12 +34,12 @@ def in_effect(given: SimConfig) -> tuple[SimConfig, Origins]:
     return config, origins
 
 
-def config_of(document: Mapping[str, Any]) -> SimConfig:
-    """The values in effect where ``sim/config.json`` holds this document, ``{"pyfrc": {...}}``.
+def resolve_document(document: Mapping[str, Any]) -> SimConfig:
+    """Return the values in effect for the content of ``sim/config.json``, ``{"pyfrc": {...}}``.
 
-    :raises pydantic.ValidationError: when something in it is not what it may be
+    :raises pydantic.ValidationError: when a value is not allowed
     """
-    return in_effect(SimConfigFile.model_validate(document).pyfrc)[0]
+    return resolve(SimConfigFile.model_validate(document).pyfrc)[0]
 
 
 def _robot(robot: RobotConfig, origins: Origins) -> RobotConfig:
@@ -54,11 +57,11 @@ def _robot(robot: RobotConfig, origins: Origins) -> RobotConfig:
 
 
 def _field(field: FieldConfig, origins: Origins) -> FieldConfig:
-    season = SEASONS.get(field.season or 0)
+    season = FIELDS.get(field.season or 0)
     if season is None:
         for name in FROM_SEASON:
             if name not in field.model_fields_set:
-                origins["field", name] = f"default: season {TODAY}"
+                origins["field", name] = f"default: season {CURRENT.year}"
         return field
     names = list(FROM_SEASON)
     if "auto_joysticks" not in field.model_fields_set:
@@ -69,7 +72,7 @@ def _field(field: FieldConfig, origins: Origins) -> FieldConfig:
 
 
 def _messages(given: SimConfig, origins: Origins) -> tuple[str, ...]:
-    season = SEASONS.get(given.field.season or 0)
+    season = FIELDS.get(given.field.season or 0)
     if season is None or "game_specific_messages" in given.model_fields_set:
         return given.game_specific_messages
     origins["game_specific_messages",] = f"season {given.field.season}"
@@ -80,15 +83,15 @@ def _joystick(given: Joystick) -> Joystick:
     return given.model_copy(update={"buttons": _BUTTONS | given.buttons})
 
 
-def without_effect(given: SimConfig) -> Iterator[tuple[Path, str]]:
-    """The keys that were given in vain, and why."""
+def ignored_keys(given: SimConfig) -> Iterator[tuple[Path, str]]:
+    """Yield the keys of the file that have no effect, each with the reason."""
     field, robot = given.field, given.robot
-    if field.season in SEASONS:
+    if field.season in FIELDS:
         for name in FROM_SEASON:
             if name in field.model_fields_set:
                 yield ("field", name), f"ignored, since field.season is {field.season}"
     elif field.season is not None:
-        known = ", ".join(map(str, SEASONS))
+        known = ", ".join(map(str, FIELDS))
         yield ("field", "season"), f"nothing is known of the season {field.season}; there is: {known}"
     if {"l", "h"} <= robot.model_fields_set and robot.l != robot.h:
         yield ("robot", "h"), "ignored: it is the older name of robot.l, which is there too"

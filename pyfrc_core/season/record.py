@@ -1,0 +1,92 @@
+"""What a season fixes, as one record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+
+
+@dataclass(frozen=True)
+class MatchLengths:
+    """The periods of a match, in seconds.
+
+    :param autonomous: length of the autonomous period
+    :param pause:      time between autonomous and teleoperated, in which the robot is disabled
+    :param teleop:     length of the teleoperated period
+    """
+
+    autonomous: float
+    pause: float
+    teleop: float
+
+
+@dataclass(frozen=True)
+class SeasonField:
+    """A season's field, drawn with x to the right and y downwards, and its rules for robots.
+
+    :param w:              size along x, in feet
+    :param h:              size along y, in feet
+    :param px_per_ft:      scale of the drawing, in pixels per foot
+    :param messages:       the game data that the field may send before autonomous
+    :param auto_joysticks: whether the robot gets joystick data in autonomous
+    """
+
+    w: float
+    h: float
+    px_per_ft: float = 15.0
+    messages: tuple[str, ...] = ()
+    auto_joysticks: bool = False
+
+
+@dataclass(frozen=True)
+class Controller:
+    """The computer on the robot, as the season's tools prepare it.
+
+    :param name:           its product name
+    :param images:         versions of its system image that the season's tools accept, the newest last
+    :param python:         the version of Python that WPILib is built for there
+    :param home:           home directory of the user that runs the robot program
+    :param program:        directory of the robot program
+    :param host_name:      its name in the local network; ``{team}`` is the team's number
+    :param usb_address:    its address on a USB cable
+    """
+
+    name: str
+    images: tuple[str, ...]
+    python: tuple[int, int]
+    home: str
+    program: str
+    host_name: str
+    usb_address: str
+
+
+@dataclass(frozen=True)
+class Packages:
+    """The Python packages of the season, from which new projects are made.
+
+    :param wpilib:   the version of WPILib that new projects ask for
+    :param commands: requirement for the command-based library
+    :param utilities: requirement for the library with `MagicRobot`
+    """
+
+    wpilib: str
+    commands: str
+    utilities: str
+
+
+@dataclass(frozen=True)
+class Season:
+    """What one season fixes.
+
+    :param year:         the season's year, as in WPILib's version numbers
+    :param kickoff:      when it begins; robot code's `time.time()` starts there
+    :param cli_plugins:  group of the entry points by which the command `robotpy` finds commands
+    """
+
+    year: int
+    kickoff: datetime
+    match: MatchLengths
+    field: SeasonField
+    controller: Controller
+    packages: Packages
+    cli_plugins: str
