@@ -15,10 +15,11 @@ demo: $(VENV)/installed  ## make a robot project in demo/, run its tests, deploy
 test: $(VENV)/installed-dev  ## run this project's own tests; ARGS go to pytest
 	$(RUN) pytest -n $(WORKERS) --dist worksteal $(ARGS)
 
-check: $(VENV)/installed-dev  ## the style and the types
+check: $(VENV)/installed-dev  ## the style, the types, and which room imports which
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .
 	$(RUN) mypy
+	$(VENV)/bin/lint-imports
 
 docs: $(VENV)/installed-dev  ## these pages, and the API reference from the docstrings, in build/docs
 	$(RUN) sphinx -q -E -W --keep-going docs build/docs
