@@ -13,8 +13,7 @@ import queue
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from operator import index
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,10 +30,10 @@ from .exceptions import TestEnded
 from .loop_watchdog import Watchdog
 from .notifier import Notifier
 from .replacements import as_original
+from .robot import RobotRun, active_run
 
 if TYPE_CHECKING:
     from ..project.robot_files import RobotFiles
-    from .robot import RobotRun
 
 _real_sleep = time.sleep
 
@@ -43,9 +42,13 @@ class Patches:
     """The replaced names of this process. There is one, since what it replaces is the process's own."""
 
     def __init__(self) -> None:
-        self.run: RobotRun | None = None
         self._files: RobotFiles  # of the project that it was installed for
         self._originals: list[tuple[Any, str, Any]] = []
+
+    @property
+    def run(self) -> RobotRun | None:
+        """The run of this process, if a robot runs."""
+        return active_run.run
 
     @property
     def installed(self) -> bool:
@@ -59,7 +62,8 @@ class Patches:
         if self.installed:
             return
         if hasattr(os, "register_at_fork"):
-            os.register_at_fork(after_in_child=self._leave)
+            # A process that robot code has forked lives in real time: it has neither the clock nor the HAL's threads.
+            os.register_at_fork(after_in_child=active_run.forget)
         for owner, name, replacement in self._replacements():
             original = vars(owner).get(name, getattr(owner, name, None))
             self._originals.append((owner, name, original))
@@ -76,24 +80,6 @@ class Patches:
         cooperative.scope.is_robot_code = lambda filename: False
         cooperative.scope.line_of = lambda frame: None
         robot_stack.show_all_lines()
-
-    def _leave(self) -> None:
-        """A process that robot code has forked lives in real time: the clock, and the HAL's threads, are not there."""
-        self.run = None
-        cooperative.scope.threads = Notifier.threads = None
-
-    @contextmanager
-    def active(self, run: RobotRun) -> Iterator[None]:
-        """While this lasts, `run` has the say over time."""
-        if self.run is not None:
-            raise RuntimeError("a robot runs already in this process")
-        self.run = run
-        cooperative.scope.threads = Notifier.threads = run.threads
-        try:
-            yield
-        finally:
-            self.run = None
-            cooperative.scope.threads = Notifier.threads = None
 
     # -- the table --------------------------------------------------------------------------------------------
 

@@ -11,30 +11,72 @@ import threading
 import weakref
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import ntcore
 import wpilib
 
-from ..errors import RobotCodeError
 from ..hal import HalData, devices_exist, modes, timing
 from ..hal.ds_connection import DriverStationConnection
 from ..hal.output_gate import OutputGate
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
+from .construction import missing_super_init, without_first_alarm
 from .data_logs import DataLogs, LogPlace
 from .exceptions import TestEnded, TestFroze, WrongThread
 from .loop_watchdog import LoopOverruns, end_wpilibs_thread
 from .motor_safety import MotorSafetyCheck
-from .notifier import Alarms
-from .patches import patches
+from .notifier import Alarms, Notifier
 from .simulation_periodic import gate_robot, gate_subsystems
 from .threads import RobotThread, RobotThreads
 from .timed_loop import TimedLoop
 
-if TYPE_CHECKING:
-    from .scripts.recorder import Recorder
+
+class ExternalWrites(Protocol):
+    """A listener for what is written from outside the robot program, such as a recorder."""
+
+    def begin_outside(self, stepping: bool = False) -> None:
+        """External writes begin."""
+
+    def end_outside(self, stepping: bool = False) -> None:
+        """External writes end."""
+
+    def on_packet_out_of_turn(self) -> None:
+        """A packet is delivered between two of the clock's packets."""
+
+
+class ActiveRun:
+    """The run of this process, if a robot runs.
+
+    There is one of these, since the HAL, the patched names and the threads in robot time belong to the process.
+    """
+
+    def __init__(self) -> None:
+        self.run: RobotRun | None = None
+
+    @contextlib.contextmanager
+    def set_to(self, run: RobotRun) -> Iterator[None]:
+        """Make `run` the active one while the context lasts.
+
+        :raises RuntimeError: when there is one already
+        """
+        if self.run is not None:
+            raise RuntimeError("a robot runs already in this process")
+        self.run = run
+        cooperative.scope.threads = Notifier.threads = run.threads
+        try:
+            yield
+        finally:
+            self.forget()
+
+    def forget(self) -> None:
+        """Have the process live in real time again."""
+        self.run = None
+        cooperative.scope.threads = Notifier.threads = None
+
+
+#: The run of this process.
+active_run = ActiveRun()
 
 
 class RobotRun:
@@ -63,7 +105,7 @@ class RobotRun:
         self.when_constructed: list[Callable[[], object]] = []
         self.when_initialized: list[Callable[[], object]] = []
         #: Who records what is done from outside, if somebody does.
-        self.recorder: Recorder | None = None
+        self.recorder: ExternalWrites | None = None
         #: What moves the robot's sensors, if the project has physics.
         self.physics: object = None
         #: What robot code draws on the field with, where there is a field to be seen.
@@ -81,7 +123,7 @@ class RobotRun:
 
     def open(self) -> None:
         """Take charge of the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
-        self._closing.enter_context(patches.active(self))
+        self._closing.enter_context(active_run.set_to(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
         ntcore.NetworkTableInstance.getDefault().startLocal()
         if not devices_exist():  # of an earlier run in this process, only its inputs are left
@@ -98,13 +140,13 @@ class RobotRun:
         """Make the robot. Its `robotInit` runs with `start`."""
         __tracebackhide__ = True
         try:
-            with self._failing(), _without_first_alarm():
+            with self._failing(), without_first_alarm():
                 self.robot = robot_class()
         except TypeError as error:
-            raise _missing_super_init(robot_class, error) or error from None
+            raise missing_super_init(robot_class, error) or error from None
         if not isinstance(self.robot, wpilib.TimedRobot) and self.initializes and self.when_initialized:
             self._listen_for_initialization()
-        gate_robot(self)
+        gate_robot(self.robot, lambda: self.output_gate)
         for listener in self.when_constructed:
             listener()
         return self.robot
@@ -118,7 +160,7 @@ class RobotRun:
 
     def _on_initialized(self) -> None:
         __tracebackhide__ = True
-        gate_subsystems(self)
+        gate_subsystems(lambda: self.output_gate)
         for listener in self.when_initialized:
             listener()
 
@@ -335,45 +377,6 @@ class RobotRun:
             self.in_motion = before
             if self.recorder is not None:
                 self.recorder.begin_outside()
-
-
-@contextlib.contextmanager
-def _without_first_alarm() -> Iterator[None]:
-    """Cancel the alarm that `wpilib.TimedRobot`'s constructor sets, as soon as it has set it.
-
-    The HAL lets no time pass before a thread waits for that alarm, and none does: a robot whose own constructor
-    waits after ``super().__init__()`` would hang.
-    """
-    original = wpilib.TimedRobot.__init__
-
-    def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
-        __tracebackhide__ = True
-        original(self, *args, **kwargs)
-        endCompetition(self)
-
-    wpilib.TimedRobot.__init__ = __init__  # type: ignore[method-assign]
-    try:
-        yield
-    finally:
-        wpilib.TimedRobot.__init__ = original  # type: ignore[method-assign]
-
-
-def _missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:
-    """WPILib complains of a forgotten ``super().__init__()`` without naming the place; this does."""
-    code = getattr(robot_class.__init__, "__code__", None)
-    if code is None or "__init__() must be called when overriding" not in str(error):
-        return None
-    return RobotCodeError(
-        f"{robot_class.__name__}.__init__ does not call super().__init__()",
-        where=f"{Path(code.co_filename).name}:{code.co_firstlineno}",
-        remedy="Make that its first line.",
-    )
-
-
-def endCompetition(self: wpilib.TimedRobot) -> None:
-    """Call WPILib's own method, never the robot's: called from a function of this name, the bindings take it for a call
-    of `super()`."""
-    wpilib.TimedRobot.endCompetition(self)
 
 
 def _has_loop_of_its_own(robot: Any) -> bool:

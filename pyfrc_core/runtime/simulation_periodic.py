@@ -16,26 +16,27 @@ from ..hal import modes
 
 if TYPE_CHECKING:
     from ..hal.output_gate import OutputGate
-    from .robot import RobotRun
 
 
-def gate_robot(run: RobotRun) -> None:
-    """Have the robot's `_simulationPeriodic` see the outputs of a disabled robot as off."""
-    robot = run.robot
+def gate_robot(robot: Any, gate: Callable[[], OutputGate]) -> None:
+    """Have the robot's `_simulationPeriodic` see the outputs of a disabled robot as off.
+
+    :param gate: returns what turns the outputs off
+    """
     own = getattr(type(robot), "_simulationPeriodic", None)
     if own is not None and own is not wpilib.IterativeRobotBase._simulationPeriodic:
-        robot._simulationPeriodic = _gated(robot, "_simulationPeriodic", lambda: run.output_gate)
+        robot._simulationPeriodic = _gated(robot, "_simulationPeriodic", gate)
 
 
-def gate_subsystems(run: RobotRun) -> None:
-    """The same for the subsystems that are there when `robotInit` is over."""
+def gate_subsystems(gate: Callable[[], OutputGate]) -> None:
+    """Do the same for the subsystems that exist when `robotInit` is over."""
     commands2 = sys.modules.get("commands2")
     if commands2 is None:
         return
     # There is no public way to ask for them.
     for subsystem in commands2.CommandScheduler.getInstance()._subsystems:
         if type(subsystem).simulationPeriodic is not commands2.Subsystem.simulationPeriodic:
-            subsystem.simulationPeriodic = _gated(subsystem, "simulationPeriodic", lambda: run.output_gate)
+            subsystem.simulationPeriodic = _gated(subsystem, "simulationPeriodic", gate)
 
 
 def _gated(owner: Any, name: str, gate: Callable[[], OutputGate]) -> Callable[[], None]:

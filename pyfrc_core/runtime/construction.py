@@ -1,0 +1,51 @@
+"""What the construction of a robot needs: no alarm that stops time, and an explanation when WPILib refuses it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import wpilib
+
+from ..errors import RobotCodeError
+
+
+@contextmanager
+def without_first_alarm() -> Iterator[None]:
+    """Cancel the alarm that `wpilib.TimedRobot`'s constructor sets, as soon as it has set it.
+
+    The HAL lets no time pass before a thread waits for that alarm, and none does: a robot whose own constructor
+    waits after ``super().__init__()`` would hang.
+    """
+    original = wpilib.TimedRobot.__init__
+
+    def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
+        __tracebackhide__ = True
+        original(self, *args, **kwargs)
+        endCompetition(self)
+
+    wpilib.TimedRobot.__init__ = __init__  # type: ignore[method-assign]
+    try:
+        yield
+    finally:
+        wpilib.TimedRobot.__init__ = original  # type: ignore[method-assign]
+
+
+def missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:
+    """WPILib complains of a forgotten ``super().__init__()`` without naming the place; this does."""
+    code = getattr(robot_class.__init__, "__code__", None)
+    if code is None or "__init__() must be called when overriding" not in str(error):
+        return None
+    return RobotCodeError(
+        f"{robot_class.__name__}.__init__ does not call super().__init__()",
+        where=f"{Path(code.co_filename).name}:{code.co_firstlineno}",
+        remedy="Make that its first line.",
+    )
+
+
+def endCompetition(self: wpilib.TimedRobot) -> None:
+    """Call WPILib's own method, never the robot's: called from a function of this name, the bindings take it for a call
+    of `super()`."""
+    wpilib.TimedRobot.endCompetition(self)
