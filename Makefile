@@ -1,30 +1,30 @@
-# Each of the first two does all the set-up it needs, on a fresh machine with Python 3.10 to 3.14.
+# `make demo` and `make test` install everything that they need, on a fresh machine with Python 3.10 or newer.
 PYTHON ?= python3
 VENV ?= .venv
 RUN := $(VENV)/bin/python -m
-# One more than there are processors, since some tests wait for what others' programs do.
+# One more than the number of processors, because some tests wait for other programs.
 WORKERS ?= $(shell expr 1 + $$(getconf _NPROCESSORS_ONLN))
 
 .PHONY: demo test check docs clean
 
-demo: $(VENV)/installed  ## make a robot project in demo/, run its tests, deploy it to a virtual robot, change it, go back
+demo: $(VENV)/installed  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back
 	test -d demo || $(RUN) pyfrc init demo
 	$(RUN) pyfrc test --project demo --coverage
 	$(RUN) pyfrc virtual-robot --directory demo/.pyfrc/virtual-robot --fresh -- $(VENV)/bin/python tests/demo.py demo
 
-test: $(VENV)/installed-dev  ## run this project's own tests; ARGS go to pytest
+test: $(VENV)/installed-dev  ## run pyfrc's own tests; ARGS are passed to pytest
 	$(RUN) pytest -n $(WORKERS) --dist worksteal $(ARGS)
 
-check: $(VENV)/installed-dev  ## the style, the types, and which room imports which
+check: $(VENV)/installed-dev  ## check style, types, and which room imports which
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .
 	$(RUN) mypy
 	$(VENV)/bin/lint-imports
 
-docs: $(VENV)/installed-dev  ## these pages, and the API reference from the docstrings, in build/docs
+docs: $(VENV)/installed-dev  ## build the documentation with the API reference in build/docs
 	$(RUN) sphinx -q -E -W --keep-going docs build/docs
 
-# An environment without pip, as Debian's Python makes it when python3-venv is missing, must not be taken for a whole one.
+# Remove an environment without pip, as Debian's Python creates it if python3-venv is missing.
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10) and "pyfrc needs Python 3.10 or newer; if you have one: make PYTHON=python3.13")'
 	$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); exit 1; }

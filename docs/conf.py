@@ -1,4 +1,4 @@
-"""How Sphinx builds these pages: `make docs`. Nothing is fetched from the network."""
+"""Sphinx configuration of these pages: `make docs`. The build needs no network."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-# A fixture is documented as the method that it is written as, not as the object that pytest makes of it.
+# Document a fixture as the method in the source, not as the object that pytest creates from it.
 pytest.fixture = lambda function: function
 
 from sphinx.application import Sphinx  # noqa: E402
@@ -24,7 +24,7 @@ myst_heading_anchors = 3
 
 autodoc_default_options = {
     "members": True,
-    # Not what every tuple, exception, number and dict can do.
+    # Leave out the methods of tuples, exceptions, numbers and dicts.
     "inherited-members": "tuple, BaseException, int, MutableMapping, Sequence",
     "member-order": "bysource",
 }
@@ -38,7 +38,7 @@ html_show_copyright = False
 html_show_sphinx = False
 
 
-#: `pyfrc` only hands names on: what is said of these modules' constants stands where they are defined.
+#: `pyfrc` re-exports names: the comments of these modules' constants are in the modules that define them.
 CONSTANTS = {
     "pyfrc.physics.drivetrains": "pyfrc_core.physics.deadzones",
     "pyfrc.physics.motor_cfgs": "pyfrc_core.physics.motor_cfgs",
@@ -46,15 +46,15 @@ CONSTANTS = {
 }
 
 
-def hand_on_comments() -> None:
+def copy_comments() -> None:
     for module, origin in CONSTANTS.items():
-        handed_on = ModuleAnalyzer.for_module(module)
-        handed_on.analyze()
-        handed_on.attr_docs.update(ModuleAnalyzer.for_module(origin).find_attr_docs())
+        exported = ModuleAnalyzer.for_module(module)
+        exported.analyze()
+        exported.attr_docs.update(ModuleAnalyzer.for_module(origin).find_attr_docs())
 
 
 def without_field_numbers(app: Sphinx, what: str, name: str, obj: object, options: Any, lines: list[str]) -> None:
-    """Named tuples say "Alias for field number 0" of what their own docstring explains."""
+    """Remove "Alias for field number 0": the docstring of the named tuple explains its fields."""
     if lines and lines[0].startswith("Alias for field number"):
         lines.clear()
 
@@ -62,13 +62,13 @@ def without_field_numbers(app: Sphinx, what: str, name: str, obj: object, option
 def fixtures_without_parameters(
     app: Sphinx, what: str, name: str, obj: object, options: Any, signature: str | None, returns: str | None
 ) -> tuple[str, str | None] | None:
-    """Tests ask for fixtures by name: what those themselves ask for is no user's concern."""
+    """Hide the parameters of fixtures: tests request fixtures by name."""
     if what == "method" and name.startswith("pyfrc.test_support.pytest_plugin.PyFrcPlugin."):
         return "()", returns
     return None
 
 
 def setup(app: Sphinx) -> None:
-    hand_on_comments()
+    copy_comments()
     app.connect("autodoc-process-docstring", without_field_numbers)
     app.connect("autodoc-process-signature", fixtures_without_parameters)

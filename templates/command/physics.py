@@ -1,6 +1,6 @@
-"""What the robot's surroundings are in tests and in the simulator: WPILib's own model of a drivetrain.
+"""Physics of the robot in tests and in the simulator: WPILib's model of a drivetrain.
 
-The numbers are those of a common robot: put in your own.
+The numbers describe a typical robot. Replace them with your robot's.
 """
 
 from pyfrc.physics.core import PhysicsInterface
@@ -14,7 +14,7 @@ BATTERY = 12.0  # volts
 
 
 class PhysicsEngine:
-    """Made when the robot's robotInit is over; moves the robot as its motors say."""
+    """Move the robot according to its motors. Created after robotInit."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.physics_controller = physics_controller
@@ -25,11 +25,11 @@ class PhysicsEngine:
         self.right_encoder = EncoderSim(drive.right_encoder)
         self.drivetrain = DifferentialDrivetrainSim(
             DCMotor.NEO(2),  # on each side
-            8.46,  # turns of a motor for one of the wheels
+            8.46,  # turns of a motor per turn of a wheel
             5.0,  # moment of inertia when it turns, in kg m²
             50.0,  # mass, in kg
             0.0762,  # radius of the wheels, in m
-            0.56,  # from the left wheels to the right ones, in m
+            0.56,  # from the left wheels to the right wheels, in m
         )
         physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")  # turns with the robot
 

@@ -1,4 +1,4 @@
-"""What the robot has, and which button does what."""
+"""The robot's subsystems, and what each button does."""
 
 import commands2
 import commands2.button
@@ -10,7 +10,7 @@ from subsystems.intake import Intake
 
 
 class RobotContainer:
-    """The subsystems, the gamepad, and what autonomous can do."""
+    """The subsystems, the gamepad and the autonomous chooser."""
 
     def __init__(self) -> None:
         self.drive = Drive()
@@ -26,23 +26,23 @@ class RobotContainer:
         wpilib.SmartDashboard.putData("Autonomous", self.chooser)
 
     def configure_buttons(self) -> None:
-        """Say what each button does."""
-        # Whenever nothing else drives, the sticks do. Forward and left are negative on a stick.
+        """Bind the buttons to commands."""
+        # The default command: the sticks drive if nothing else does. Forward and left are negative on a stick.
         self.drive.setDefaultCommand(
             self.drive.arcade(lambda: -self.gamepad.getLeftY(), lambda: -self.gamepad.getRightX())
         )
         self.gamepad.a().whileTrue(self.intake.take_in())
         self.gamepad.b().whileTrue(self.intake.spit_out())
-        self.gamepad.x().onTrue(DriveDistance(self.drive, -0.5))  # back off a little
+        self.gamepad.x().onTrue(DriveDistance(self.drive, -0.5))  # drive back a little
 
     def fetch(self) -> commands2.Command:
-        """Drive up to a game piece with the intake running, and bring it back."""
+        """Drive to a game piece with the intake running, and bring it back."""
         return commands2.cmd.sequence(
             commands2.cmd.deadline(DriveDistance(self.drive, 1.5), self.intake.take_in()),
             DriveDistance(self.drive, -1.5),
         )
 
     def get_autonomous_command(self) -> commands2.Command | None:
-        """What was chosen on the dashboard."""
+        """Return the command chosen on the dashboard."""
         chosen: commands2.Command | None = self.chooser.getSelected()
         return chosen

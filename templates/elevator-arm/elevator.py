@@ -1,4 +1,4 @@
-"""The elevator: a motor that winds up a cable, an encoder on its drum, a limit switch at the bottom."""
+"""The elevator: a motor that winds a cable, an encoder on its drum, a limit switch at the bottom."""
 
 import math
 
@@ -13,47 +13,47 @@ COUNTS_PER_TURN = 4096
 
 
 class Elevator:
-    """Goes to heights, and holds them. It has to be at the bottom when the robot is switched on."""
+    """Move the elevator to a height and hold it there. It must be at the bottom when the robot is switched on."""
 
     def __init__(self) -> None:
         self.motor = wpilib.PWMSparkMax(0)
         self.encoder = wpilib.Encoder(0, 1)
         self.encoder.setDistancePerPulse(math.tau * DRUM_RADIUS / COUNTS_PER_TURN)
-        self.bottom_switch = wpilib.DigitalInput(2)  # False when it is pressed
+        self.bottom_switch = wpilib.DigitalInput(2)  # False while it is pressed
 
-        # Gets going and slows down gently: at most 1.2 m/s, 2 m/s².
+        # The motion profile: at most 1.2 m/s and 2 m/s².
         self.controller = ProfiledPIDController(20.0, 0.0, 0.5, TrapezoidProfile.Constraints(1.2, 2.0))
-        # What it takes by itself, in volts: against gravity, and for each m/s. The controller only mends the rest.
+        # Feedforward in volts: against gravity, and for each m/s. The controller corrects the remaining error.
         self.feedforward = ElevatorFeedforward(0.0, 0.57, 6.5)
         self.controller.setGoal(LOWEST)
 
     @property
     def height(self) -> float:
-        """How high it is, in metres."""
+        """Return the height in metres."""
         return self.encoder.getDistance()
 
     @property
     def is_there(self) -> bool:
-        """Whether it is where it was told to go."""
+        """Return whether it has reached its goal."""
         return abs(self.height - self.controller.getGoal().position) < 0.02
 
     def go_to(self, height: float) -> None:
-        """Go to a height from now on; higher or lower than it can, it stays at the end."""
+        """Set the goal to a height, limited to the elevator's range."""
         self.controller.setGoal(max(LOWEST, min(HIGHEST, height)))
 
     def start_from_here(self) -> None:
-        """Hold the height at which it is now."""
+        """Hold the current height."""
         self.controller.reset(self.height)
         self.go_to(self.height)
 
     def move(self) -> None:
-        """Tell the motor what brings it there; to be called every 20 ms."""
+        """Set the motor's voltage. Call this every 20 ms."""
         volts = self.controller.calculate(self.height)
         volts += self.feedforward.calculate(self.controller.getSetpoint().velocity)
         if not self.bottom_switch.get():
-            volts = max(0.0, volts)  # no further down
+            volts = max(0.0, volts)  # do not push further down
         self.motor.set(max(-1.0, min(1.0, volts / 12)))
 
     def stop(self) -> None:
-        """Let go."""
+        """Turn the motor off."""
         self.motor.set(0)

@@ -1,6 +1,6 @@
-"""What the robot's surroundings are in tests and in the simulator: gravity, and WPILib's own models of both mechanisms.
+"""Physics of the robot in tests and in the simulator: gravity, and WPILib's models of both mechanisms.
 
-The numbers are those of a common robot: put in your own.
+The numbers describe a typical robot. Replace them with your robot's.
 """
 
 import math
@@ -27,7 +27,7 @@ ARM_MASS = 3.0  # kg
 
 
 class PhysicsEngine:
-    """Made when the robot's robotInit is over; moves what the motors move."""
+    """Move both mechanisms according to their motors. Created after robotInit."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.elevator_motor = PWMSim(robot.elevator.motor.getChannel())
@@ -66,13 +66,13 @@ class PhysicsEngine:
         self.arm.setInputVoltage(self.arm_motor.getSpeed() * self.battery)
         self.arm.update(tm_diff)
 
-        # What the motors draw makes the battery's voltage fall.
+        # The motors' current lowers the battery's voltage.
         self.battery = BatterySim.calculate([self.elevator.getCurrentDraw(), self.arm.getCurrentDraw()])
         RoboRioSim.setVInVoltage(self.battery)
         self.measure()
 
     def measure(self) -> None:
-        """Show the sensors where both mechanisms are."""
+        """Set the sensors to the positions of both mechanisms."""
         self.elevator_encoder.setDistance(self.elevator.getPosition())
         self.bottom_switch.setValue(self.elevator.getPosition() > 0.005)  # pressed in the last 5 mm
         self.arm_encoder.set(self.arm.getAngle() + arm.READS_WHEN_LEVEL)

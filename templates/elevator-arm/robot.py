@@ -1,4 +1,4 @@
-"""An elevator with an arm at its top: buttons choose where to go, controllers bring both there and hold them."""
+"""An elevator with an arm at its top: buttons choose a position, controllers move both there and hold them."""
 
 import math
 
@@ -7,7 +7,7 @@ import wpilib
 from arm import Arm
 from elevator import Elevator
 
-# Where to go, by what for: the elevator's height in metres, the arm's angle in radians (0 is level, up is positive).
+# Positions by name: the elevator's height in metres, the arm's angle in radians (0 is level, up is positive).
 STOWED = (0.0, math.radians(-80))
 FLOOR = (0.1, math.radians(-30))
 SHELF = (0.7, math.radians(0))
@@ -15,7 +15,7 @@ TOP = (1.3, math.radians(60))
 
 
 class MyRobot(wpilib.TimedRobot):
-    """Your robot. Each method is called by WPILib when its name says so."""
+    """The robot. WPILib calls each method at the time that its name says."""
 
     def robotInit(self) -> None:
         """Called once when the program starts."""
@@ -26,14 +26,14 @@ class MyRobot(wpilib.TimedRobot):
         self.create_picture()
 
     def create_picture(self) -> None:
-        """A picture of both for the dashboard: a line as long as the elevator is high, and the arm at its end."""
+        """Create a drawing for the dashboard: a line as long as the elevator's height, with the arm at its end."""
         self.picture = wpilib.Mechanism2d(2.0, 2.5)  # metres wide and high
         self.elevator_line = self.picture.getRoot("elevator", 1.0, 0.2).appendLigament("carriage", 0.3, 90)
         self.arm_line = self.elevator_line.appendLigament("arm", 0.6, -90)
         wpilib.SmartDashboard.putData("Mechanism", self.picture)
 
     def robotPeriodic(self) -> None:
-        """Called every 20 ms in every mode: draw what is measured."""
+        """Called every 20 ms in every mode: draw the measured positions."""
         self.elevator_line.setLength(0.3 + self.elevator.height)
         self.arm_line.setAngle(math.degrees(self.arm.angle) - 90)
 
@@ -43,7 +43,7 @@ class MyRobot(wpilib.TimedRobot):
         self.timer.restart()
 
     def autonomousPeriodic(self) -> None:
-        """Called every 20 ms in autonomous: reach to the top for four seconds, then fold up."""
+        """Called every 20 ms in autonomous: reach to the top for four seconds, then stow."""
         self.go_to(TOP if self.timer.get() < 4.0 else STOWED)
         self.move()
 
@@ -52,7 +52,7 @@ class MyRobot(wpilib.TimedRobot):
         self.start_from_here()
 
     def teleopPeriodic(self) -> None:
-        """Called every 20 ms in teleop. A button once pressed holds: there is no need to keep it down."""
+        """Called every 20 ms in teleop. One press of a button is enough: the robot holds the position."""
         if self.gamepad.getAButtonPressed():
             self.go_to(FLOOR)
         if self.gamepad.getBButtonPressed():
@@ -64,22 +64,22 @@ class MyRobot(wpilib.TimedRobot):
         self.move()
 
     def disabledInit(self) -> None:
-        """Called once when the robot is disabled: let go, so that nothing jumps later."""
+        """Called once when the robot is disabled: turn off, so that nothing moves suddenly later."""
         self.elevator.stop()
         self.arm.stop()
 
     def go_to(self, place: tuple[float, float]) -> None:
-        """Where to go from now on."""
+        """Set the goals of both mechanisms."""
         height, angle = place
         self.elevator.go_to(height)
         self.arm.go_to(angle)
 
     def move(self) -> None:
-        """Tell the motors what brings both to where they are to go; to be called every 20 ms."""
+        """Move both mechanisms to their goals. Call this every 20 ms."""
         self.elevator.move()
         self.arm.move()
 
     def start_from_here(self) -> None:
-        """While the robot was disabled, things have sunk: hold them where they are now."""
+        """Hold the current positions: both mechanisms have sunk while the robot was disabled."""
         self.elevator.start_from_here()
         self.arm.start_from_here()

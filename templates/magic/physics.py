@@ -1,6 +1,6 @@
-"""What the robot's surroundings are in tests and in the simulator: the floor, and the weight of the shooter's wheel.
+"""Physics of the robot in tests and in the simulator: a drivetrain, and the inertia of the shooter's wheel.
 
-The numbers are those of a common robot: put in your own.
+The numbers describe a typical robot. Replace them with your robot's.
 """
 
 import math
@@ -14,7 +14,7 @@ from robot import MyRobot
 
 
 class PhysicsEngine:
-    """Made when the robot's devices are; moves the robot and spins the wheel as the motors say."""
+    """Move the robot and spin the wheel according to the motors. Created after the robot's devices."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.physics_controller = physics_controller

@@ -1,6 +1,6 @@
-"""What the robot's surroundings are in tests and in the simulator: mecanum wheels on the floor, and a gyro.
+"""Physics of the robot in tests and in the simulator: mecanum wheels and a gyro.
 
-The numbers are those of a common robot: put in your own.
+The numbers describe a typical robot. Replace them with your robot's.
 """
 
 from pyfrc.physics.core import PhysicsInterface
@@ -10,13 +10,13 @@ from wpilib.simulation import PWMSim
 
 from robot import MyRobot
 
-TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right ones
-WHEEL_BASE = 24 * units.inch  # from the rear wheels to the front ones
+TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right wheels
+WHEEL_BASE = 24 * units.inch  # from the rear wheels to the front wheels
 MAX_SPEED = 10 * units.fps  # at full power
 
 
 class PhysicsEngine:
-    """Made when the robot's robotInit is over; moves the robot as its motors say."""
+    """Move the robot according to its motors. Created after robotInit."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.physics_controller = physics_controller

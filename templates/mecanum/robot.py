@@ -1,10 +1,10 @@
-"""A robot with mecanum drive, steered as seen from the field: the stick's way is the robot's, wherever it faces."""
+"""A field-oriented mecanum drive: the robot moves in the stick's direction, whichever way it faces."""
 
 import wpilib
 import wpilib.drive
 from wpimath.geometry import Rotation2d
 
-# What autonomous does: for how many seconds, how fast forward and how fast to the right.
+# The steps of autonomous: seconds, speed forward, speed to the right.
 AUTONOMOUS = [
     (2.0, 0.4, 0.0),
     (1.5, 0.0, 0.4),
@@ -12,7 +12,7 @@ AUTONOMOUS = [
 
 
 class MyRobot(wpilib.TimedRobot):
-    """Your robot. Each method is called by WPILib when its name says so."""
+    """The robot. WPILib calls each method at the time that its name says."""
 
     def robotInit(self) -> None:
         """Called once when the program starts: create motors, sensors and gamepads here."""
@@ -25,23 +25,23 @@ class MyRobot(wpilib.TimedRobot):
         self.front_right.setInverted(True)
         self.rear_right.setInverted(True)
         self.drive = wpilib.drive.MecanumDrive(self.front_left, self.rear_left, self.front_right, self.rear_right)
-        self.drive.setDeadband(0.1)  # sticks never come back to exactly 0
+        self.drive.setDeadband(0.1)  # sticks never return to exactly 0
 
         self.gyro = wpilib.ADXRS450_Gyro()
         self.gamepad = wpilib.XboxController(0)
         self.timer = wpilib.Timer()
 
     def robotPeriodic(self) -> None:
-        """Called every 20 ms in every mode: show the driver which way the robot faces, in degrees clockwise."""
+        """Called every 20 ms in every mode: show the driver the robot's heading, in degrees clockwise."""
         wpilib.SmartDashboard.putNumber("Heading", self.gyro.getAngle())
 
     def autonomousInit(self) -> None:
-        """Called once when autonomous starts. Which way the robot faces now is forward from here on."""
+        """Called once when autonomous starts: the robot's current heading becomes forward."""
         self.gyro.reset()
         self.timer.restart()
 
     def autonomousPeriodic(self) -> None:
-        """Called every 20 ms in autonomous: take the step whose time it is."""
+        """Called every 20 ms in autonomous: run the current step."""
         step_ends = 0.0
         for seconds, forward, right in AUTONOMOUS:
             step_ends += seconds
@@ -53,21 +53,21 @@ class MyRobot(wpilib.TimedRobot):
     def teleopPeriodic(self) -> None:
         """Called every 20 ms in teleop. Pushing a stick forward gives a negative number."""
         if self.gamepad.getBackButtonPressed():
-            self.gyro.reset()  # for when the gyro has drifted: face away from you, and press
+            self.gyro.reset()  # if the gyro has drifted: turn the robot away from you, and press
         forward = -self.gamepad.getLeftY()
         right = self.gamepad.getLeftX()
         turn = self.gamepad.getRightX()
         if self.gamepad.getLeftBumperButton():
-            # As seen from the robot: for the last centimetres.
+            # Relative to the robot, for small corrections.
             self.drive.driveCartesian(0.5 * forward, 0.5 * right, 0.5 * turn)
         else:
             self.drive_on_field(forward, right, turn)
 
     def drive_on_field(self, forward: float, right: float, turn: float) -> None:
-        """Drive as seen from the field: `turn` is clockwise, and all are from -1 to 1."""
+        """Drive relative to the field. All values are from -1 to 1; `turn` is clockwise."""
         # MecanumDrive counts angles clockwise, as gyros do.
         self.drive.driveCartesian(forward, right, turn, Rotation2d.fromDegrees(self.gyro.getAngle()))
 
     def disabledInit(self) -> None:
-        """Called once when the robot is disabled: stop, so that nothing jumps later."""
+        """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""
         self.drive.stopMotor()

@@ -1,4 +1,4 @@
-"""The four swerve modules together: how fast the robot goes as a whole, and where it is."""
+"""The four swerve modules together: the robot's speed and its pose."""
 
 import wpilib
 from wpimath.geometry import Pose2d, Rotation2d, Translation2d
@@ -12,7 +12,7 @@ from wpimath.kinematics import (
 
 from swervemodule import MAX_SPEED, SwerveModule
 
-# From the middle of the robot to each module, in metres: forward, and to the left.
+# From the centre of the robot to each module, in metres: forward, and to the left.
 HALF_LENGTH = 0.28
 HALF_WIDTH = 0.28
 MODULE_PLACES = (
@@ -28,10 +28,10 @@ ALL_STILL = (SwerveModuleState(),) * 4
 
 
 class Drivetrain:
-    """Drives the robot; angles are counter-clockwise, and the field's x is away from the driver."""
+    """The drivetrain. Angles are counter-clockwise, and the field's x axis points away from the driver."""
 
     def __init__(self) -> None:
-        # Where each is plugged in: drive motor and turning motor (PWM), drive encoder (DIO), angle encoder (analog).
+        # The channels of each module: drive motor and turning motor (PWM), drive encoder (DIO), angle encoder (analog).
         self.front_left = SwerveModule(0, 1, (0, 1), 0)
         self.front_right = SwerveModule(2, 3, (2, 3), 1)
         self.rear_left = SwerveModule(4, 5, (4, 5), 2)
@@ -47,24 +47,24 @@ class Drivetrain:
 
     @property
     def pose(self) -> Pose2d:
-        """Where the robot is, by its wheels and its gyro, as seen from where it started."""
+        """Return the robot's pose relative to its start, from its wheels and its gyro."""
         return self.odometry.getPose()
 
     @property
     def heading(self) -> Rotation2d:
-        """Which way the robot faces on the field."""
+        """Return the robot's heading on the field."""
         return self.pose.rotation()
 
     def drive_on_field(self, speeds: ChassisSpeeds) -> None:
-        """Drive at these speeds as seen from the field."""
+        """Drive at these speeds relative to the field."""
         self.drive(ChassisSpeeds.fromFieldRelativeSpeeds(speeds, self.heading))
 
     def drive(self, speeds: ChassisSpeeds) -> None:
-        """Drive at these speeds as seen from the robot."""
-        # In 20 ms the robot turns a little, so straight lines would come out bent.
+        """Drive at these speeds relative to the robot."""
+        # The robot turns a little within 20 ms, which would bend straight lines.
         speeds = ChassisSpeeds.discretize(speeds, 0.02)
         states = self.kinematics.toSwerveModuleStates(speeds)
-        # When one wheel would have to be faster than it can, slow all down: the direction stays.
+        # If one wheel would exceed its maximum speed, slow all of them down, so that the direction stays.
         states = self.kinematics.desaturateWheelSpeeds(states, MAX_SPEED)
         self._set(states)
 
@@ -74,12 +74,12 @@ class Drivetrain:
             module.stop()
 
     def face_forward(self) -> None:
-        """From here on, the way that the robot faces now is away from the driver."""
+        """Define the robot's current heading as the direction away from the driver."""
         here = Pose2d(self.pose.translation(), Rotation2d())
         self.odometry.resetPosition(self.gyro.getRotation2d(), self._positions(), here)
 
     def update_odometry(self) -> None:
-        """Find out where the robot has gone since the last call."""
+        """Update the pose with the movement since the last call."""
         self.odometry.update(self.gyro.getRotation2d(), self._positions())
         self.field.setRobotPose(self.pose)
 

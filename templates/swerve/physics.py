@@ -1,6 +1,6 @@
-"""What the robot's surroundings are in tests and in the simulator: four wheels on the floor, their encoders, a gyro.
+"""Physics of the robot in tests and in the simulator: four swerve wheels, their encoders, a gyro.
 
-The numbers are those of a common robot: put in your own.
+The numbers describe a typical robot. Replace them with your robot's.
 """
 
 import math
@@ -13,11 +13,11 @@ from wpimath.kinematics import SwerveModuleState
 from robot import MyRobot
 from swervemodule import MAX_SPEED, SwerveModule
 
-MAX_WHEEL_TURNING = 4 * math.pi  # how fast a module turns its wheel at full power, in rad/s
+MAX_WHEEL_TURNING = 4 * math.pi  # of a module's wheel at full power, in rad/s
 
 
 class ModulePhysics:
-    """What one module's motors do to its wheel, and the wheel to its encoders."""
+    """The wheel of one module: its motors move it, and it moves the encoders."""
 
     def __init__(self, module: SwerveModule) -> None:
         self.drive_motor = PWMSim(module.drive_motor.getChannel())
@@ -28,7 +28,7 @@ class ModulePhysics:
         self.rolled = 0.0  # in metres
 
     def move(self, tm_diff: float) -> SwerveModuleState:
-        """Turn and roll on for some time; answers how the wheel moved."""
+        """Turn and roll for `tm_diff` seconds. Return how the wheel moved."""
         speed = self.drive_motor.getSpeed() * MAX_SPEED
         self.angle += self.turn_motor.getSpeed() * MAX_WHEEL_TURNING * tm_diff
         self.rolled += speed * tm_diff
@@ -38,7 +38,7 @@ class ModulePhysics:
 
 
 class PhysicsEngine:
-    """Made when the robot's robotInit is over; moves the robot as its wheels do."""
+    """Move the robot according to its wheels. Created after robotInit."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.physics_controller = physics_controller
@@ -50,7 +50,7 @@ class PhysicsEngine:
 
     def update_sim(self, now: float, tm_diff: float) -> None:
         """Called every 20 ms; `tm_diff` is the time since the last call, in seconds."""
-        # Four wheels that do not quite agree slip; WPILib finds the movement that fits them best.
+        # If the four wheels do not agree, they slip. WPILib computes the movement that fits them best.
         speeds = self.kinematics.toChassisSpeeds(
             (
                 self.front_left.move(tm_diff),

@@ -1,4 +1,4 @@
-"""A robot with swerve drive: each of its four wheels can be turned to any direction, and so the robot goes anywhere."""
+"""A swerve drive: each of the four wheels turns in any direction, so the robot can move in any direction."""
 
 import wpilib
 from wpimath import applyDeadband
@@ -8,7 +8,7 @@ from wpimath.kinematics import ChassisSpeeds
 from drivetrain import MAX_TURNING_SPEED, Drivetrain
 from swervemodule import MAX_SPEED
 
-# What autonomous does: for how many seconds, at which speeds as seen from the field (m/s forward, m/s to the left,
+# The steps of autonomous: seconds, and speeds relative to the field (m/s forward, m/s to the left,
 # rad/s counter-clockwise).
 AUTONOMOUS = [
     (2.0, ChassisSpeeds(1.0, 0.0, 0.0)),
@@ -18,7 +18,7 @@ AUTONOMOUS = [
 
 
 class MyRobot(wpilib.TimedRobot):
-    """Your robot. Each method is called by WPILib when its name says so."""
+    """The robot. WPILib calls each method at the time that its name says."""
 
     def robotInit(self) -> None:
         """Called once when the program starts."""
@@ -26,12 +26,12 @@ class MyRobot(wpilib.TimedRobot):
         self.gamepad = wpilib.XboxController(0)
         self.timer = wpilib.Timer()
 
-        # From standing to full speed in a third of a second, so that the wheels do not slip.
+        # From zero to full speed in a third of a second, so that the wheels do not slip.
         self.forward_limit = SlewRateLimiter(3 * MAX_SPEED)
         self.left_limit = SlewRateLimiter(3 * MAX_SPEED)
 
     def robotPeriodic(self) -> None:
-        """Called every 20 ms in every mode: keep count of where the robot is."""
+        """Called every 20 ms in every mode: update the robot's pose."""
         self.drivetrain.update_odometry()
 
     def autonomousInit(self) -> None:
@@ -39,7 +39,7 @@ class MyRobot(wpilib.TimedRobot):
         self.timer.restart()
 
     def autonomousPeriodic(self) -> None:
-        """Called every 20 ms in autonomous: take the step whose time it is."""
+        """Called every 20 ms in autonomous: run the current step."""
         step_ends = 0.0
         for seconds, speeds in AUTONOMOUS:
             step_ends += seconds
@@ -59,7 +59,7 @@ class MyRobot(wpilib.TimedRobot):
         self.drivetrain.drive_on_field(speeds)
 
     def disabledInit(self) -> None:
-        """Called once when the robot is disabled: stop, so that nothing jumps later."""
+        """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""
         self.drivetrain.stop()
         self.forward_limit.reset(0)
         self.left_limit.reset(0)

@@ -1,4 +1,4 @@
-"""One swerve module: a wheel with a motor that drives it and a motor that turns it to a direction."""
+"""One swerve module: a wheel, a motor that drives it, and a motor that turns it."""
 
 import math
 
@@ -9,12 +9,12 @@ from wpimath.kinematics import SwerveModulePosition, SwerveModuleState
 
 MAX_SPEED = 4.0  # of the wheel at full power, in m/s
 WHEEL_DIAMETER = 0.10  # in metres
-DRIVE_GEARING = 6.75  # turns of the drive motor for one of the wheel
+DRIVE_GEARING = 6.75  # turns of the drive motor per turn of the wheel
 COUNTS_PER_TURN = 1024  # of the encoder on the drive motor
 
 
 class SwerveModule:
-    """A wheel that can be told its speed and its direction."""
+    """A wheel with a speed and a direction."""
 
     def __init__(self, drive: int, turn: int, drive_encoder: tuple[int, int], angle_encoder: int) -> None:
         self.drive_motor = wpilib.PWMSparkMax(drive)
@@ -23,31 +23,31 @@ class SwerveModule:
         self.drive_encoder = wpilib.Encoder(*drive_encoder)
         self.drive_encoder.setDistancePerPulse(math.pi * WHEEL_DIAMETER / DRIVE_GEARING / COUNTS_PER_TURN)
 
-        # Tells the wheel's direction in radians, also after the robot has been off. When the wheel looks forward and
-        # this is not 0, put what it is into the last number.
+        # An absolute encoder: the wheel's direction in radians. If this is not 0 when the wheel points forward,
+        # write its value into the last number.
         self.angle_encoder = wpilib.AnalogEncoder(angle_encoder, math.tau, 0.0)
 
-        self.angle_controller = PIDController(1.0, 0.0, 0.0)  # full power for a radian
-        self.angle_controller.enableContinuousInput(-math.pi, math.pi)  # a turn further is the same direction
+        self.angle_controller = PIDController(1.0, 0.0, 0.0)  # full power at an error of one radian
+        self.angle_controller.enableContinuousInput(-math.pi, math.pi)  # angles one turn apart are the same direction
 
     @property
     def angle(self) -> Rotation2d:
-        """The direction in which the wheel looks, counter-clockwise from the robot's front."""
+        """Return the wheel's direction, counter-clockwise from the robot's front."""
         return Rotation2d(self.angle_encoder.get())
 
     @property
     def position(self) -> SwerveModulePosition:
-        """How far the wheel has rolled, in metres, and its direction."""
+        """Return how far the wheel has rolled, in metres, and its direction."""
         return SwerveModulePosition(self.drive_encoder.getDistance(), self.angle)
 
     def set(self, state: SwerveModuleState) -> None:
         """Drive the wheel at a speed, in a direction."""
         if abs(state.speed) < 0.01:
-            self.stop()  # and leave the wheel as it is: there is nowhere to go
+            self.stop()  # and keep the wheel's direction
             return
         wanted = SwerveModuleState(state.speed, state.angle)
-        wanted.optimize(self.angle)  # backwards, where that is less far to turn
-        wanted.cosineScale(self.angle)  # slowly, as long as it looks the wrong way
+        wanted.optimize(self.angle)  # drive backwards if the wheel then turns less
+        wanted.cosineScale(self.angle)  # drive slowly while the wheel points in the wrong direction
         turn = self.angle_controller.calculate(self.angle.radians(), wanted.angle.radians())
         self.drive_motor.set(within_full_power(wanted.speed / MAX_SPEED))
         self.turn_motor.set(within_full_power(turn))
@@ -59,5 +59,5 @@ class SwerveModule:
 
 
 def within_full_power(power: float) -> float:
-    """What a motor can be told: from -1 to 1."""
+    """Limit the value to a motor's range, from -1 to 1."""
     return max(-1.0, min(1.0, power))

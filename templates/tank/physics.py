@@ -1,6 +1,6 @@
-"""What the robot's surroundings are in tests and in the simulator: its weight, its wheels, and its encoders' shafts.
+"""Physics of the robot in tests and in the simulator: its mass, its wheels and its encoders.
 
-The numbers are those of a common robot: put in your own.
+The numbers describe a typical robot. Replace them with your robot's.
 """
 
 import wpilib
@@ -13,11 +13,11 @@ from robot import MyRobot
 
 METRES_PER_FOOT = 0.3048
 MASS = 110 * units.lbs  # with battery and bumpers
-TRACK_WIDTH = 24 * units.inch  # from the left wheels to the right ones
+TRACK_WIDTH = 24 * units.inch  # from the left wheels to the right wheels
 
 
 class EncoderShaft:
-    """Turns an encoder; like a real one, it counts on from where the robot's reset() has put it."""
+    """A shaft that turns an encoder. After the robot's reset(), the encoder counts from 0, like a real one."""
 
     def __init__(self, encoder: wpilib.Encoder) -> None:
         self.encoder = EncoderSim(encoder)
@@ -25,7 +25,7 @@ class EncoderShaft:
         self.counts = 0
 
     def turn_to(self, feet: float) -> None:
-        """Turn it as far as a wheel turns that has rolled so far."""
+        """Turn the encoder as far as a wheel that has rolled this far."""
         counts = round(feet * self.counts_per_foot)
         if counts != self.counts:
             self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
@@ -33,11 +33,11 @@ class EncoderShaft:
 
 
 class PhysicsEngine:
-    """Made when the robot's robotInit is over; moves the robot as its motors say."""
+    """Move the robot according to its motors. Created after robotInit."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.physics_controller = physics_controller
-        # The two motors of a side are geared together: one tells for both.
+        # The two motors of a side are geared together, so one of them is enough.
         self.left_motor = PWMSim(robot.left_motor.getChannel())
         self.right_motor = PWMSim(robot.right_motor.getChannel())
         self.left_encoder = EncoderShaft(robot.left_encoder)
@@ -46,14 +46,14 @@ class PhysicsEngine:
         self.drivetrain = tankmodel.TankModel.theory(
             motor_cfgs.MOTOR_CFG_CIM,
             robot_mass=MASS,
-            gearing=10.71,  # turns of a motor for one of the wheels
+            gearing=10.71,  # turns of a motor per turn of a wheel
             nmotors=2,  # on each side
             x_wheelbase=TRACK_WIDTH,
             robot_width=27 * units.inch,  # with bumpers
             robot_length=33 * units.inch,
             wheel_diameter=15 * units.cm,
         )
-        # With this moment of inertia the robot turns as far as its encoders say: its wheels never slip.
+        # With this moment of inertia the wheels never slip: the robot turns as far as its encoders measure.
         self.drivetrain.inertia = MASS * TRACK_WIDTH**2 / 2
 
     def update_sim(self, now: float, tm_diff: float) -> None:

@@ -5,11 +5,11 @@ import wpilib.drive
 
 
 class MyRobot(wpilib.TimedRobot):
-    """Your robot. Each method is called by WPILib when its name says so."""
+    """The robot. WPILib calls each method at the time that its name says."""
 
     def robotInit(self) -> None:
         """Called once when the program starts: create motors, sensors and joysticks here."""
-        # Two motors on each side: the second one does whatever the first one does.
+        # Two motors on each side: the second one follows the first one.
         self.left_motor = wpilib.PWMSparkMax(0)
         self.left_follower = wpilib.PWMSparkMax(1)
         self.left_motor.addFollower(self.left_follower)
@@ -49,7 +49,7 @@ class MyRobot(wpilib.TimedRobot):
         self.drive.tankDrive(-self.left_stick.getY(), -self.right_stick.getY())
 
     def disabledInit(self) -> None:
-        """Called once when the robot is disabled: stop, so that nothing jumps later."""
+        """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""
         self.drive.stopMotor()
 
     def robotPeriodic(self) -> None:

@@ -11,13 +11,13 @@ COUNTS_PER_TURN = 2048
 
 
 class Drive(commands2.Subsystem):
-    """Drives, and measures how far."""
+    """Drive, and measure the distance."""
 
     def __init__(self) -> None:
         super().__init__()
         self.left_motor = wpilib.PWMSparkMax(0)
         self.right_motor = wpilib.PWMSparkMax(1)
-        self.right_motor.setInverted(True)  # the two face each other
+        self.right_motor.setInverted(True)  # the motors face each other
         self.drive = wpilib.drive.DifferentialDrive(self.left_motor, self.right_motor)
 
         self.left_encoder = wpilib.Encoder(0, 1)
@@ -27,20 +27,20 @@ class Drive(commands2.Subsystem):
         self.gyro = wpilib.ADXRS450_Gyro()
 
     def periodic(self) -> None:
-        """Called by the scheduler every 20 ms: show the driver what is measured."""
+        """Called by the scheduler every 20 ms: show the measurements to the driver."""
         wpilib.SmartDashboard.putNumber("Distance", self.distance())
         wpilib.SmartDashboard.putNumber("Heading", self.heading())
 
     def distance(self) -> float:
-        """How far the robot has driven, in metres."""
+        """Return how far the robot has driven, in metres."""
         return (self.left_encoder.getDistance() + self.right_encoder.getDistance()) / 2
 
     def heading(self) -> float:
-        """Which way the robot faces, in degrees counter-clockwise."""
+        """Return the heading in degrees, counter-clockwise."""
         return -self.gyro.getAngle()
 
     def go(self, forward: float, turn: float) -> None:
-        """Drive for this moment; both are from -1 to 1, and a turn to the left is positive."""
+        """Drive for the next 20 ms. Both values are from -1 to 1; a turn to the left is positive."""
         self.drive.arcadeDrive(forward, turn, squareInputs=False)
 
     def stop(self) -> None:
@@ -48,5 +48,5 @@ class Drive(commands2.Subsystem):
         self.drive.stopMotor()
 
     def arcade(self, forward: Callable[[], float], turn: Callable[[], float]) -> commands2.Command:
-        """A command that drives as a gamepad says: it asks these two every 20 ms."""
+        """Return a command that drives with the values of these two functions."""
         return self.runEnd(lambda: self.go(forward(), turn()), self.stop)

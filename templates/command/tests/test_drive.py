@@ -1,4 +1,4 @@
-"""The drivetrain and its commands. `physics_controller` knows where the robot is, in metres."""
+"""The drivetrain and its commands. `physics_controller` has the robot's pose, in metres."""
 
 import pytest
 from wpilib.simulation import XboxControllerSim

@@ -1,4 +1,4 @@
-"""Do the elevator and the arm get to where the driver sends them, and stay there?"""
+"""The elevator and the arm move to the driver's position and hold it."""
 
 import math
 
@@ -13,7 +13,7 @@ def teleop(control, seconds):
 
 
 def press(control, name):
-    """Press one of the gamepad's buttons for a moment."""
+    """Press a button of the gamepad briefly."""
     button = getattr(XboxControllerSim(0), f"set{name}Button")
     button(True)
     teleop(control, 0.06)

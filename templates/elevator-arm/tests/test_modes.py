@@ -1,4 +1,4 @@
-"""What happens as the robot goes from one mode to another."""
+"""Changes from one mode to another."""
 
 import pytest
 from wpilib.simulation import PWMSim, XboxControllerSim

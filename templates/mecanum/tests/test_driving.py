@@ -1,6 +1,6 @@
-"""Where does the robot go when the driver does this?
+"""How the robot moves when the driver uses the sticks.
 
-`physics_controller` knows where the robot is: x and y in metres (y grows to the left), its rotation counter-clockwise.
+`physics_controller` has the robot's pose: x and y in metres (y grows to the left), its rotation counter-clockwise.
 """
 
 import pytest

@@ -1,6 +1,6 @@
-"""The whole drivetrain: does the robot go where it is told, and does it know where it is?
+"""The whole drivetrain: does the robot move as requested, and is its odometry right?
 
-`physics_controller` knows where the robot really is: x and y in metres, its rotation counter-clockwise.
+`physics_controller` has the robot's true pose: x and y in metres, its rotation counter-clockwise.
 """
 
 import math
@@ -24,7 +24,7 @@ def test_every_direction_without_turning(control, robot, physics_controller, dir
         moved = physics_controller.get_pose().relativeTo(start)
     assert moved.translation().norm() > 2
     off = moved.translation().angle().degrees() - direction
-    assert math.remainder(off, 360) == pytest.approx(0, abs=6)  # some way while the wheels still turned there
+    assert math.remainder(off, 360) == pytest.approx(0, abs=6)  # it moved while its wheels were still turning
     assert abs(moved.rotation().degrees()) < 10
 
 

@@ -1,4 +1,4 @@
-"""One module by itself: the smallest part that can be wrong."""
+"""One module by itself."""
 
 import math
 

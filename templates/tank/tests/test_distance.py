@@ -1,4 +1,4 @@
-"""Where does the robot go? `physics.py` says, by its motors; `physics_controller` knows."""
+"""How the robot moves: `physics.py` moves it by its motors, `physics_controller` has its pose."""
 
 import pytest
 

@@ -1,6 +1,6 @@
-"""Tests of our own: what do the motors do when the driver does this?
+"""Our own tests: the driver moves the sticks, and the motors follow.
 
-`hal_data` holds everything the robot is connected to, `control` is the driver station.
+`hal_data` has the robot's inputs and outputs, `control` is the driver station.
 """
 
 import pytest
@@ -8,7 +8,7 @@ from wpilib.simulation import PWMSim
 
 
 def test_autonomous_drives_for_two_seconds(control, hal_data, fake_time):
-    """Write down when the left motor was on, once for each packet of the driver station."""
+    """Record the times at which the left motor was on, once for each packet of the driver station."""
     times = []
 
     def on_step(tm):
@@ -50,7 +50,7 @@ def test_encoder_measures_a_turn_of_the_wheel(control, robot, hal_data):
 
 
 def test_disabled_robot_stands_still(control):
-    """The same without on_step: the test moves the time on, and looks with WPILib's own classes."""
+    """The same without on_step: the test advances the time and reads WPILib's own classes."""
     with control.run_robot():
         control.step_timing(seconds=1, autonomous=True, enabled=True)
         assert PWMSim(0).getSpeed() == pytest.approx(0.5, abs=0.02)
