@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 import pytest
 
-from pyfrc_cli.main import cli
+from pyfrc_cli.main import COMMANDS, cli
 from pyfrc_core.scaffold import TEMPLATES
 
 ROOT = Path(__file__).parents[1]
@@ -239,9 +239,24 @@ def test_the_readmes_commands_exist_in_the_makefile() -> None:
         assert re.search(rf"^{target}:", makefile, re.MULTILINE)
 
 
+@pytest.mark.parametrize("document", ["README.md", "docs/commands.md"])
+def test_the_tables_of_commands_list_every_command(document: str) -> None:
+    (table,) = re.findall(r"^\| command \|.*\n(?:\|.*\n)+", (ROOT / document).read_text("utf-8"), re.MULTILINE)
+    first_column = "".join(row.split("|")[1] for row in table.splitlines()[2:])
+    named = {name.removeprefix("pyfrc ") for name in re.findall(r"`([^`]+)`", first_column)}
+    # A module's first name is its command, others are older names of it.
+    names = {module: name for name, (module, _) in reversed(COMMANDS.items())}
+    assert named == set(names.values())
+
+
 @pytest.mark.parametrize(
     "document",
-    ["README.md", "benchmarks/README.md", *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md"))],
+    [
+        "README.md",
+        "CONTRIBUTING.md",
+        "benchmarks/README.md",
+        *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md")),
+    ],
 )
 def test_links_lead_somewhere(document: str) -> None:
     text = (ROOT / document).read_text("utf-8")
