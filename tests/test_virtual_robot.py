@@ -196,7 +196,8 @@ def test_a_program_that_crashes_is_started_again_and_again(project: RobotProject
 def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_port(
     project: RobotProject, directory: Path
 ) -> None:
-    with started(project, directory) as robot:
+    # A port that no other test's robot takes meanwhile: they try those from 2222 on.
+    with started(project, directory, "--port", str(20000 + os.getpid() % 10000)) as robot:
         deploy(robot, project)
         pid, address = robot.pid(), robot.address
     assert robot.process.returncode == 0
