@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import SettingsError
-from .settings import parse_toml, read_toml
-from .toml_text import TomlText
+from .toml_file import TomlFile
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
@@ -52,13 +51,11 @@ def load_robot_packages(pyproject: Path) -> RobotPackages:
     """
     if not pyproject.is_file():
         return RobotPackages(None, (), (), {})
-    text = read_toml(pyproject)
-    tools: Any = parse_toml(pyproject, text).get("tool")
-    table = tools.get("robotpy") if isinstance(tools, dict) else None
-    if not isinstance(table, dict):
+    file = TomlFile(pyproject)
+    table = file.table_at("tool", "robotpy")
+    if table is None:
         return RobotPackages(None, (), (), {})
-    places = TomlText(pyproject, text)
-    lines = {key: f"{pyproject.name}:{places.line_of(('tool', 'robotpy', key))}" for key in table}
+    lines = {key: file.place_of("tool", "robotpy", key) for key in table}
     version = table.get("robotpy_version")
     requires = [_requirement(each, lines["requires"]) for each in _texts(table.get("requires"))]
     components = _texts(table.get("components"))

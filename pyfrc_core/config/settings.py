@@ -7,27 +7,15 @@ imported; pydantic does the checking of those that do not.
 from __future__ import annotations
 
 import json
-import re
-import sys
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from ..encoding import find_wrong_encoding
 from ..errors import SettingsError
 from ..season import CURRENT
 from .findings import Path as KeyPath
 from .findings import mistakes, settings_error
-from .toml_text import TomlText
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-
-_BYTE_ORDER_MARK = "\ufeff"
-_loads = tomllib.loads
+from .toml_file import TomlFile
 
 
 class _Positive:
@@ -137,77 +125,28 @@ class Settings:
 
 
 def load_settings(pyproject: Path) -> Settings:
-    """What ``[tool.pyfrc]`` in this file says, or the defaults where there is no such file or table.
+    """Return what ``[tool.pyfrc]`` in this file says, or the defaults where there is no such file or table.
 
     :raises SettingsError: with the file, the line and the key
     """
     if not pyproject.is_file():
         return Settings()
-    text = read_toml(pyproject)
-    document = parse_toml(pyproject, text)
-    if "pyfrc" in document:
-        line = TomlText(pyproject, text).line_of(("pyfrc",))
-        raise SettingsError("[pyfrc] has no effect", where=f"{pyproject.name}:{line}", remedy="Write: [tool.pyfrc]")
-    tools = document.get("tool")
-    table = tools.get("pyfrc") if isinstance(tools, dict) else None
-    if not table:
-        return Settings()
-    return _validated(table, TomlText(pyproject, text))
+    file = TomlFile(pyproject)
+    if "pyfrc" in file.content:
+        raise SettingsError("[pyfrc] has no effect", where=file.place_of("pyfrc"), remedy="Write: [tool.pyfrc]")
+    tools = file.table_at("tool") or {}
+    table = tools.get("pyfrc")
+    return _validated(table, file) if table else Settings()
 
 
-def read_toml(file: Path) -> str:
-    """The text of a TOML file, without a byte-order mark.
-
-    :raises SettingsError: when it is not in UTF-8
-    """
-    wrong = find_wrong_encoding(file)
-    if wrong is not None:
-        where = f"{file.name}:{wrong.line}" if wrong.line else file.name
-        raise SettingsError(f"not valid TOML: {wrong.message}", where=where, remedy=wrong.remedy)
-    text = file.read_text("utf-8")
-    if text.startswith(_BYTE_ORDER_MARK):
-        _accept_byte_order_marks()
-    return text.removeprefix(_BYTE_ORDER_MARK)
-
-
-def _accept_byte_order_marks() -> None:
-    """Have all of this process accept a byte-order mark: pytest and coverage read the same pyproject.toml."""
-    if tomllib.loads is not _loads_after_mark:
-        tomllib.loads = _loads_after_mark
-
-
-def _loads_after_mark(text: str, /, **options: Any) -> dict[str, Any]:
-    return _loads(text.removeprefix(_BYTE_ORDER_MARK), **options)
-
-
-def parse_toml(file: Path, text: str) -> dict[str, Any]:
-    """What a TOML file holds.
-
-    :param file: its name, for the error
-    :raises SettingsError: when it is not valid, naming the line
-    """
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as malformed:
-        repeated = TomlText(file, text).repeated()
-        if repeated is not None:
-            name, first, second = repeated
-            what = f"not valid TOML: {name} is there twice, in line {first} and in line {second}"
-            remedy = "Leave out one of them, or put what is under both under one."
-            raise SettingsError(what, where=f"{file.name}:{second}", remedy=remedy) from None
-        line = re.search(r"\(at line (\d+)", str(malformed))
-        where = f"{file.name}:{line[1]}" if line else file.name
-        raise SettingsError(f"not valid TOML: {malformed}", where=where) from None
-
-
-def _validated(table: object, text: TomlText) -> Settings:
+def _validated(table: object, file: TomlFile) -> Settings:
     import pydantic
 
     try:
         # As JSON, since strict checking of Python data would ask for instances where files have tables.
         return pydantic.TypeAdapter(Settings).validate_json(json.dumps(table, default=str))
     except pydantic.ValidationError as invalid:
-        raise settings_error(mistakes(invalid, table, text, ("tool", "pyfrc"), _KEYS)) from None
+        raise settings_error(mistakes(invalid, table, file, ("tool", "pyfrc"), _KEYS)) from None
 
 
 #: The keys of ``[tool.pyfrc]`` and of the tables in it.

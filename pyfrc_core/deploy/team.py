@@ -5,22 +5,16 @@ from __future__ import annotations
 import configparser
 import json
 import re
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..config.toml_text import TomlText
+from ..config.toml_file import TomlFile
 from ..errors import SettingsError, UsageError
 from ..project import Project
 from ..text_files import write_whole
 from .discovery import MOST_TEAM
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
 _OLD_FILE = ".deploy_cfg"
@@ -140,13 +134,10 @@ def _said_in_preferences(file: Path) -> Iterator[Target]:
 def _said_to_robotpy(pyproject: Path) -> Iterator[Target]:
     if not pyproject.is_file():
         return
-    text = pyproject.read_text("utf-8-sig")
-    tools = tomllib.loads(text).get("tool")  # valid, since [tool.pyfrc] has been read from it
-    robotpy = tools.get("robotpy") if isinstance(tools, dict) else None
-    team = robotpy.get("team_number") if isinstance(robotpy, dict) else None
+    file = TomlFile(pyproject)
+    team = (file.table_at("tool", "robotpy") or {}).get("team_number")
     if team is not None:
-        key = ("tool", "robotpy", "team_number")
-        where = f"{pyproject.name}:{TomlText(pyproject, text).line_of(key)}"
+        where = file.place_of("tool", "robotpy", "team_number")
         yield Target(_number(team, where, "team_number"), source=f"{pyproject.name}: [tool.robotpy] team_number")
 
 
