@@ -47,7 +47,7 @@ class Contents:
 
     def end(self) -> None:
         """Hear the end of the stream."""
-        while not self._unpacking.eof:
+        while self._ready or not self._unpacking.eof:
             if self._ready or self._unpack():
                 raise Refusal("protocol", "more contents have come than were asked for")
 
