@@ -107,6 +107,8 @@ class Clock:
         :raises TestEnded: when the run was halted
         """
         __tracebackhide__ = True
+        if self.halted:
+            raise TestEnded
         queue = self._queue
         end = min(target_us, self.limit_us)
         while queue[0][0] <= end:  # there always is a next packet
@@ -126,6 +128,8 @@ class Clock:
         :raises TestRanTooLong: when the time limit comes first
         """
         __tracebackhide__ = True
+        if self.halted:
+            raise TestEnded
         queue = self._queue
         while waiting():
             next_due = queue[0][0]

@@ -159,7 +159,8 @@ def test_nothing_passes_once_the_clock_is_halted(wait, timeline: Timeline) -> No
 
     timeline.clock.at(10_000, WAKE_UP, halt)
     timeline.at(10, ROBOT_LOOP, "loop")
-    with pytest.raises(TestEnded):
-        wait(timeline.clock)
-    assert timeline.log == ["10 halt"]
+    for _ in range(2):
+        with pytest.raises(TestEnded):
+            wait(timeline.clock)
+        assert timeline.log == ["10 halt"]
     assert timeline.clock.now_us == 10_000

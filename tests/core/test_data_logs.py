@@ -1,0 +1,173 @@
+"""Data logs that robot code starts: their files, when they are flushed, and that they are complete."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+import wpiutil
+from wpiutil.log import DataLogReader, StringLogEntry
+
+from pyfrc_core.runtime import data_logs, own_process
+from pyfrc_core.runtime.clock import KICKOFF
+from pyfrc_core.runtime.data_logs import DataLogs, LogPlace
+
+from .timeline import Timeline
+
+
+def place(tmp_path: Path, name: str | None = "run", kept: int = 10) -> LogPlace:
+    return LogPlace(tmp_path / ".pyfrc/logs", name, kept)
+
+
+def entries(file: Path) -> dict[str, list[object]]:
+    """The values of a log, by entry."""
+    names: dict[int, tuple[str, str]] = {}
+    found: dict[str, list[object]] = {}
+    for record in DataLogReader(str(file)):
+        if record.isStart():
+            data = record.getStartData()
+            names[data.entry] = data.name, data.type
+        elif not record.isControl():
+            name, kind = names[record.getEntry()]
+            value: object = record.getInteger() if kind == "int64" else record.getString()
+            found.setdefault(name, []).append(value)
+    return found
+
+
+def files(tmp_path: Path) -> list[str]:
+    return sorted(each.name for each in (tmp_path / ".pyfrc/logs").glob("*.wpilog"))
+
+
+def test_the_managers_log_is_complete_when_the_run_ends(
+    tmp_path: Path, timeline: Timeline, capsys: pytest.CaptureFixture[str]
+) -> None:
+    logs = DataLogs(timeline.clock, place(tmp_path))
+    timeline.run_until(5)
+    logs.log("one")
+    timeline.run_until(7_000)
+    logs.log("two")
+    logs.start("another", "name")  # it has been started
+    assert logs.getLogDir() == str(tmp_path / ".pyfrc/logs")
+    logs.close()
+    assert files(tmp_path) == ["run.wpilog"]
+    found = entries(tmp_path / ".pyfrc/logs/run.wpilog")
+    assert found["messages"] == ["one", "two"]
+    # With the first flush from then on, every five seconds.
+    assert found["systemTime"] == [KICKOFF * 1_000_000 + 255_000, KICKOFF * 1_000_000 + 5_005_000]
+    assert (tmp_path / ".pyfrc/.gitignore").read_text() == "*\n"
+    output = capsys.readouterr()
+    assert output.out == "one\ntwo\n"
+    assert output.err.startswith("data log: ")
+    logs.close()
+
+
+def test_a_log_is_flushed_in_robot_time_at_most_once_a_packet(
+    tmp_path: Path, timeline: Timeline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    logs = DataLogs(timeline.clock, place(tmp_path))
+    periods: list[tuple[int, int]] = []
+    monkeypatch.setattr(timeline.clock, "every", lambda period, rank, action: periods.append((period, rank)))
+    for period in (0.25, 0.001, 0.0200001, 1.0):
+        logs.open("", "log", period)
+    assert periods == [(250_000, 5), (20_000, 5), (20_000, 5), (1_000_000, 5)]
+    logs.close()
+
+
+def test_names_and_directories(tmp_path: Path, timeline: Timeline, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(data_logs.wpilib, "getOperatingDirectory", lambda: str(tmp_path))
+    logs = DataLogs(timeline.clock, place(tmp_path))
+    own = tmp_path / ".pyfrc/logs"
+    opened = [
+        logs._file("", ""),
+        logs._file("", "arm.wpilog"),
+        logs._file("mine", ""),
+        logs._file("mine", "arm.wpilog"),
+    ]
+    assert opened == [
+        own / "run.wpilog",
+        own / "run.arm.wpilog",
+        tmp_path / "mine/run.wpilog",
+        tmp_path / "mine/arm.wpilog",
+    ]
+    for _ in range(2):
+        logs.open("", "")
+    assert files(tmp_path) == ["run-2.wpilog", "run.wpilog"]
+    logs.close()
+    # Another run's log of this name is replaced; without a name, it is the time of day, and none is.
+    assert DataLogs(timeline.clock, place(tmp_path))._file("", "") == own / "run.wpilog"
+    assert not (own / "run.wpilog").exists()
+    nameless = DataLogs(timeline.clock, place(tmp_path, None))
+    assert nameless._file("", "arm") == own / "arm.wpilog"
+    assert nameless._file("", "").name.startswith("FRC_20")
+    assert DataLogs(timeline.clock, None)._file("x", "y") == Path(os.devnull)
+
+
+def test_so_many_logs_are_kept(tmp_path: Path) -> None:
+    directory = tmp_path / ".pyfrc/logs"
+    directory.mkdir(parents=True)
+    for number in range(5):
+        file = directory / f"{number}.wpilog"
+        file.touch()
+        os.utime(file, (number, number))
+    place(tmp_path, kept=3).make_room()  # for one more
+    assert files(tmp_path) == ["3.wpilog", "4.wpilog"]
+    assert LogPlace.of_run(tmp_path) == LogPlace(directory, None, 10)
+    assert LogPlace.of_test(tmp_path, "a") == LogPlace(directory / "test", "a", 200)
+
+
+def test_a_writer_of_robot_codes_own(tmp_path: Path, timeline: Timeline) -> None:
+    logs = DataLogs(timeline.clock, place(tmp_path))
+    writer = logs.open_file(str(tmp_path / "own.wpilog"), "header")
+    entry = StringLogEntry(writer, "words")
+    entry.append("one")
+    logs.rename(writer, "renamed.wpilog")
+    own_process.before_sudden_end["data logs"]()
+    assert entries(tmp_path / "renamed.wpilog") == {"words": ["one"]}
+    assert not (tmp_path / "own.wpilog").exists()
+    with pytest.raises(RuntimeError):
+        logs.open_file(str(tmp_path / "none/own.wpilog"))
+    assert DataLogs(timeline.clock, None).open_file(str(tmp_path / "b.wpilog")) is not None
+    assert not (tmp_path / "b.wpilog").exists()
+
+
+def test_a_log_that_cannot_be_written_or_completed_is_said(
+    tmp_path: Path, timeline: Timeline, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / ".pyfrc").write_text("")
+    logs = DataLogs(timeline.clock, place(tmp_path))
+    logs.log("not kept")
+    assert "cannot be written: " in capsys.readouterr().err
+    logs.close()
+    other = DataLogs(timeline.clock, LogPlace(tmp_path / "logs", "a"))
+    other.open("", "")
+    monkeypatch.setattr(data_logs, FULL_DISK, lambda file: "the disk is full")
+    other.close()
+    assert capsys.readouterr().err.endswith("a.wpilog is not complete: the disk is full\n")
+
+
+#: The name under which the module looks for room on the disk.
+FULL_DISK = next(name for name in ("check_disk_space", "lack_of_room") if hasattr(data_logs, name))
+
+
+def test_in_place_of_wpilibs_names(tmp_path: Path, timeline: Timeline, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(data_logs, "_started_at_import", [])
+    logs = DataLogs(timeline.clock, place(tmp_path))
+    current: list[DataLogs | None] = [None]
+    table = {name: value for _, name, value in data_logs.replacements(lambda: current[0])}
+    start, writer, background = table["start"].__func__, table["DataLogWriter"], table["DataLogBackgroundWriter"]
+    start("", "at-import")
+    logs.start_as_at_import()
+    assert files(tmp_path) == ["run.at-import.wpilog"]
+    current[0] = logs
+    assert table["getLogDir"].__func__() == str(tmp_path / ".pyfrc/logs")
+    ours = background("", "background", 0.5)
+    assert isinstance(ours, background)
+    assert isinstance(ours, writer)
+    assert isinstance(ours, wpiutil.DataLogWriter)
+    table["setFilename"](ours, "renamed.wpilog")
+    assert isinstance(writer(str(tmp_path / "direct.wpilog")), writer)
+    assert (writer.__name__, background.__name__) == ("DataLogWriter", "DataLogBackgroundWriter")
+    assert writer.__module__ == wpiutil.DataLogWriter.__module__
+    logs.close()
+    assert files(tmp_path) == ["renamed.wpilog", "run.at-import.wpilog"]

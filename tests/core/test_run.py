@@ -1,0 +1,350 @@
+"""One run of a robot: the order within a packet, its start and end, and who may let its time pass."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+import hal
+import pytest
+import wpilib
+import wpilib.simulation
+from hal import simulation as hs
+
+from pyfrc_core.errors import RobotCodeError
+from pyfrc_core.hal import ds_connection, modes
+from pyfrc_core.hal.ds_connection import DriverStationConnection
+from pyfrc_core.runtime import cooperative, driver_station
+from pyfrc_core.runtime.clock import PACKET_US, PHYSICS
+from pyfrc_core.runtime.exceptions import WrongThread
+from pyfrc_core.runtime.robot import RobotRun
+
+
+class Log(list[str]):
+    """What happens in a run, with its time in milliseconds."""
+
+    def __init__(self, run: RobotRun) -> None:
+        self._run = run
+
+    def note(self, what: object) -> None:
+        self.append(f"{self._run.clock.now_us / 1000:g} {what}")
+
+
+@pytest.fixture
+def log(run: RobotRun) -> Log:
+    return Log(run)
+
+
+def robot_class(log: Log, periodic: Callable[[], object] = lambda: None) -> type[wpilib.TimedRobot]:
+    class Robot(wpilib.TimedRobot):
+        def robotInit(self) -> None:
+            log.note("robotInit")
+
+        def disabledInit(self) -> None:
+            log.note("disabledInit")
+
+        def disabledExit(self) -> None:
+            log.note("disabledExit")
+
+        def disabledPeriodic(self) -> None: ...
+
+        def teleopInit(self) -> None:
+            log.note("teleopInit")
+
+        def teleopPeriodic(self) -> None:
+            log.note("teleopPeriodic")
+            periodic()
+
+        def robotPeriodic(self) -> None:
+            log.note("robotPeriodic")
+
+    return Robot
+
+
+def test_within_a_packet_the_step_comes_first_then_the_loop_then_physics_then_who_watches(
+    run: RobotRun, log: Log
+) -> None:
+    run.clock.before_packet.append(lambda now: log.note(f"step {now}"))
+    run.observe(lambda now: log.note(f"watches {now}"))
+    run.clock.every(PACKET_US, PHYSICS, lambda: log.note("physics"))
+    run.when_constructed.append(lambda: log.note("constructed"))
+    run.when_initialized.append(lambda: log.note("initialized"))
+    run.construct(robot_class(log))
+    assert (run.started, run.alive) == (False, False)
+    run.start()
+    assert (run.started, run.alive) == (True, True)
+    run.next_packet()
+    assert log == [
+        "0 constructed",
+        "0 robotInit",
+        "0 initialized",
+        "20 step 0.02",
+        "20 disabledInit",
+        "20 robotPeriodic",
+        "20 physics",
+        "20 watches 0.02",
+    ]
+
+
+def test_a_mode_reaches_the_robot_with_the_next_packet(run: RobotRun, log: Log) -> None:
+    run.construct(robot_class(log))
+    run.start()
+    run.run_until(20_000)
+    log.clear()
+    modes.set_mode(enabled=True)
+    run.run_until(39_999)
+    assert log == []
+    run.run_until(60_000)
+    assert log == [
+        "40 disabledExit",
+        "40 teleopInit",
+        "40 teleopPeriodic",
+        "40 robotPeriodic",
+        "60 teleopPeriodic",
+        "60 robotPeriodic",
+    ]
+
+
+def test_what_the_robot_raises_ends_its_run(run: RobotRun, log: Log) -> None:
+    def fails() -> None:
+        raise ValueError("from teleopPeriodic")
+
+    run.construct(robot_class(log, fails))
+    run.start()
+    modes.set_mode(enabled=True)
+    for _ in range(2):
+        with pytest.raises(ValueError, match="from teleopPeriodic"):
+            run.run_until(100_000)
+        assert run.clock.now_us == 20_000
+    assert not run.alive
+    assert not run.in_motion
+    run.end()
+    run.end()
+
+
+def test_a_turn_that_takes_longer_than_a_packet_is_an_overrun_while_it_goes_on(run: RobotRun, log: Log) -> None:
+    found: list[tuple[int, int]] = []
+
+    def waits() -> None:
+        found.append(run.overruns_until_now())
+        run.threads.sleep_until(run.clock.now_us + 20_000)
+        found.append(run.overruns_until_now())
+        run.threads.sleep_until(run.clock.now_us + 5_000)
+        found.append(run.overruns_until_now())
+
+    run.construct(robot_class(log, waits))
+    run.turn_began = lambda: run.timed_loop.loop_start_us if run.timed_loop.in_turn else None
+    run.start()
+    modes.set_mode(enabled=True)
+    run.run_until(30_000)
+    assert found == [(0, 0), (0, 0), (1, 25_000)]
+    run.turn_began = lambda: None
+    assert run.overruns_until_now() == (1, 25_000)
+
+
+def test_the_end_ends_the_loop_and_the_threads(run: RobotRun, log: Log) -> None:
+    def body() -> None:
+        try:
+            run.threads.sleep_until(1_000_000)
+        finally:
+            log.note("thread unwinds")
+
+    run.construct(robot_class(log))
+    run.start()
+    cooperative.start_in_robot_time(threading.Thread(target=body, daemon=True))
+    run.run_until(30_000)
+    log.clear()
+    run.end()
+    assert log == ["30 thread unwinds"]
+    assert run.still_running == []
+    assert not run.alive
+
+
+def test_only_who_lives_in_robot_time_lets_it_pass(run: RobotRun, log: Log) -> None:
+    run.construct(robot_class(log))
+    run.start()
+    said: list[str] = []
+
+    def tries(do: Callable[[], object]) -> None:
+        try:
+            do()
+        except WrongThread as wrong:
+            said.append(wrong.message)
+
+    outside = threading.Thread(target=lambda: tries(lambda: run.run_until(10_000)), name="outside")
+    outside.start()
+    outside.join(10)
+    assert said == ["the thread 'outside' cannot let robot time pass: it does not live in robot time"]
+
+    def body() -> None:
+        run.run_until(15_000)
+        log.note("slept")
+        tries(lambda: run.check_drives_clock("stop it"))
+
+    cooperative.start_in_robot_time(threading.Thread(target=body, name="inside", daemon=True))
+    run.run_until(16_000)
+    assert log[1:] == ["15 slept"]
+    assert said[1:] == ["the thread 'inside' cannot stop it: it sleeps in robot time"]
+    run.check_drives_clock("stop it")
+    with pytest.raises(RuntimeError, match="the robot is running: its time can only be set back before"):
+        run.check_can_set_time_back()
+
+
+def test_a_robot_with_a_loop_of_its_own_lives_until_that_ends(run: RobotRun, log: Log) -> None:
+    class Robot(wpilib.RobotBase):
+        def startCompetition(self) -> None:
+            log.note("starts")
+            run.threads.sleep_until(30_000)
+            log.note("ends")
+
+        def endCompetition(self) -> None:
+            log.note("endCompetition")
+
+    run.construct(Robot)
+    assert not run.initializes
+    run.start()
+    assert run.own_loop is not None
+    assert run.own_loop.is_the_robot
+    assert (log, run.alive) == (["0 starts"], True)
+    run.run_until(40_000)
+    assert (log, run.alive) == (["0 starts", "30 ends"], False)
+    run.end()
+    assert log[2:] == ["40 endCompetition"]
+
+
+def test_a_forgotten_super_init_is_named(run: RobotRun) -> None:
+    class Robot(wpilib.TimedRobot):
+        def __init__(self) -> None:
+            pass
+
+    with pytest.raises(RobotCodeError, match=r"Robot.__init__ does not call super\(\).__init__\(\)") as caught:
+        run.construct(Robot)
+    assert caught.value.where == f"test_run.py:{Robot.__init__.__code__.co_firstlineno}"
+
+
+def test_a_process_has_one_run(run: RobotRun) -> None:
+    with pytest.raises(RuntimeError, match="a robot runs already in this process"):
+        RobotRun().open()
+
+
+# -- the driver station -----------------------------------------------------------------------------------------------
+
+
+def test_match_information_comes_with_the_first_packet(run: RobotRun) -> None:
+    table = {(owner, name): value for owner, name, value in driver_station.replacements(lambda: run)}
+    station = wpilib.DriverStation
+
+    def seen() -> list[object]:
+        names = ("getEventName", "getGameSpecificMessage", "getMatchType", "getMatchNumber", "getReplayNumber")
+        return [table[station, name]() for name in names]
+
+    wpilib.simulation.DriverStationSim.setMatchType(station.MatchType.kQualification)
+    hs.setMatchNumber(12)
+    hs.setReplayNumber(1)
+    modes.set_game_message("LRL")
+    assert seen() == ["", "", station.MatchType.kNone, 0, 0]
+    run.clock.run_until(20_000)
+    station.refreshData()
+    assert seen() == ["sim-event", "LRL", station.MatchType.kQualification, 12, 1]
+    hs.setDriverStationDsAttached(False)
+    run.clock.run_until(40_000)
+    hs.setMatchNumber(13)
+    assert seen()[3] == 12  # what the last packet brought
+
+
+def test_waiting_for_a_connection_takes_robot_time(run: RobotRun) -> None:
+    (_, _, wait) = next(each for each in driver_station.replacements(lambda: run) if each[1] == "waitForDsConnection")
+    assert wait(0.015) is False
+    assert run.clock.now_us == 15_000
+    assert wait(0) is True
+    assert run.clock.now_us == 20_000
+    assert wait(0.5) is True
+    assert run.clock.now_us == 20_000
+    assert run.connection.when_connected == []
+
+
+def test_packets_out_of_turn_and_resets(run: RobotRun) -> None:
+    table = {(owner.__name__, name): value for owner, name, value in driver_station.replacements(lambda: run)}
+    told: list[str] = []
+
+    class Recorder:
+        def on_packet_out_of_turn(self) -> None:
+            told.append("recorder")
+
+        def begin_outside(self) -> None: ...
+
+        def end_outside(self) -> None: ...
+
+    run.recorder = Recorder()  # type: ignore[assignment]
+    run.connection.when_connected.append(lambda: told.append("packet"))
+    modes.set_mode(enabled=True)
+    table["hal.simulation", "notifyDriverStationNewData"]()
+    assert told == ["recorder", "packet"]
+    table["DriverStationSim", "notifyNewData"]()
+    assert told == ["recorder", "packet", "recorder"]
+    assert wpilib.DriverStation.isEnabled()
+    for reset in (("DriverStationSim", "resetData"), ("hal.simulation", "resetDriverStationData")):
+        hs.setDriverStationDsAttached(False)
+        table[reset]()
+        assert modes.is_attached()
+
+
+@pytest.fixture
+def connection() -> DriverStationConnection:
+    connection = DriverStationConnection()
+    connection.boot()
+    return connection
+
+
+def test_a_connection_begins_with_the_first_packet_and_is_lost_without(connection: DriverStationConnection) -> None:
+    told: list[str] = []
+    connection.when_connected.append(lambda: told.append("connected"))
+    for _ in range(3):
+        connection.packet()
+    assert (told, connection.connected) == ([], False)
+    modes.reset_driver_station()
+    connection.packet()
+    connection.packet()
+    assert (told, connection.connected) == (["connected"], True)
+    hs.setJoystickAxisCount(0, 5)
+    hs.setDriverStationDsAttached(False)
+    connection.packet()
+    wpilib.DriverStation.refreshData()
+    assert not connection.connected
+    assert not wpilib.DriverStation.isDSAttached()
+    assert wpilib.DriverStation.getStickAxisCount(0) == 0
+    assert hs.getJoystickCounts(0) == (5, 12, 1)  # what the next packet will bring
+    hs.setDriverStationDsAttached(True)
+    connection.packet()
+    assert told == ["connected"] * 2
+
+
+@pytest.mark.parametrize(("enabled", "checks"), [(True, [6, 10, 14]), (False, [])])
+def test_motors_are_checked_after_a_loss(
+    enabled: bool, checks: list[int], connection: DriverStationConnection, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    modes.reset_driver_station()
+    modes.set_mode(enabled=enabled)
+    connection.packet()
+    checked: list[int] = []
+    sees: list[tuple[bool, bool]] = []
+    missed: list[int] = []
+
+    def check() -> None:
+        checked.append(len(missed))
+        word = hal.ControlWord()
+        hal.getControlWord(word)
+        sees.append((bool(word.enabled), bool(word.dsAttached)))
+
+    monkeypatch.setattr(ds_connection.MotorSafety, "checkMotors", check)
+    for _ in range(2):
+        hs.setDriverStationDsAttached(False)
+        missed.clear()
+        for number in range(15):
+            missed.append(number)
+            connection.packet()
+        hs.setDriverStationDsAttached(True)
+        connection.packet()
+    assert checked == checks * 2
+    assert all(enabled for enabled, _ in sees)
+    assert bool(hs.getDriverStationEnabled()) is enabled

@@ -1,0 +1,355 @@
+"""Input scripts: their lines, what is wrong with them, what they write, and what a recorder makes of a run."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import ntcore
+import pytest
+import wpilib
+from hal import simulation as hs
+
+from pyfrc_core.errors import PyfrcError, UsageError
+from pyfrc_core.hal import HalData, modes
+from pyfrc_core.hal.timing import deliver_packet
+from pyfrc_core.runtime.robot import RobotRun
+from pyfrc_core.runtime.scripts.player import Player
+from pyfrc_core.runtime.scripts.recorder import Recorder, _MatchTime, _parts, _same, _shortest
+from pyfrc_core.runtime.scripts.script import FORMAT, InputScript, ScriptError, Step, load_script, parse_script
+from pyfrc_core.runtime.scripts.targets import Countdown, Targets
+
+HEADER = {"format": FORMAT, "end": 1.0}
+
+
+def parse(*lines: object, header: object = HEADER) -> InputScript:
+    return parse_script([json.dumps(line) + "\n" for line in (header, *lines)], "a.jsonl")
+
+
+# -- the form -----------------------------------------------------------------------------------------------------
+
+
+def test_a_script_is_read_as_it_was_written(tmp_path: Path) -> None:
+    script = InputScript(
+        (Step(0, {"mode": "teleop"}), Step(1_500_001, {"dio[3].value": False, "joysticks[0].axes[1]": -0.5})),
+        end_us=2_000_000,
+        start_us=20_000,
+        robot="robot.py",
+        seed=7,
+        packages={"wpilib": "2026"},
+        trace="abc",
+        story=("it drives",),
+    )
+    assert list(script.lines()) == [
+        '{"format": "pyfrc-input 1", "robot": "robot.py", "seed": 7, "start": 0.02, "end": 2.0, '
+        '"packages": {"wpilib": "2026"}, "trace": "abc", "story": ["it drives"]}',
+        '{"t": 0.0, "set": {"mode": "teleop"}}',
+        '{"t": 1.500001, "set": {"dio[3].value": false, "joysticks[0].axes[1]": -0.5}}',
+    ]
+    script.save(tmp_path / "a.jsonl")
+    read = load_script(tmp_path / "a.jsonl")
+    assert read == script
+    assert (read.file, [step.line for step in read.steps]) == ("a.jsonl", [2, 3])
+    assert parse_script(["\n", json.dumps(HEADER) + "\n", "\n", '{"t": 0.5, "set": {}}\n']).steps[0].line == 4
+    assert list(InputScript((), 5).lines()) == [
+        '{"format": "pyfrc-input 1", "robot": "", "seed": 0, "end": 5e-06, "packages": {}}'
+    ]
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ([], "a.jsonl:1: the file is empty: its first line must be the header"),
+        (["{}"], 'a.jsonl:1: the first line must be the header, with "format": "pyfrc-input 1"'),
+        (['{"format": "x"}'], "a.jsonl:1: unknown format 'x': this pyfrc reads 'pyfrc-input 1'"),
+        (['{"format": "pyfrc-input 1"}'], 'a.jsonl:1: "end" is missing'),
+        (['{"format": "pyfrc-input 1", "end": 1, "start": 2}'], 'a.jsonl:1: "end" comes before "start"'),
+        (['{"format": "pyfrc-input 1", "end": -1}'], 'a.jsonl:1: "end" must be from 0 to 86400 s, not -1'),
+        (['{"format": "pyfrc-input 1", "end": 86401}'], 'a.jsonl:1: "end" must be from 0 to 86400 s, not 86401'),
+        (['{"format": "pyfrc-input 1", "end": true}'], 'a.jsonl:1: "end" must be a time in seconds, not true'),
+        (['{"format": "pyfrc-input 1", "end": 1, "seed": true}'], 'a.jsonl:1: "seed" must be a whole number, not true'),
+        (['{"format": "pyfrc-input 1", "end": 1, "story": [1]}'], 'a.jsonl:1: "story" must be a list of texts'),
+        ([json.dumps(HEADER), "[]"], "a.jsonl:2: each line must be a JSON object"),
+        ([json.dumps(HEADER), "{"], "a.jsonl:2: not valid JSON"),
+        ([json.dumps(HEADER), '{"t": 1, "set": {"a": NaN}}'], "a.jsonl:2: NaN is no number that can be written"),
+        ([json.dumps(HEADER), '{"t": "1"}'], 'a.jsonl:2: "t" must be a time in seconds, not "1"'),
+        ([json.dumps(HEADER), '{"t": 1}'], 'a.jsonl:2: "set" is missing: an object of what is written'),
+        ([json.dumps(HEADER), '{"t": 1, "set": []}'], 'a.jsonl:2: "set" must be an object of what is written, not []'),
+        (
+            [json.dumps(HEADER), '{"t": 0.5, "set": {}}', '{"t": 0.25, "set": {}}'],
+            "a.jsonl:3: time goes back from 0.5 s to 0.25 s",
+        ),
+    ],
+)
+def test_what_is_wrong_is_said_with_its_line(lines: list[str], message: str) -> None:
+    with pytest.raises(ScriptError) as caught:
+        parse_script([f"{line}\n" for line in lines], "a.jsonl")
+    assert str(caught.value).startswith(message)
+
+
+def test_the_longest_times_and_values(tmp_path: Path) -> None:
+    assert parse(header={**HEADER, "end": 86_400}).end_us == 86_400_000_000
+    assert parse(header={**HEADER, "start": 1}).start_us == 1_000_000
+    with pytest.raises(ScriptError) as caught:
+        parse({"t": 0, "set": "x" * 100})
+    assert str(caught.value).endswith("xxx...")
+    with pytest.raises(ScriptError, match="is the file cut off here"):
+        parse_script([json.dumps(HEADER) + "\n", '{"t": 1'], "a.jsonl")
+    with pytest.raises(ScriptError, match="there is no file"):
+        load_script(tmp_path / "none.jsonl")
+    with pytest.raises(ScriptError, match="this is a directory"):
+        load_script(tmp_path)
+    (tmp_path / "a").write_bytes(b"\xff\xfe\xff")
+    with pytest.raises(ScriptError, match="not UTF-8 text"):
+        load_script(tmp_path / "a")
+    with (tmp_path / "long").open("wb") as stream:
+        stream.truncate(64 * 1024 * 1024 + 1)
+    with pytest.raises(ScriptError, match="64 MB are too many for an input script: at most 64 MB"):
+        load_script(tmp_path / "long")
+
+
+# -- targets --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def tree() -> HalData:
+    modes.reset_driver_station()
+    return HalData(defaults=False)
+
+
+def test_targets(tree: HalData) -> None:
+    packets: list[int] = []
+    targets = Targets(tree, lambda: packets.append(1))
+    targets.write("mode", "autonomous", 0)
+    assert modes.mode_name() == "autonomous"
+    targets.write("packet", True, 0)
+    assert packets == [1]
+    targets.write("joysticks[2].plugged", False, 0)
+    assert hs.getJoystickCounts(2) == (0, 0, 0)
+    targets.write("joysticks[2].plugged", True, 0)
+    assert hs.getJoystickCounts(2) == (12, 12, 1)
+    targets.write("joysticks[1].axes[2]", 0.5, 0)
+    assert tree["joysticks"][1]["axes"][2] == 0.5
+    for value, kept in ((1, 1.0), (True, True), ("text", "text"), ([1.0, 2.0], [1.0, 2.0])):
+        targets.write(f"nt:/test/{kept}", value, 0)
+        entry = ntcore.NetworkTableInstance.getDefault().getEntry(f"/test/{kept}")
+        assert (entry.value, type(entry.value)) == (kept, type(kept))
+    with pytest.raises(UsageError, match="/test/text is string, and cannot be"):
+        targets.write("nt:/test/text", 1, 0)
+    for wrong, message in (
+        (("mode", "fast"), "there is no mode 'fast'"),
+        (("match_time", True), "match_time is a number of seconds, not True"),
+        (("match_time", "1"), "match_time is a number of seconds"),
+    ):
+        with pytest.raises(UsageError, match=message):
+            targets.write(*wrong, 0)
+
+
+def test_the_match_time_counts_down_until_it_is_written(tree: HalData) -> None:
+    targets = Targets(tree)
+
+    def left() -> float:
+        return float(tree["time"]["remaining"])
+
+    targets.count_down(0)
+    targets.write("match_time", 15, 1_000_000)
+    assert left() == 15
+    targets.count_down(3_500_000)
+    assert left() == 12.5
+    targets.count_down(99_000_000)
+    assert left() == 0
+    targets.write("time.remaining", 7.0, 0)
+    targets.count_down(3_500_000)
+    assert left() == 7
+    countdown = Countdown()
+    assert countdown.left(5) is None
+    countdown.start(1.5, 500_000)
+    assert (countdown.left(500_000), countdown.left(1_000_000), countdown.left(2_000_001)) == (1.5, 1.0, 0.0)
+
+
+def test_targets_that_there_never_are(tree: HalData) -> None:
+    targets = Targets(tree)
+    for fine in (
+        "mode",
+        "match_time",
+        "packet",
+        "nt:/x",
+        "joysticks[5].plugged",
+        'CAN["x"].y',
+        "robot.x",
+        "dio[3].value",
+    ):
+        targets.check(fine)
+    for wrong in ("dio[99].value", "joysticks[6].plugged", "nothing", "dio[3].nothing"):
+        with pytest.raises(PyfrcError):
+            targets.check(wrong)
+    switch = wpilib.DigitalInput(19)
+    targets.check_made("dio[19].value")
+    targets.check_made("mode")
+    targets.check_made("joysticks[5].plugged")
+    with pytest.raises(UsageError, match=r"^this robot has no dio\[18\]$"):
+        targets.check_made("dio[18].value")
+    del switch
+
+
+# -- recording ------------------------------------------------------------------------------------------------------
+
+
+def test_values_that_are_the_same() -> None:
+    nan = float("nan")
+    assert [_same(*pair) for pair in ((1, 1), (1.5, 1.5), (nan, float("nan")), ("a", "a"), ([0.0], [0.0]))] == [
+        True
+    ] * 5
+    assert [_same(*pair) for pair in ((0.0, -0.0), (1, True), (1, 1.0), (1, 2), ("1", 1), (0.0, nan))] == [False] * 6
+
+
+def test_of_lists_what_has_changed() -> None:
+    assert list(_parts("a", 1, 2)) == [("a", 2)]
+    assert list(_parts("a", [1, 2], [1, 3])) == [("a[1]", 3)]
+    assert list(_parts("a", [1], [1, 3])) == [("a[1]", 3)]
+    assert list(_parts("a", None, [1])) == [("a[0]", 1)]
+    assert list(_parts("a", [1, 2], [1])) == []
+    third = float.fromhex("0x1.555556p-2")  # as WPILib keeps it
+    assert list(_parts("j.axes", [0.0], [third])) == [("j.axes[0]", _shortest(third))]
+    assert [_shortest(axis) for axis in (0.5, -1.0, 0.10000000149011612, third)] == [0.5, -1.0, 0.1, 0.33333334]
+
+
+def test_seconds_that_are_written_before_each_packet_are_one_countdown() -> None:
+    heard = _MatchTime()
+    steps: list[dict[str, Any]] = []
+
+    def hear(before: float, left: float, at_us: int, stepping: bool = True) -> dict[str, Any]:
+        writes: dict[str, Any] = {}
+        heard.hear(writes, before, left, at_us, stepping)
+        steps.append(writes)
+        return writes
+
+    hear(0, 0, 0)
+    hear(0, 15.0, 20_000)
+    hear(15.0, 14.98, 40_000)
+    hear(14.98, 14.96, 60_000)
+    assert steps == [{}, {"match_time": 15.0}, {}, {}]
+    hear(14.96, 14.96, 80_000)  # it stands still
+    hear(14.96, 14.96, 100_000)
+    hear(14.96, 3.0, 110_000, stepping=False)
+    assert steps[4:] == [{"time.remaining": 14.96}, {}, {"time.remaining": 3.0}]
+
+
+class Robot(wpilib.TimedRobot):
+    """Writes down what it sees."""
+
+    def robotInit(self) -> None:
+        self.stick = wpilib.Joystick(0)
+        self.seen: list[tuple[object, ...]] = []
+
+    def robotPeriodic(self) -> None:
+        station = wpilib.DriverStation
+        self.seen.append((station.isTeleopEnabled(), round(self.stick.getX(), 3), self.stick.getRawButton(2)))
+
+
+def drive(run: RobotRun) -> None:
+    """What a test does."""
+    stick = run.hal_data["joysticks"][0]
+    run.run_until(30_000)
+    modes.set_mode(enabled=True)
+    stick["axes"][0] = 0.1
+    run.run_until(70_000)
+    stick["buttons"][2] = True
+    run.run_until(90_000)
+    stick["axes"][0] = -1.0
+    modes.set_mode(enabled=False)
+    run.run_until(130_000)
+
+
+def test_a_recording_replayed_does_the_same(run: RobotRun) -> None:
+    recorder = Recorder(run)
+    robot = run.construct(Robot)
+    run.start()
+    drive(run)
+    script = recorder.script("robot.py", 3, "hash")
+    assert [(step.at_us, dict(step.writes)) for step in script.steps] == [
+        (30_001, {"mode": "teleop", "joysticks[0].axes[0]": 0.1}),
+        (70_001, {"joysticks[0].buttons[2]": True}),
+        (90_001, {"mode": "disabled", "joysticks[0].axes[0]": -1.0}),
+    ]
+    assert (script.start_us, script.end_us, script.robot, script.seed, script.trace) == (
+        0,
+        130_001,
+        "robot.py",
+        3,
+        "hash",
+    )
+    assert sorted(script.packages) == ["pyfrc", "wpilib"]
+    seen = robot.seen
+    assert seen == [
+        (False, 0.0, False),  # 20 ms
+        (True, 0.1, False),
+        (True, 0.1, False),
+        (True, 0.1, True),  # 80 ms
+        (False, -1.0, True),
+        (False, -1.0, True),
+    ]
+    assert recorder.steps_from(1) == script.steps[1:]
+    recorder.forget_before(2)
+    assert recorder.steps_from(1) == script.steps[2:]
+    assert recorder.steps_from(3) == ()
+    run.close()
+    second = RobotRun()
+    second.open()
+    try:
+        replayed = second.construct(Robot)
+        Player(script, second).play()
+        assert replayed.seen == seen
+        assert second.clock.now_us == 130_000  # what is due at its end does not happen
+    finally:
+        second.close()
+
+
+def test_packets_out_of_turn_and_what_is_set_before_the_start(run: RobotRun) -> None:
+    recorder = Recorder(run)
+    modes.set_mode_named("disabled autonomous")
+    recorder.on_packet_out_of_turn()
+    run.construct(Robot)
+    run.start()
+    run.run_until(20_000)
+    recorder.begin_outside(stepping=True)
+    modes.set_match_time(15)
+    recorder.end_outside(stepping=True)
+    modes.unplug(3)
+    recorder.begin_outside()
+    modes.unplug(4)
+    recorder.end_outside()
+    steps = [(step.at_us, dict(step.writes)) for step in recorder.steps_from(0)]
+    assert steps[:2] == [(0, {"mode": "disabled autonomous"}), (0, {"packet": True})]
+    assert (20_000, {"match_time": 15.0}) in steps or (20_000, {"time.remaining": 15.0}) in steps
+    assert (20_001, {"joysticks[4].plugged": False}) in steps
+    assert not any("joysticks[3].plugged" in writes for _, writes in steps)
+
+
+def test_a_script_that_does_not_fit_the_robot_names_its_line(run: RobotRun) -> None:
+    run.construct(Robot)
+    with pytest.raises(ScriptError) as caught:
+        Player(parse({"t": 0, "set": {"nothing": 1}}), run)
+    assert str(caught.value).startswith("a.jsonl:2: there is no key 'nothing'")
+    player = Player(parse({"t": 0.05, "set": {"dio[17].value": False}}), run)
+    with pytest.raises(ScriptError, match=r"^a\.jsonl:2: this robot has no dio\[17\]"):
+        player.play()
+    assert run.clock.now_us == 999_999
+
+
+def test_a_player_writes_when_it_is_due_and_stops_when_it_is_told(run: RobotRun) -> None:
+    robot = run.construct(Robot)
+    script = parse(
+        {"t": 0, "set": {"mode": "disabled"}},
+        {"t": 0.02, "set": {"mode": "teleop", "match_time": 10}},
+        {"t": 0.06, "set": {"mode": "disabled"}},
+        header={**HEADER, "start": 0.01},
+    )
+    Player(script, run).play(until_us=100_000)
+    # What is written at 0.02 s is there with the packet of 0.02 s.
+    assert [seen[0] for seen in robot.seen] == [True, True, False, False]
+    assert run.clock.now_us == 99_999
+    assert math.isclose(wpilib.DriverStation.getMatchTime(), 10 - 0.06, abs_tol=1e-6)
+    deliver_packet()
