@@ -75,6 +75,6 @@ Command = Run | Pause | Speed | ChooseMode | Enable | EmergencyStop | Practice |
 ROBOT_ON_FIELD = "nt:/SmartDashboard/Field/Robot"
 
 
-def chosen(chooser: str) -> str:
-    """The target of a chooser's choice."""
+def chooser_target(chooser: str) -> str:
+    """Return the target that selects a chooser's option."""
     return f"nt:{chooser}/selected"

@@ -1,4 +1,4 @@
-"""What one can tell a robot from outside: what its driver station and its inputs are to be."""
+"""What can be done to a robot from outside: its driver station, its inputs, and its time."""
 
 from __future__ import annotations
 
@@ -6,18 +6,32 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any
 
-from .commands import ChooseMode, ChosenMode, Command, EmergencyStop, Enable, Practice, Write, chosen
+from ...runtime.clock import PACKET_US, to_us
+from .commands import (
+    ChooseMode,
+    ChosenMode,
+    Command,
+    EmergencyStop,
+    Enable,
+    Pause,
+    Practice,
+    Run,
+    Speed,
+    Write,
+    chooser_target,
+)
+from .options import check_speed
 
 
 class Controls(ABC):
-    """The driver station and the inputs of one robot."""
+    """The driver station, the inputs and the time of one robot."""
 
     @abstractmethod
     def _send(self, command: Command) -> None:
-        """Have the robot's process do something."""
+        """Send a command to the robot's process."""
 
     def choose_mode(self, mode: ChosenMode) -> None:
-        """Disable the robot, and choose what it does when it is enabled."""
+        """Disable the robot, and choose the mode for when it is enabled."""
         self._send(ChooseMode(mode))
 
     def enable(self) -> None:
@@ -29,11 +43,11 @@ class Controls(ABC):
         self._send(Enable(False))
 
     def emergency_stop(self) -> None:
-        """Stop the robot; it cannot be enabled again until it is restarted."""
+        """Stop the robot. It cannot be enabled again until it is restarted."""
         self._send(EmergencyStop())
 
     def attach_driver_station(self, attached: bool) -> None:
-        """Lose the driver station, or attach it again: then, the mode that is asked for holds."""
+        """Disconnect the driver station, or connect it again: then the robot enters the mode that is asked for."""
         self.write({"control.dsAttached": attached})
 
     def practice(self) -> None:
@@ -45,12 +59,39 @@ class Controls(ABC):
         self.write({"alliance_station": station})
 
     def set_game_message(self, message: str) -> None:
-        """Choose what the field sends to all robots."""
+        """Set the game data that the field sends to all robots."""
         self.write({"event.game_specific_message": message})
 
     def choose(self, chooser: str, option: str) -> None:
-        """Choose one of a `Chooser`'s options, by the names of both."""
-        self.write({chosen(chooser): option})
+        """Choose an option of a `Chooser`; both are given by name."""
+        self.write({chooser_target(chooser): option})
+
+    # -- time -----------------------------------------------------------------------------------------------------
+
+    def resume(self) -> None:
+        """Let time go on."""
+        self._send(Run())
+
+    def pause(self) -> None:
+        """Stop time."""
+        self._send(Pause())
+
+    def step(self, packets: int = 1) -> None:
+        """Let this many packets pass, 0.02 s each, then pause. The rest of an unfinished step is added."""
+        self._send(Run(packets=max(1, packets)))
+
+    def run_for(self, seconds: float) -> None:
+        """Let this many seconds of robot time pass, then pause."""
+        self.step(round(to_us(seconds) / PACKET_US))
+
+    def run_until(self, seconds: float) -> None:
+        """Pause when robot time gets there."""
+        self._send(Run(until_us=to_us(seconds)))
+
+    def set_speed(self, factor: float) -> None:
+        """Set the robot seconds per second: 1 is real time, 0.1 slow motion, 0 as fast as possible."""
+        check_speed(factor)
+        self._send(Speed(factor))
 
     # -- inputs ---------------------------------------------------------------------------------------------------
 
@@ -63,13 +104,13 @@ class Controls(ABC):
         self.write({f"joysticks[{stick}].axes[{axis}]": value})
 
     def set_button(self, stick: int, button: int, pressed: bool) -> None:
-        """Press or release a joystick's button; they count from 1."""
+        """Press or release a joystick's button; buttons count from 1."""
         self.write({f"joysticks[{stick}].buttons[{button}]": pressed})
 
     def set_pov(self, stick: int, pov: int, angle: int) -> None:
-        """Press a joystick's POV: degrees clockwise from up; -1 releases it."""
+        """Press a joystick's POV, in degrees clockwise from up; -1 releases it."""
         self.write({f"joysticks[{stick}].povs[{pov}]": angle})
 
     def plug(self, stick: int, plugged_in: bool) -> None:
-        """Plug a joystick in, or out."""
+        """Plug a joystick in, or unplug it."""
         self.write({f"joysticks[{stick}].plugged": plugged_in})

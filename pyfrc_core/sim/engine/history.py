@@ -34,11 +34,13 @@ class _Block:
     """Entries in a file, pickled; never changed, so that several histories may share it.
 
     :param last_us: the time of its last entry
+    :param count: the number of its entries
     """
 
     file: _File
     offset: int
     last_us: int
+    count: int
 
 
 class History(Generic[Item]):
@@ -71,14 +73,24 @@ class History(Generic[Item]):
         except OSError:  # there is no room on the disk: it stays in memory, until more has come
             self._most *= 2
             return
-        self._blocks.append(_Block(self._file, offset, entries[-1][0]))
+        self._blocks.append(_Block(self._file, offset, entries[-1][0], len(entries)))
         del self._recent[:-_BLOCK]
         self._most = 2 * _BLOCK
 
+    def __len__(self) -> int:
+        return sum(block.count for block in self._blocks) + len(self._recent)
+
     def __iter__(self) -> Iterator[tuple[int, Item]]:
+        return self.since(0)
+
+    def since(self, number: int) -> Iterator[tuple[int, Item]]:
+        """Yield the entries from the one with this number on; they count from 0."""
+        before = 0
         for block in self._blocks:
-            yield from self._read(block)
-        yield from self._recent
+            if number < before + block.count:
+                yield from self._read(block)[max(number - before, 0) :]
+            before += block.count
+        yield from self._recent[max(number - before, 0) :]
 
     @property
     def last(self) -> Item | None:

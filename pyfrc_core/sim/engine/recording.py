@@ -101,6 +101,11 @@ class Recording:
         return self._past
 
     @property
+    def lines(self) -> History[str]:
+        """The trace until now: one line for each packet that changed something."""
+        return self._lines
+
+    @property
     def station(self) -> StationState:
         """How the driver station is at the end."""
         return self._stations.last or StationState()

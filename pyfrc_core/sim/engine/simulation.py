@@ -1,4 +1,4 @@
-"""A simulation session: owns the process that the robot lives in, and knows no window."""
+"""A simulation session: owns the robot's process, and knows no front end."""
 
 from __future__ import annotations
 
@@ -16,33 +16,34 @@ from ...project import Project
 from ...runtime.clock import PACKET_US, to_us
 from ...runtime.own_process import explain_end, moment_of
 from ...runtime.scripts.script import InputScript, Step
-from .commands import Command, Pause, Run, Speed
+from .changes import ChangeCursor, RunChanges
+from .commands import Command
 from .controls import Controls
 from .field import field_of, robot_at, start_named
 from .messages import Failed, Job, Message, Ready, Update
-from .options import SimOptions, check_speed
+from .options import SimOptions
+from .output_log import OutputCursor, OutputLog
 from .pending import PendingCommands
 from .processes import RobotProcesses
 from .recording import Recording
 from .scene import Pose, Tag
 from .snapshot import Failure, Snapshot, Status
-from .snapshot_builder import Assembly
+from .snapshot_builder import SnapshotBuilder
 from .time_state import TimeState
 
-#: So much of what a robot has printed is kept for whoever asks for it, in characters.
-_MOST_OUTPUT = 200_000
-#: A robot not heard of for so long does not respond, in wall seconds.
+#: A running robot does not respond when it has sent nothing for this time, in wall seconds.
 _SILENCE = 1.0
 
 
 class Simulation(Controls):
     """A robot that a person, a script or a dashboard can drive.
 
-    Everything may be called at any time, from any thread: what makes no sense then does nothing, or is answered in
-    `Status.note`. Only `close` and `wait_for` wait for anything. See `Snapshot` and `Status` for what there is to see.
+    All methods may be called at any time, from any thread. A call that makes no sense at that moment does nothing, or
+    explains itself in `Status.note`. Only `close` and `wait_for` block. `Snapshot` and `Status` say what there is to
+    see. Several front ends can show one simulation: cursors give each of them all output and all changes.
 
-    :raises SettingsError: when ``sim/config.json`` is not what it may be
-    :raises UsageError: when an option cannot be
+    :raises SettingsError: when ``sim/config.json`` is invalid
+    :raises UsageError: when an option is impossible
     """
 
     def __init__(self, project: Project, options: SimOptions | None = None) -> None:
@@ -58,18 +59,20 @@ class Simulation(Controls):
         self._heard = monotonic()
         self._launch = 0
         self._tags: tuple[Tag, ...] | None = None
-        self._assembly = Assembly()
-        # What the user wants is what the robot's process was last known to go by, and after that the commands that are
-        # pending. What is, is `Status.state`.
+        self._builder = SnapshotBuilder()
+        # What the user wants of time: what the robot's process has reported, and then the pending commands.
+        # `Status.state` is the state of the process itself.
         until_us = None if self.options.run_until is None else to_us(self.options.run_until)
         self._time = TimeState(self.options.paused, until_us, speed=self.options.speed)
         self._pending = PendingCommands()
-        #: Held while a command is sent or a process is launched, so that all threads' come in one order.
+        #: Held while a command is sent or a process is launched: the process gets them in the order of their calls.
         self._sending = threading.RLock()
-        #: Where the robot's process is to be brought to before it goes on.
+        #: The moment that the robot's process replays to before it goes on.
         self._forward_us = 0
-        self._output = ""
-        #: Called with all that robots print, and with their tracebacks, from threads of this object's.
+        self._run = RunChanges(0, self._recording.lines)
+        self._output = OutputLog()
+        self._taken = self._output.cursor()
+        #: Called with all that robots print, and with their tracebacks, from this object's threads.
         self.echo: Callable[[str], object] = lambda text: None
         self._processes: RobotProcesses | None = None
 
@@ -77,7 +80,7 @@ class Simulation(Controls):
 
     @property
     def snapshot(self) -> Snapshot | None:
-        """The robot as it was last heard of; None before the first time."""
+        """The robot as it last reported itself; None before the first report."""
         return self._snapshot
 
     @property
@@ -90,26 +93,41 @@ class Simulation(Controls):
 
     @property
     def wants_to_run(self) -> bool:
-        """Whether robot time is to go on, by the commands so far: also while the robot starts, or has failed."""
+        """Whether the commands so far want robot time to go on; also known while the robot starts or has failed."""
         with self._changed:
             return not self._time_wanted.paused
 
     @property
     def recordings(self) -> tuple[InputScript, ...]:
-        """What was recorded until time was turned back, or the robot restarted; the latest first."""
+        """What was recorded before each time that the user went back in time or restarted the robot; latest first."""
         with self._changed:
             return tuple(each.script() for each in self._older)
 
-    def take_output(self) -> str:
-        """What the robot has printed since this was last asked."""
+    def output_cursor(self, from_start: bool = True) -> OutputCursor:
+        """Return a reader of what the robot prints; each reader gets all of it.
+
+        :param from_start: False begins with what is printed from now on
+        """
+        return self._output.cursor(from_start)
+
+    def change_cursor(self) -> ChangeCursor:
+        """Return a reader of all changes of `hal_data`, from the start of this run; each reader gets all of them.
+
+        :raises UsageError: when this simulation is not recorded
+        """
+        self._check_recorded()
         with self._changed:
-            output, self._output = self._output, ""
-        return output
+            return ChangeCursor(self._run, self._changed)
+
+    def take_output(self) -> str:
+        """Return what the robot has printed since the last call, by whatever caller. `output_cursor` is for several."""
+        with self._changed:
+            return self._taken.read()
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
-        """Wait until this is so; answers whether it is.
+        """Wait until a condition is true, and return whether it is.
 
-        :param condition: asked whenever something has changed
+        :param condition: evaluated whenever something has changed
         :param timeout: in wall seconds
         """
         with self._changed:
@@ -128,7 +146,7 @@ class Simulation(Controls):
                 self._note(f"sim/config.json: pyfrc.field.image: there is no file {image!r} in sim/. Correct the path.")
 
     def close(self) -> None:
-        """End the robot's process, whatever it does."""
+        """End the robot's process, whatever it is doing."""
         with self._changed:
             self._status = replace(self._status, state="closed")
             self._changed.notify_all()
@@ -146,51 +164,26 @@ class Simulation(Controls):
 
     # -- time -----------------------------------------------------------------------------------------------------
 
-    def resume(self) -> None:
-        """Let time go on."""
-        self._send(Run())
-
-    def pause(self) -> None:
-        """Let time stand still."""
-        self._send(Pause())
-
-    def step(self, packets: int = 1) -> None:
-        """Let so many packets' time pass, 0.02 s each, then pause. What is left of another step is added."""
-        self._send(Run(packets=max(1, packets)))
-
-    def run_for(self, seconds: float) -> None:
-        """Let so many seconds of robot time pass, then pause."""
-        self.step(round(to_us(seconds) / PACKET_US))
-
-    def run_until(self, seconds: float) -> None:
-        """Pause when robot time gets there."""
-        self._send(Run(until_us=to_us(seconds)))
-
-    def set_speed(self, factor: float) -> None:
-        """Robot seconds a second: 1 is real time, 0.1 slow motion, 0 as fast as it goes."""
-        check_speed(factor)
-        self._send(Speed(factor))
-
     def rewind(self, seconds: float) -> None:
-        """Go back to a moment, and go on from there. What came after it is kept among `recordings`.
+        """Go back to a moment, and go on from there. What came after it is kept in `recordings`.
 
-        A robot that has failed can be brought back to before it did.
+        A robot that has failed can go back to a moment before its failure.
         """
         if not self.options.recording:
-            self._note("There is no way back: this simulation is not recorded.")
+            self._note("Going back is impossible: this simulation is not recorded.")
             return
         with self._sending, self._changed:
             to = max(0, min(to_us(seconds), self._moment_us)) // PACKET_US * PACKET_US
             self._keep_and_begin(self._recording.until(to), to, self._time_wanted.continued_at(to))
 
     def restart(self) -> None:
-        """Start the robot anew, at time 0. What was recorded is kept among `recordings`."""
+        """Start the robot again, at time 0. What was recorded is kept in `recordings`."""
         with self._sending, self._changed:
             to = to_us(self.options.start_at)
             self._keep_and_begin(Recording(self._first_script()), to, self._time_wanted.continued_at(to))
 
     def reload(self) -> None:
-        """Bring the robot, with its code as it is now, to this moment through the same inputs, and go on from there."""
+        """Load the robot's code again, replay the same inputs until this moment, and go on from there."""
         if not self.options.recording:
             self.restart()
             return
@@ -204,24 +197,24 @@ class Simulation(Controls):
             self.project = project
             again = self._recording.again()
             to = max([self._moment_us, *(step.at_us for step in again.past.steps[-1:])])
-            former = self._assembly.trail
+            former = self._builder.trail
             self._keep_and_begin(again, to, self._time, self._pending.commands, keep=False)
             self._status = replace(self._status, former_trail=former)
 
     # -- where the robot is ---------------------------------------------------------------------------------------
 
     def place(self, x: float, y: float, degrees: float) -> None:
-        """Put the robot elsewhere on the field: feet and degrees, as in ``sim/config.json``."""
+        """Put the robot at a place on the field, in feet and degrees as in ``sim/config.json``."""
         self.write(robot_at(self.field, Pose(x, y, math.radians(degrees))))
 
     def reset_position(self, start: str | None = None) -> None:
-        """Put the robot where it started, or on another of the field's `starts`."""
+        """Put the robot where it started, or on one of the field's other `starts`."""
         self.write(self._at_start(start or self.options.start_position))
 
     # -- recording ------------------------------------------------------------------------------------------------
 
     def script(self) -> InputScript:
-        """What the robot has been told from its start until now, and the hash of what it has done."""
+        """Return the robot's inputs from its start until now, with the hash of what it did."""
         with self._changed:
             return self._recording.script()
 
@@ -230,15 +223,14 @@ class Simulation(Controls):
 
         :raises UsageError: when this simulation is not recorded
         """
-        if not self.options.recording:
-            raise UsageError("this simulation is not recorded")
+        self._check_recorded()
         with self._changed:
             self._recording.save(file)
 
     def save_all(self, file: Path) -> list[Path]:
-        """Write this recording, and the older ones beside it: ``NAME-1.jsonl`` is what time was first turned back from.
+        """Write this recording, and the older ones beside it as ``NAME-1.jsonl`` and so on, the oldest first.
 
-        :returns: the scripts' files
+        :returns: the files of the scripts
         """
         self.save(file)
         files = [file]
@@ -257,7 +249,7 @@ class Simulation(Controls):
             return
         if keep and self._recording.length_us > to_us:
             self._older.insert(0, self._recording)
-        self._status = replace(self._status, former_trail=self._assembly.trail if keep else ())
+        self._status = replace(self._status, former_trail=self._builder.trail if keep else ())
         self._begin(recording, to_us, time, commands)
 
     def _begin(
@@ -282,10 +274,13 @@ class Simulation(Controls):
             self._recording = recording
             self._forward_us = forward_to_us
             self._time, self._pending = time, PendingCommands(commands)
-            self._assembly = Assembly()
+            self._builder = SnapshotBuilder()
             self._heard = monotonic()
             starts = self._status.starts + 1
             self._status = replace(self._status, state="starting", failure=None, note="", starts=starts)
+            if options.recording:
+                self._run.next = RunChanges(starts, recording.lines)
+                self._run = self._run.next
             self._launch = self._processes.launch(job)
             self._changed.notify_all()
 
@@ -296,7 +291,7 @@ class Simulation(Controls):
                     return
                 failed = self._status.state == "failed"
                 self._pending.add(command, sent=not failed)
-            if not failed:  # else the next process gets it
+            if not failed:  # otherwise the next process gets it
                 self._processes.send(command)
 
     @property
@@ -305,7 +300,7 @@ class Simulation(Controls):
 
     @property
     def _moment_us(self) -> int:
-        """The moment that the robot is at, or is being brought to."""
+        """The moment that the robot is at, or is replaying to."""
         return max(self._recording.length_us, self._forward_us)
 
     def _on_message(self, launch: int, message: Message) -> None:
@@ -320,7 +315,7 @@ class Simulation(Controls):
                 self.field = replace(self.field, tags=message.tags)
                 note = " ".join(message.notes) or self._status.note
                 self._status = replace(self._status, network_address=message.network_address, note=note)
-                if self.options.recording:  # else there is no other robot's process to come, in all likelihood
+                if self.options.recording:  # otherwise another process of the robot is unlikely
                     assert self._processes is not None
                     self._processes.preload(message.libraries)
             elif isinstance(message, Failed):
@@ -345,8 +340,8 @@ class Simulation(Controls):
         self._echo_failure(failure)
 
     def _on_output(self, text: str) -> None:
+        self._output.append(text)
         with self._changed:
-            self._output = (self._output + text)[-_MOST_OUTPUT:]
             self._changed.notify_all()
         self.echo(text)
 
@@ -365,11 +360,15 @@ class Simulation(Controls):
     def _take_in(self, update: Update) -> None:
         if self.options.recording:
             self._recording.hear(update)
+            if update.base is not None:
+                # Where changes came before the base, they begin with a change that holds all values.
+                time, base = (0.0, {}) if update.lines else (update.time_us / 1_000_000, update.base)
+                self._run.begin(time, base)
         else:
             self._recording.length_us = update.time_us
         self._time = update.time_state
         self._pending.settle(update.carried_out, update.recorded)
-        self._snapshot = self._assembly.snapshot_after(update, self.field)
+        self._snapshot = self._builder.snapshot_after(update, self.field)
         self._status = replace(
             self._status,
             state="paused" if update.time_state.paused else "running",
@@ -384,6 +383,10 @@ class Simulation(Controls):
             length=self._recording.length_us / 1_000_000,
             note=" ".join(update.notes) or self._status.note,
         )
+
+    def _check_recorded(self) -> None:
+        if not self.options.recording:
+            raise UsageError("this simulation is not recorded")
 
     def _first_script(self) -> InputScript:
         script = self.options.script or InputScript((), 0, robot=self.project.main_file.name)

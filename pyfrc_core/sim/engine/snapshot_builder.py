@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from types import MappingProxyType
 from typing import Any
 
+from .changes import change_of, frozen
 from .messages import Update
 from .scene import Field, Point, Scene
 from .snapshot import Snapshot
@@ -40,7 +40,7 @@ class _Trail:
         self.points = (*self._older, *self._recent)
 
 
-class Assembly:
+class SnapshotBuilder:
     """The snapshots of one run."""
 
     def __init__(self) -> None:
@@ -83,19 +83,10 @@ class Assembly:
 
 def _values(before: Snapshot, update: Update) -> dict[str, Any]:
     if update.base is not None:
-        return {path: _frozen(value) for path, value in update.base.items()}
+        return {path: frozen(value) for path, value in update.base.items()}
     values = dict(before.values)
-    for line in update.lines:
-        change = json.loads(line)
-        values.update((path, _frozen(value)) for path, value in change["set"].items())
-        for path in change.get("gone", ()):
+    for change in map(change_of, update.lines):
+        values.update(change.values)
+        for path in change.gone:
             values.pop(path, None)
     return values
-
-
-def _frozen(value: Any) -> Any:
-    if isinstance(value, (list, tuple)):
-        return tuple(_frozen(each) for each in value)
-    if isinstance(value, dict):
-        return MappingProxyType({key: _frozen(each) for key, each in value.items()})
-    return value

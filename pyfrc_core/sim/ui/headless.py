@@ -11,6 +11,7 @@ from ...physics.pose import METRES_PER_FOOT
 from ...runtime.clock import PACKET_US, to_us
 from ...runtime.match import MatchPeriods
 from ..engine.commands import ChosenMode
+from ..engine.output_log import OutputCursor
 from ..engine.simulation import Simulation
 from ..engine.snapshot import Failure, Snapshot
 from . import FrontEnd
@@ -96,6 +97,7 @@ class Headless(FrontEnd):
         self._seconds = seconds
         self._watching = watching
         self._simulation: Simulation | None = None
+        self._output: OutputCursor | None = None
         self._told: Failure | None = None
         self._noted = ""
         self.summary: Summary | None = None
@@ -103,6 +105,7 @@ class Headless(FrontEnd):
     def run(self, simulation: Simulation) -> int:
         """The exit code is that of the robot's failure, if it has failed."""
         self._simulation = simulation
+        self._output = simulation.output_cursor()
         end = self._end(simulation)
         interrupted = False
         try:
@@ -188,8 +191,7 @@ class Headless(FrontEnd):
         return None if self._mode is None else DEFAULT_SECONDS
 
     def _print(self, simulation: Simulation) -> None:
-        output = simulation.take_output()
-        if output:
+        if self._output is not None and (output := self._output.read()):
             self._say(output)
         status = simulation.status
         if status.note not in ("", self._noted):

@@ -14,8 +14,10 @@ from .theme import Theme
 if TYPE_CHECKING:
     from ...engine.simulation import Simulation
 
-#: So many lines stay to be seen; and so much of what has gone wrong stands above them, in letters.
+#: The lines that stay visible; the longest headline of a failure above them, in characters.
 _MOST_LINES, _MOST_HEADLINE = 2000, 300
+#: The most text that is added in one frame, in characters: its end, where a robot prints faster.
+_MOST_AT_ONCE = 200_000
 
 
 class ConsoleView:
@@ -23,7 +25,7 @@ class ConsoleView:
 
     def __init__(self, parent: tk.Misc, theme: Theme, simulation: Simulation) -> None:
         px = theme.px
-        self._simulation = simulation
+        self._simulation, self._output = simulation, simulation.output_cursor()
         self._failure: Failure | None = None
         self.frame = frame = colors.card(parent, theme)
         self._banner = banner = tk.Frame(frame, background="#fdecec")
@@ -74,7 +76,7 @@ class ConsoleView:
 
     def show(self, failure: Failure | None) -> None:
         """Show what has been printed since, and what has happened."""
-        if output := self._simulation.take_output():
+        if output := self._output.read_last(_MOST_AT_ONCE):
             self._append(plain_output(output))
         if failure is self._failure:
             return

@@ -1,0 +1,129 @@
+"""Every change of `hal_data` in a session, for several readers: each reads all of them, at its own pace.
+
+The changes themselves are the lines of the recording's trace, which is on disk. A session has one run after the other:
+going back in time and new code each begin another. Each run knows the next one, and a reader the run that it is at: so
+runs are kept as long as a reader has not finished them, and no longer.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice
+from types import MappingProxyType
+from typing import Any
+
+from .history import History
+
+
+@dataclass(frozen=True)
+class RunBegan:
+    """Another run of the robot began; what was read of moments after `time` is no longer part of the session's past.
+
+    :param number: as in `Status.starts`
+    :param time: robot time where it goes on from, in seconds
+    :param values: all values there, as in `Snapshot.values`; they replace those read before
+    """
+
+    number: int
+    time: float
+    values: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Change:
+    """What changed in one packet.
+
+    :param time: robot time, in seconds
+    :param values: the new values by their paths, as in `Snapshot.values`
+    :param gone: the paths that no longer exist
+    """
+
+    time: float
+    values: Mapping[str, Any]
+    gone: tuple[str, ...] = ()
+
+
+def change_of(line: str) -> Change:
+    """Return the change that a line of a trace describes."""
+    change = json.loads(line)
+    values = {path: frozen(value) for path, value in change["set"].items()}
+    return Change(change["t"], MappingProxyType(values), tuple(change.get("gone", ())))
+
+
+def frozen(value: Any) -> Any:
+    """Return the same value, unchangeable."""
+    if isinstance(value, (list, tuple)):
+        return tuple(frozen(each) for each in value)
+    if isinstance(value, dict):
+        return MappingProxyType({key: frozen(each) for key, each in value.items()})
+    return value
+
+
+class RunChanges:
+    """One run's place in the session.
+
+    :param lines: the trace until now, which grows; the first lines may be those of the run before
+    """
+
+    def __init__(self, number: int, lines: History[str]) -> None:
+        self.number, self.lines = number, lines
+        #: The number of lines from the run before.
+        self.first = len(lines)
+        #: None as long as the robot has not come up.
+        self.began: RunBegan | None = None
+        self.next: RunChanges | None = None
+
+    def begin(self, time: float, values: Mapping[str, Any]) -> None:
+        """Note what the run begins with; only the first call counts."""
+        if self.began is None:
+            unchangeable = {path: frozen(value) for path, value in values.items()}
+            self.began = RunBegan(self.number, time, MappingProxyType(unchangeable))
+
+
+class ChangeCursor:
+    """One reader's place among the changes. Use it from one thread at a time.
+
+    :param run: the run to begin with, from the start of its lines
+    :param lock: held by whoever adds lines or runs
+    """
+
+    def __init__(self, run: RunChanges, lock: threading.Condition) -> None:
+        self._run, self._lock = run, lock
+        self._line = 0
+        self._has_begun = False
+
+    def read(self, most: int | None = None) -> list[RunBegan | Change]:
+        """Return what has happened since the last call, in order; empty when there is nothing new.
+
+        :param most: return at most this many entries, and the rest with the next calls
+        """
+        found: list[RunBegan | Change] = []
+        with self._lock:
+            for entry in self._entries():
+                found.append(entry)
+                if len(found) == most:
+                    break
+        return found
+
+    def _entries(self) -> Iterator[RunBegan | Change]:
+        """Yield what comes next; each entry counts as read when it is yielded."""
+        while True:
+            run = self._run
+            yield from self._lines_until(run.first)
+            if run.began is not None:
+                if not self._has_begun:
+                    self._has_begun = True
+                    yield run.began
+                yield from self._lines_until(len(run.lines))
+            if run.next is None:
+                return
+            self._run, self._line, self._has_begun = run.next, run.next.first, False
+
+    def _lines_until(self, end: int) -> Iterator[Change]:
+        if self._line < end:
+            for _, line in islice(self._run.lines.since(self._line), end - self._line):
+                self._line += 1
+                yield change_of(line)

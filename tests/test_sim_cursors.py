@@ -1,0 +1,220 @@
+"""Several consumers of one session: each reads all of its output and every change, at its own pace."""
+
+from __future__ import annotations
+
+import gc
+import json
+from pathlib import Path
+
+import pytest
+from sim_robots import FILES, run, settle, wait
+
+from pyfrc_core.errors import UsageError
+from pyfrc_core.project import find_project
+from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.engine import history, output_log
+from pyfrc_core.sim.engine.changes import Change, RunBegan
+from pyfrc_core.sim.engine.history import History
+from pyfrc_core.sim.engine.output_log import OutputLog
+
+TALKATIVE = {
+    "robot.py": """
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.count, self.motor = 0, wpilib.PWMSparkMax(2)
+
+            def robotPeriodic(self):
+                self.count += 1
+                self.motor.set(self.count % 100 / 100)
+                print("turn", self.count, "x" * 2000)
+    """,
+}
+TURNS = 500
+
+
+def numbers(text: str) -> list[int]:
+    """The turns that the robot has printed."""
+    return [int(line.split()[1]) for line in text.splitlines() if line.startswith("turn ")]
+
+
+def times(events: list[RunBegan | Change]) -> list[float]:
+    return [event.time for event in events if isinstance(event, Change)]
+
+
+def test_a_slow_and_a_quick_consumer_see_every_line_of_output(make_project) -> None:
+    """A megabyte is printed: more than was ever kept in memory."""
+    made = make_project(TALKATIVE)
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
+        quick, slow = simulation.output_cursor(), simulation.output_cursor()
+        seen_quickly = ""
+        for _ in range(10):
+            run(simulation, TURNS / 10 * 0.02)
+            seen_quickly += quick.read()
+        simulation.close()
+        seen_quickly += quick.read()
+        seen_slowly = ""
+        while piece := slow.read(1000):  # a few characters at a time
+            assert len(piece) <= 1000
+            seen_slowly += piece
+        late = simulation.output_cursor().read()
+    assert numbers(seen_quickly)[: TURNS - 1] == list(range(1, TURNS))
+    assert seen_slowly == seen_quickly == late
+
+
+def test_each_consumer_of_output_has_a_place_of_its_own() -> None:
+    log = OutputLog()
+    first = log.cursor()
+    log.append("größer ")
+    second = log.cursor(from_start=False)
+    log.append("✓\ud83d done\n")
+    assert first.read(3) == "grö"
+    assert second.read() == "✓\ud83d done\n"
+    assert first.read() == "ßer ✓\ud83d done\n"
+    assert first.read() == second.read() == ""
+    assert log.cursor().read_last(5) == "done\n"
+    assert log.cursor().read() == "größer ✓\ud83d done\n"
+
+
+def test_a_flood_of_output_says_what_it_has_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The disk does not fill up; a consumer that is still at what is gone learns of the gap."""
+    monkeypatch.setattr(output_log, "_SEGMENT", 1000)
+    monkeypatch.setattr(output_log, "_MOST_SEGMENTS", 3)
+    log = OutputLog()
+    slow, quick = log.cursor(), log.cursor()
+    seen = ""
+    for number in range(1000):
+        log.append(f"line {number}\n")
+        seen += quick.read()
+    assert seen == "".join(f"line {number}\n" for number in range(1000))
+    left = slow.read()
+    gap, _, rest = left.partition("\n")
+    assert gap.startswith("[pyfrc: ")
+    assert gap.endswith(" bytes of output were dropped here]")
+    assert 2000 <= len(rest) <= 4000
+    assert seen.endswith(rest)
+
+
+def test_a_slow_and_a_quick_consumer_see_every_change(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "_BLOCK", 16)
+    made = make_project(FILES)
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
+        quick, slow = simulation.change_cursor(), simulation.change_cursor()
+        simulation.choose_mode("autonomous")
+        simulation.choose("/SmartDashboard/Auto", "Forward")
+        simulation.enable()
+        seen: list[RunBegan | Change] = []
+        for _ in range(10):
+            run(simulation, 0.4)
+            seen += quick.read()
+        simulation.save(made.path / "run.jsonl")
+        late = simulation.change_cursor().read()
+        slowly: list[RunBegan | Change] = []
+        while some := slow.read(3):
+            assert len(some) <= 3
+            slowly += some
+        assert simulation.snapshot is not None
+        values = dict(simulation.snapshot.values)
+    lines = [json.loads(line) for line in Path(made.path, "run.trace.jsonl").read_text().splitlines()[1:-1]]
+    assert times(seen) == [line["t"] for line in lines]
+    assert slowly == seen == late
+    assert isinstance(seen[0], RunBegan)
+    assert seen[0].number == 1
+    assert replayed(seen) == values
+
+
+def replayed(events: list[RunBegan | Change]) -> dict[str, object]:
+    """The values after these events, as a consumer that has nothing else keeps them."""
+    values: dict[str, object] = {}
+    for event in events:
+        if isinstance(event, RunBegan):
+            values = dict(event.values)
+        else:
+            values.update(event.values)
+            for path in event.gone:
+                values.pop(path, None)
+    return values
+
+
+def test_consumers_learn_that_time_was_turned_back(make_project) -> None:
+    """The slow one still gets the changes of the time that was given up, before the new beginning."""
+    made = make_project(FILES)
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
+        quick, slow = simulation.change_cursor(), simulation.change_cursor()
+        simulation.enable()
+        run(simulation, 2)
+        simulation.set_axis(0, 1, -0.5)
+        run(simulation, 1)
+        seen = quick.read()
+        given_up = times(seen)
+        simulation.rewind(1)
+        settle(simulation)
+        simulation.set_axis(0, 1, 0.25)
+        run(simulation, 0.5)
+        seen += quick.read()
+        assert slow.read() == seen
+        late = simulation.change_cursor().read()
+        assert simulation.snapshot is not None
+        values = simulation.snapshot.values
+        simulation.restart()
+        wait(simulation, lambda: simulation.status.starts == 3 and simulation.status.state == "paused")
+        again = quick.read()
+    began = [event for event in seen if isinstance(event, RunBegan)]
+    assert [(event.number, event.time) for event in began] == [(1, 0.0), (2, 1.0)]
+    assert max(given_up) > 2
+    after = times(seen)[len(given_up) :]
+    assert after
+    assert after[0] > 1
+    assert after[-1] <= 1.52
+    assert replayed(seen) == replayed(late) == dict(values)
+    assert times(late) == [time for time in given_up if time <= 1] + after
+    assert isinstance(again[0], RunBegan)
+    assert (again[0].number, again[0].time) == (3, 0.0)
+
+
+def test_a_run_that_never_came_up_is_passed_over(make_project) -> None:
+    """Nothing is waited for that will not come: the robot was restarted before it was there."""
+    made = make_project(FILES)
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
+        cursor = simulation.change_cursor()
+        simulation.restart()
+        settle(simulation)
+        numbers = [event.number for event in cursor.read() if isinstance(event, RunBegan)]
+        assert numbers[-1] == simulation.status.starts
+
+
+def test_changes_need_a_recording(make_project) -> None:
+    made = make_project(FILES)
+    with (
+        Simulation(find_project(made.path), SimOptions(speed=0, paused=True, recording=False)) as simulation,
+        pytest.raises(UsageError, match="not recorded"),
+    ):
+        simulation.change_cursor()
+
+
+def test_runs_that_no_consumer_reads_are_not_kept(make_project) -> None:
+    made = make_project(FILES)
+    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
+        for _ in range(3):
+            simulation.restart()
+            settle(simulation)
+        gc.collect()
+        from pyfrc_core.sim.engine.changes import RunChanges
+
+        assert sum(isinstance(each, RunChanges) for each in gc.get_objects()) == 1
+
+
+def test_a_history_is_read_from_any_entry(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(history, "_BLOCK", 4)
+    whole: History[int] = History()
+    for number in range(50):
+        whole.append(number, number)
+    assert len(whole) == 50
+    for start in (0, 1, 4, 17, 46, 49, 50, 60):
+        assert list(whole.since(start)) == [(number, number) for number in range(start, 50)]
+    part = whole.until(21)
+    part.append(100, 100)
+    assert len(part) == 23
+    assert [item for _, item in part.since(20)] == [20, 21, 100]
