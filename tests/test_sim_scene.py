@@ -16,7 +16,7 @@ from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.project import Project
 from pyfrc_core.sim.engine.field import field_of, tags_of
 from pyfrc_core.sim.engine.robot_side.user_renderer import MOST_DRAWINGS
-from pyfrc_core.sim.engine.scene import Field, Line, Pose, Scene, Shape, Tag, Target, Text
+from pyfrc_core.sim.engine.scene import Field, Line, LineStyle, Pose, Scene, Shape, Tag, Target, Text, TextStyle
 from pyfrc_core.sim.ui.picture import draw_picture
 
 DOWN = Pose(10.0, 5.0, math.pi / 2)
@@ -86,7 +86,30 @@ def test_a_line_in_other_coordinates(keywords: dict, expected: list, renderer: U
 
 def test_colors_arrows_and_tkinters_own_options(renderer: UserRenderer) -> None:
     renderer.draw_line([(0, 0), (1, 1)], color="#00ff00", arrow=False, width=3, dash=(4, 4))
-    assert only_line(renderer) == Line(((0, 0), (1, 1)), "#00ff00", False, {"width": 3, "dash": (4, 4)})
+    assert only_line(renderer) == Line(((0, 0), (1, 1)), "#00ff00", False, LineStyle(width=3, dash=(4, 4)))
+
+
+@pytest.mark.parametrize(
+    ("options", "problem"),
+    [
+        ({"no_such_option": 1}, "draw_line: there is no option 'no_such_option'"),
+        ({"dashes": (4, 4)}, "did you mean 'dash'?"),
+        ({"width": "thick"}, "draw_line: width='thick'"),
+        ({"capstyle": "square"}, "it is one of butt, projecting, round"),
+    ],
+)
+def test_options_that_are_wrong_are_named(renderer: UserRenderer, options: dict[str, object], problem: str) -> None:
+    """A front end shows it; the robot goes on."""
+    renderer.draw_line([(0, 0), (1, 1)], **options)
+    assert problem in only_line(renderer).problem
+
+
+def test_a_font_as_tkinter_has_it(renderer: UserRenderer) -> None:
+    renderer.draw_text("one", (1, 2), font=("Arial", 14, "bold"), fill="#00ff00")
+    renderer.draw_text("two", (1, 2), font="Arial 9 italic", tags="mine")
+    first, second = renderer.drawings()
+    assert first == Text("one", 1, 2, "#00ff00", 14, TextStyle(family="Arial", bold=True))
+    assert second == Text("two", 1, 2, "#000000", 9, TextStyle(family="Arial", italic=True))
 
 
 def test_a_text(renderer: UserRenderer) -> None:
@@ -95,8 +118,8 @@ def test_a_text(renderer: UserRenderer) -> None:
     renderer.draw_text("robot", (1, 0), robot_coordinates=True)
     renderer.draw_text("beside", (1, 0), robot_coordinates=(2, 0))
     first, second, third, fourth = renderer.drawings()
-    assert first == Text("here", 1, 2, "#000000", 10, {})
-    assert second == Text("there", 4, 2, "#0000ff", 20, {"anchor": "w"})
+    assert first == Text("here", 1, 2, "#000000", 10, TextStyle())
+    assert second == Text("there", 4, 2, "#0000ff", 20, TextStyle(anchor="w"))
     assert (third.x, third.y) == pytest.approx((10, 6))
     assert (fourth.x, fourth.y) == pytest.approx((8, 6))
 
@@ -116,7 +139,7 @@ def test_a_trajectory(renderer: UserRenderer) -> None:
     line, *texts = renderer.drawings()
     # Forward is down; pathfinder's y grows to the robot's left, which is then to the right.
     assert points(line) == [(10, 5), (10, 6), (11, 7), (11, 8), (11, 9)]
-    assert (line.color, line.options) == ("#0000ff", {"width": 2})
+    assert (line.color, line.style) == ("#0000ff", LineStyle(width=2))
     assert [(text.text, round(text.x), round(text.y)) for text in texts] == [
         ("t=2.00", 10, 5),
         ("t=3.00", 11, 7),

@@ -32,7 +32,7 @@ from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine.scene import Tag, Target
 from pyfrc_core.sim.engine.snapshot import Chooser, Failure
-from pyfrc_core.sim.ui.choose import default_name, window
+from pyfrc_core.sim.ui.choose import FRONT_ENDS, Wishes, default_name, make_front_end
 from pyfrc_core.sim.ui.tk import TkFrontEnd
 from pyfrc_core.sim.ui.tk.window import Window
 
@@ -830,7 +830,14 @@ def test_no_display(make_project: MakeProject, monkeypatch: pytest.MonkeyPatch) 
         monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
         assert default_name()[0] == "none"
         with pytest.raises(UsageError, match="needs a display"):
-            window("tk")
+            make_front_end("tk", Wishes(say=print))
+
+
+def test_the_command_offers_each_front_end() -> None:
+    from pyfrc_cli.sim import command
+
+    (option,) = (each for each in command.params if each.name == "ui")
+    assert list(option.type.choices) == list(FRONT_ENDS)
 
 
 def test_no_tkinter(make_project: MakeProject, display: VirtualDisplay) -> None:

@@ -23,17 +23,14 @@ from pyfrc_core.sim.ui.models.devices import SETTABLE, DeviceRows, Row, panels_o
 from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading, hat_angle
 from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
 from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
+from pyfrc_core.sim.ui.models.time_controls import FASTEST, SLOWEST, slider_of_speed, speed_of_slider
 from pyfrc_core.sim.ui.models.viewport import FARTHEST, NEAREST, Viewport
 from pyfrc_core.sim.ui.models.wording import (
-    FASTEST,
-    SLOWEST,
     clock,
     mode_text,
     number_text,
     plain_output,
     pose_text,
-    slider_of_speed,
-    speed_of_slider,
     station_name,
     status_texts,
 )
@@ -402,7 +399,7 @@ def test_a_gamepad_moves_a_joystick() -> None:
     pad.reading = replace(pad.reading, axes=(0.504, -1.0))  # a tremble
     router.poll()
     assert told.calls == []
-    router.tell_all_again()
+    router.forget()
     router.poll()
     assert ("set_axis", 0, 1, -1.0) in told.calls
 

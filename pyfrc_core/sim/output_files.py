@@ -11,7 +11,7 @@ from ..errors import UsageError
 from .engine.simulation import Simulation
 
 
-class KeptFiles:
+class OutputFiles:
     """What is to be kept, seen before anything runs: nobody drives for an hour to learn that it cannot be written.
 
     :raises UsageError: when one of these files cannot be written

@@ -1,4 +1,4 @@
-"""`pyfrc sim`: a simulation, its front end, and what is kept of it."""
+"""`pyfrc sim`: a simulation, its front end, and the files that it writes."""
 
 from __future__ import annotations
 
@@ -14,26 +14,24 @@ from ..interruption import ending_like_ctrl_c
 from ..project import Project
 from ..runtime.scripts.script import load_script
 from .c_exit import calling_at_c_exit
-from .engine.extensions import WINDOW
-from .engine.options import SimOptions
-from .engine.robot_side.network import NT4_PORT
+from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
 from .engine.watch import watching
-from .output_files import KeptFiles
-from .ui.choose import default_name, window
+from .output_files import OutputFiles
+from .ui.choose import FRONT_ENDS, Wishes, default_name, make_front_end
 from .ui.headless import Headless, HeadlessMode
 
 
 @dataclass(frozen=True)
 class SimRequest:
-    """What the user asks for.
+    """The options of the command.
 
-    :param ui: the front end; None: a window, where there can be one
+    :param ui: the name of the front end; None: a window where one is possible
     :param mode: what a headless simulation puts the robot through
-    :param seconds: for how long, in robot time; likewise `start_at`
-    :param speed: robot seconds a second; None: real time, or as fast as it goes where nobody watches
-    :param nt_port: None: the usual one where somebody may look; 0: none
-    :param quiet: say only what the robot prints, and what is wrong
+    :param seconds: the end, in robot time; `start_at` likewise
+    :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
+    :param nt_port: None: the usual port, or none when unattended; 0: none
+    :param quiet: print only the robot's output and what is wrong
     """
 
     ui: str | None = None
@@ -54,7 +52,7 @@ class SimRequest:
 
 
 def simulate(project: Project, request: SimRequest, say: Callable[[str], object]) -> int:
-    """Simulate the project's robot as the user asks; answers the exit code.
+    """Simulate the project's robot, and return the exit code.
 
     :param say: prints
     """
@@ -63,44 +61,43 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         ui, why = default_name()
         if why and not request.quiet:
             say(f"No window: {why}. This is --ui none.\n")
-    if request.mode is not None and ui != "none":
+    kind = FRONT_ENDS[ui]
+    if request.mode is not None and kind.interactive:
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
-    headless = Headless(say, request.mode, request.seconds, request.watch, request.quiet) if ui == "none" else None
-    front_end = headless or window(ui)
-    # Nobody watches what ends by itself.
-    unattended = headless is not None and any(
-        each is not None for each in (request.mode, request.seconds, request.script)
-    )
+    front_end = make_front_end(ui, Wishes(say, request.mode, request.seconds, request.watch, request.quiet))
+    ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script))
+    unattended = not kind.interactive and ends_by_itself
     port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
     options = SimOptions(
         speed=request.speed if request.speed is not None else 0.0 if unattended else 1.0,
-        paused=request.paused or headless is not None,
+        paused=request.paused or not kind.interactive,
         script=None if request.script is None else load_script(request.script),
         start_at=request.start_at,
         run_until=request.seconds,
-        recording=headless is None or request.record is not None or request.watch,
+        recording=kind.interactive or request.record is not None or request.watch,
         nt_port=port or None,
         wpilog=request.wpilog,
-        extensions=(*request.extensions, WINDOW) if ui == "wpilib" else request.extensions,
+        extensions=(*request.extensions, *kind.extensions),
         start_position=request.start_position,
     )
     simulation = Simulation(project, options)
-    kept = KeptFiles(request.record, request.wpilog, request.picture)
+    files = OutputFiles(request.record, request.wpilog, request.picture)
     with ExitStack() as closing:
         interruption = closing.enter_context(ending_like_ctrl_c())
-        if ui == "tk":
+        if not kind.prints:
             simulation.echo = partial(_echo, say)
-            closing.enter_context(calling_at_c_exit(partial(_end_without_display, simulation, kept, say)))
+        if kind.opens_display:
+            closing.enter_context(calling_at_c_exit(partial(_end_without_display, simulation, files, say)))
         if request.watch:
             closing.enter_context(watching(simulation, front_end.saved))
         try:
             code = front_end.run(simulation)
         except KeyboardInterrupt:  # in the terminal: another way to close a window
             code = 0
-        finally:  # also when the terminal has gone, and nothing can be said any more
+        finally:  # also when the terminal has gone, and nothing can be printed
             interruption.finish()
             simulation.close()
-            written = kept.write(simulation)
+            written = files.write(simulation)
     with suppress(OSError):  # the terminal has gone
         for file in () if request.quiet else written:
             say(f"wrote {file}\n")
@@ -116,15 +113,15 @@ def _echo(say: Callable[[str], object], text: str) -> None:
         pass
 
 
-def _end_without_display(simulation: Simulation, kept: KeptFiles, say: Callable[[str], object]) -> None:
-    """Write the files of a simulation whose window's display has gone, and end. Nothing can be drawn any more."""
+def _end_without_display(simulation: Simulation, files: OutputFiles, say: Callable[[str], object]) -> None:
+    """Write the files of a simulation whose display has gone, and end the process. Nothing may be drawn here."""
     from ..runtime.own_process import exit_now
 
     with suppress(KeyboardInterrupt):
         simulation.close()
     problem = "error: the display has gone, and the window with it"
     try:
-        written = kept.write(simulation)
+        written = files.write(simulation)
     except Exception as wrong:
         written, problem = [], f"{problem}. {wrong}"
     with suppress(OSError):
@@ -137,7 +134,7 @@ def _end_without_display(simulation: Simulation, kept: KeptFiles, say: Callable[
 
 
 def draw_script(project: Project, script: Path, picture: Path, until: float | None = None) -> None:
-    """Draw the way that the robot drives when it is told what a script says.
+    """Draw the path that the robot drives under an input script.
 
     :param until: an earlier end, in seconds of robot time
     """

@@ -9,6 +9,9 @@ from ...errors import UsageError
 from ...runtime.scripts.script import InputScript
 from .extensions import see_that_there_are
 
+#: The port where dashboards look for a robot's NetworkTables.
+NT4_PORT = 5810
+
 
 @dataclass(frozen=True)
 class SimOptions:

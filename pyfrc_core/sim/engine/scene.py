@@ -1,15 +1,14 @@
-"""What there is to be seen on the field, as plain data: every front end shows the same.
+"""What is on the field, as plain data: every front end shows the same.
 
-Places are as in ``sim/config.json``: feet, x to the right and y downwards from the field's top left corner; angles in
-radians, clockwise from the direction of x.
+Places are given as in ``sim/config.json``: feet, x to the right and y downwards from the field's top left corner.
+Angles are in radians, clockwise from the direction of x.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from ...physics.pose import Pose as Pose
 
@@ -31,7 +30,7 @@ class Shape:
 class Tag:
     """An AprilTag, seen from above.
 
-    :param angle: which way it faces
+    :param angle: the direction that it faces
     """
 
     number: int
@@ -42,15 +41,15 @@ class Tag:
 
 @dataclass(frozen=True)
 class Field:
-    """What stays the same all through a simulation.
+    """The field and the robot's size, which stay the same throughout a simulation.
 
     :param width: feet along x
     :param height: feet along y
-    :param px_per_ft: the scale that the drawing is made for, in pixels
-    :param image: a picture to lie under it all, stretched over the whole field
+    :param px_per_ft: pixels per foot, as the configuration says
+    :param image: a picture under everything else, stretched over the whole field
     :param robot_width: feet from the robot's left to its right
     :param robot_length: feet from its back to its front
-    :param starts: where the robot may start, by name; the first is where it does
+    :param starts: the places where the robot may start, by name; the first is the default
     """
 
     width: float
@@ -65,25 +64,66 @@ class Field:
 
 
 @dataclass(frozen=True)
+class LineStyle:
+    """How a line looks. Lengths are in pixels of the screen, whatever the zoom.
+
+    :param width: None: the front end's own
+    :param dash: the lengths of dashes and gaps, in turn; empty: an unbroken line
+    :param smooth: whether to draw a curve instead of straight segments
+    :param cap: how the line ends: ``butt``, ``projecting`` or ``round``
+    :param join: how its segments meet: ``bevel``, ``miter`` or ``round``
+    """
+
+    width: float | None = None
+    dash: tuple[int, ...] = ()
+    smooth: bool = False
+    cap: str = "butt"
+    join: str = "round"
+
+
+@dataclass(frozen=True)
+class TextStyle:
+    """How a text looks.
+
+    :param anchor: which part of the text is at its place: ``center``, or a direction of the compass such as ``w``
+    :param angle: in degrees, counterclockwise
+    :param justify: of several lines: ``left``, ``center`` or ``right``
+    :param width: the length at which lines are broken, in pixels; 0: nowhere
+    :param family: the font's name; empty: the front end's own
+    :param bold: whether the letters are bold; `italic` and `underline` likewise
+    """
+
+    anchor: str = "center"
+    angle: float = 0.0
+    justify: str = "left"
+    width: float = 0.0
+    family: str = ""
+    bold: bool = False
+    italic: bool = False
+    underline: bool = False
+
+
+@dataclass(frozen=True)
 class Line:
-    """What `UserRenderer.draw_line` has drawn.
+    """A line that `UserRenderer.draw_line` has drawn.
 
     :param arrow: whether there is an arrow at its end
-    :param options: what else was said, for `tkinter`'s ``create_line``
+    :param problem: why it cannot be drawn, as a sentence for the user; empty: it can
     """
 
     points: tuple[Point, ...]
     color: str = "#ff0000"
     arrow: bool = True
-    options: Mapping[str, Any] = field(default_factory=dict)
+    style: LineStyle = LineStyle()
+    problem: str = ""
 
 
 @dataclass(frozen=True)
 class Text:
-    """What `UserRenderer.draw_text` has drawn: its middle is at (x, y).
+    """A text that `UserRenderer.draw_text` has drawn at (x, y).
 
-    :param size: of the letters, in points
-    :param options: what else was said, for `tkinter`'s ``create_text``
+    :param size: the size of the letters, in points
+    :param problem: why it cannot be drawn, as a sentence for the user; empty: it can
     """
 
     text: str
@@ -91,14 +131,15 @@ class Text:
     y: float
     color: str = "#000000"
     size: int = 10
-    options: Mapping[str, Any] = field(default_factory=dict)
+    style: TextStyle = TextStyle()
+    problem: str = ""
 
 
 @dataclass(frozen=True)
 class Target:
-    """What a `VisionSim` looks for.
+    """A target of a `VisionSim`.
 
-    :param in_view: whether it sees it now
+    :param in_view: whether the camera sees it now
     """
 
     x: float
@@ -110,9 +151,9 @@ class Target:
 class Scene:
     """What is on the field at one moment.
 
-    :param robot: where the robot is: its centre, and which way it faces. None without a ``physics.py``
-    :param trail: where it has been, oldest first
-    :param drawings: the user's own, in the order in which they were drawn
+    :param robot: the robot's centre, and the direction that it faces; None without a ``physics.py``
+    :param trail: the places where it has been, oldest first
+    :param drawings: the user's drawings, in the order in which they were drawn
     """
 
     field: Field

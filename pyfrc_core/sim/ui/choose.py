@@ -1,17 +1,87 @@
-"""Which front end shows a simulation."""
+"""The table of front ends, and which of them shows a simulation.
+
+A front end's module is imported when it is chosen, since most of them need libraries that may be missing.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 from ...display import GET_TKINTER, has_display, has_tkinter
 from ...errors import UsageError
+from ..engine.extensions import WINDOW
 from . import FrontEnd
+from .headless import Headless, HeadlessMode
 
-#: What there is, and which of them the user can choose.
-NAMES = ("tk", "wpilib", "none")
+
+@dataclass(frozen=True)
+class Wishes:
+    """What the user asks of a front end.
+
+    :param say: prints to the terminal
+    :param mode: what a front end without a person puts the robot through
+    :param seconds: for how long, in robot time
+    :param watching: whether saved files bring new code
+    :param quiet: print only the robot's output and what is wrong
+    """
+
+    say: Callable[[str], object]
+    mode: HeadlessMode | None = None
+    seconds: float | None = None
+    watching: bool = False
+    quiet: bool = False
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A front end that can be chosen by its name.
+
+    :param make: makes it
+    :param interactive: whether a person looks at it and drives
+    :param needs_display: whether it opens a window
+    :param opens_display: whether this process opens the window, and ends when the display goes away
+    :param prints: whether it prints the robot's output to the terminal itself; otherwise the command does
+    :param extensions: the simulation extensions that it needs in the robot's process
+    """
+
+    make: Callable[[Wishes], FrontEnd]
+    interactive: bool = True
+    needs_display: bool = False
+    opens_display: bool = False
+    prints: bool = False
+    extensions: tuple[str, ...] = ()
+
+
+def _make_tk(wishes: Wishes) -> FrontEnd:
+    try:
+        from .tk import TkFrontEnd
+    except ImportError as missing:
+        if missing.name not in ("tkinter", "_tkinter"):
+            raise
+        raise UsageError("--ui tk needs tkinter, which this Python does not have", remedy=GET_TKINTER) from None
+    return TkFrontEnd()
+
+
+def _make_wpilib(wishes: Wishes) -> FrontEnd:
+    from .wpilib import WpilibWindow
+
+    return WpilibWindow()
+
+
+def _make_headless(wishes: Wishes) -> FrontEnd:
+    return Headless(wishes.say, wishes.mode, wishes.seconds, wishes.watching, wishes.quiet)
+
+
+FRONT_ENDS: dict[str, Kind] = {
+    "tk": Kind(_make_tk, needs_display=True, opens_display=True),
+    "wpilib": Kind(_make_wpilib, needs_display=True, prints=True, extensions=(WINDOW,)),
+    "none": Kind(_make_headless, interactive=False, prints=True),
+}
 
 
 def default_name() -> tuple[str, str]:
-    """The front end where nobody chooses one, and, where it is not the window, why."""
+    """Return the name of the front end for this machine, and the reason when it is not the window."""
     if not has_display():
         return "none", "there is no display"
     if not has_tkinter():
@@ -19,25 +89,16 @@ def default_name() -> tuple[str, str]:
     return "tk", ""
 
 
-def window(name: str) -> FrontEnd:
-    """The front end of this name, ``tk`` or ``wpilib``.
+def make_front_end(name: str, wishes: Wishes) -> FrontEnd:
+    """Return the front end of this name in `FRONT_ENDS`.
 
-    :raises UsageError: when there cannot be one here, saying what to do
+    :raises UsageError: when it cannot work here, saying what to do
     """
-    if not has_display():
+    kind = FRONT_ENDS[name]
+    if kind.needs_display and not has_display():
         raise UsageError(
             f"--ui {name} needs a display, and there is none",
             remedy="Run without a window: pyfrc sim --ui none --mode practice. "
             "In a container or over SSH: xvfb-run, or ssh -X.",
         )
-    if name == "wpilib":
-        from .wpilib import WpilibWindow
-
-        return WpilibWindow()
-    try:
-        from .tk import TkFrontEnd
-    except ImportError as missing:
-        if missing.name not in ("tkinter", "_tkinter"):
-            raise
-        raise UsageError("--ui tk needs tkinter, which this Python has not", remedy=GET_TKINTER) from None
-    return TkFrontEnd()
+    return kind.make(wishes)

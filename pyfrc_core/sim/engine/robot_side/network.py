@@ -17,9 +17,6 @@ import ntcore
 from ....runtime.scripts.targets import NETWORK
 from ..snapshot import Chooser
 
-#: Where dashboards look for a robot's NetworkTables.
-NT4_PORT = 5810
-
 _PUBLISHED = int(ntcore.EventFlags.kPublish) | int(ntcore.EventFlags.kImmediate)
 _VALUES = int(ntcore.EventFlags.kValueAll) | int(ntcore.EventFlags.kImmediate)
 _FROM_OUTSIDE = int(ntcore.EventFlags.kValueRemote)

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
 from ....errors import UsageError
 from ....runtime.patches import patches
 from ..scene import Line, Point, Pose, Text
+from .drawing_styles import line_style, text_style
 
-#: So many drawings stay on the field; when there are more, the oldest go.
+#: The most drawings on the field; when there are more, the oldest are removed.
 MOST_DRAWINGS = 500
 
-#: ``True``: as seen from the robot's centre; an (x, y): from that place on the robot, x to its right and y forward.
+#: ``True``: relative to the robot's centre; an (x, y): to that place on the robot, x to its right and y forward.
 RobotCoordinates = bool | Point
 
 
 class Segment(Protocol):
-    """What is asked of a trajectory's segment: its place in feet, y to the left, and its duration in seconds."""
+    """A segment of a trajectory: its place in feet, y to the left, and its duration in seconds."""
 
     x: float
     y: float
@@ -31,10 +32,10 @@ class UserRenderer:
 
     Places are (x, y) in feet: on the field, x to the right and y downwards from its top left corner; in robot
     coordinates, x forward and y to the robot's right. An offset, a place on the robot, is (across, along) as its width
-    and length are: x to the robot's right, y forward. Where the robot is, is asked when something is drawn: a drawing
-    stays where it is when the robot moves on. The same drawn again is drawn once.
+    and length are: x to the robot's right, y forward. The robot's place counts when something is drawn: the drawing
+    stays there when the robot moves on. Drawing the same again changes nothing.
 
-    :param robot: answers where the robot is
+    :param robot: returns the robot's place
     """
 
     def __init__(self, robot: Callable[[], Pose | None]) -> None:
@@ -66,7 +67,7 @@ class UserRenderer:
         :param relative_to_first: if True, the points are moved so that the first is (0, 0)
         :param arrow: if True, there is an arrow at the end
         :param scale: all points are multiplied by this (x, y)
-        :param kwargs: keyword options for ``tkinter``'s `create_line`
+        :param kwargs: options of tkinter's `create_line`: `width`, `dash`, `smooth`, `capstyle`, `joinstyle`, `fill`
         """
         points = [_point(each) for each in line_pts]
         if len(points) < 2:
@@ -74,7 +75,7 @@ class UserRenderer:
         if relative_to_first or robot_coordinates is not False:
             first = points[0]
             points = [(x - first[0], y - first[1]) for x, y in points]
-        self._add(Line(self._placed(points, robot_coordinates, scale), color, arrow, kwargs))
+        self._add(_line(self._placed(points, robot_coordinates, scale), color, arrow, kwargs))
 
     def draw_text(
         self,
@@ -93,14 +94,16 @@ class UserRenderer:
         :param pt: an (x, y), in feet
         :param color: as a 6-digit hex color
         :param fontSize: in points
-        :param robot_coordinates: if True, the point is as seen from the robot's centre; if an (x, y), from that place
+        :param robot_coordinates: if True, the point is relative to the robot's centre; if an (x, y), to that place
             on the robot: x feet to the right of its centre, y feet ahead
         :param scale: the point is multiplied by this (x, y)
-        :param arrow: changes nothing: texts have no arrow; calls that give it, as documented, work
-        :param kwargs: keyword options for ``tkinter``'s `create_text`
+        :param arrow: has no effect, since texts have no arrow; it is accepted because it is documented
+        :param kwargs: options of tkinter's `create_text`: `anchor`, `angle`, `justify`, `width`, `font`, `fill`
         """
         ((x, y),) = self._placed([_point(pt)], robot_coordinates, scale)
-        self._add(Text(str(text), x, y, color, fontSize, kwargs))
+        style, styled = text_style(kwargs)
+        color = styled.color or color
+        self._add(Text(str(text), x, y, color, styled.size or fontSize, style, styled.problem))
 
     def draw_pathfinder_trajectory(
         self,
@@ -120,9 +123,9 @@ class UserRenderer:
         :param color: as a 6-digit hex color
         :param offset: an (x, y) on the robot where the path starts: x feet to the right of its centre, y feet ahead
         :param scale: all points are multiplied by this (x, y)
-        :param show_dt: write the time along the path every so many seconds, or False
-        :param dt_offset: is added to each time shown
-        :param kwargs: keyword options for ``tkinter``'s `create_line`
+        :param show_dt: write the time along the path at this interval, in seconds; False: not at all
+        :param dt_offset: added to each time that is shown
+        :param kwargs: options of tkinter's `create_line`: `width`, `dash`, `smooth`, `capstyle`, `joinstyle`, `fill`
         """
         segments = list(trajectory)
         if len(segments) < 2:
@@ -131,7 +134,7 @@ class UserRenderer:
         path = [(each.x - start.x, start.y - each.y) for each in segments]
         where: RobotCoordinates = True if offset is None else _point(offset)
         placed = self._placed(path, where, scale)
-        self._add(Line(placed, color, True, kwargs))
+        self._add(_line(placed, color, True, kwargs))
         if show_dt:
             every, due, elapsed = 1.0 if show_dt is True else float(show_dt), 0.0, 0.0
             for segment, (x, y) in zip(segments, placed, strict=True):
@@ -160,10 +163,15 @@ class UserRenderer:
 
 
 def get_user_renderer() -> UserRenderer | None:
-    """What draws on the simulated field; None where no field is to be seen, as in tests."""
+    """Return what draws on the simulated field; None where there is no field, as in tests."""
     run = patches.run
     renderer = None if run is None else run.renderer
     return renderer if isinstance(renderer, UserRenderer) else None
+
+
+def _line(points: tuple[Point, ...], color: str, arrow: bool, options: Mapping[str, Any]) -> Line:
+    style, styled = line_style(options)
+    return Line(points, styled.color or color, arrow, style, styled.problem)
 
 
 def _point(value: Any) -> Point:

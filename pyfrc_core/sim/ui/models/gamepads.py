@@ -1,7 +1,7 @@
 """Real gamepads, by way of pygame-ce: the extra ``gamepads``.
 
-SDL, which is underneath, knows most pads' layouts. Those are told in the order of the Driver Station (as XInput has
-it), so that robot code finds its buttons; of others, the order is the device's own.
+SDL, on which pygame is built, knows the layouts of most gamepads. Their axes and buttons get the Driver Station's order
+(that of XInput), so that robot code finds them; those of other gamepads have the device's own order.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ HINT = f'For real gamepads: pip install "{requirement("gamepads")}"'
 
 _HATS = {(0, 1): 0, (1, 1): 45, (1, 0): 90, (1, -1): 135, (0, -1): 180, (-1, -1): 225, (-1, 0): 270, (-1, 1): 315}
 
-#: The least movement that is told.
+#: The smallest movement that is passed on.
 _STEP = 0.01
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What a gamepad's controls are at; the buttons from the first one on."""
+    """The state of a gamepad's controls; the buttons begin with the first."""
 
     axes: tuple[float, ...] = ()
     buttons: tuple[bool, ...] = ()
@@ -39,51 +39,51 @@ class Gamepad(Protocol):
     name: str
 
     def read(self) -> Reading:
-        """What its controls are at now."""
+        """Return the state of its controls."""
         ...
 
 
-class GamepadRoom(Protocol):
-    """Where gamepads come and go."""
+class GamepadBackend(Protocol):
+    """A source of gamepads, which can be plugged in and out."""
 
     def look(self) -> Sequence[Gamepad]:
-        """Those that are there."""
+        """Return the gamepads that are plugged in."""
         ...
 
 
 def hat_angle(x: int, y: int) -> int:
-    """A POV's angle, from the two ways in which its hat is pressed: to the right, and up."""
+    """Return a POV's angle from how its hat is pressed: to the right, and up; -1 and 1 are the limits."""
     return _HATS.get((x, y), RELEASED)
 
 
 class GamepadRouter:
-    """Lets gamepads move joysticks: the first one joystick 0, and so on, unless the user says otherwise."""
+    """Moves joysticks by gamepads: joystick 0 by the first gamepad and so on, unless the user assigns others."""
 
-    def __init__(self, room: GamepadRoom, sticks: Sticks) -> None:
-        self._room, self._sticks = room, sticks
-        self._told: dict[int, Reading] = {}
-        #: Which joystick takes which gamepad, by the gamepad's number; None: none.
+    def __init__(self, backend: GamepadBackend, sticks: Sticks) -> None:
+        self._backend, self._sticks = backend, sticks
+        self._passed_on: dict[int, Reading] = {}
+        #: The number of each joystick's gamepad; None: no gamepad.
         self.assigned: dict[int, int | None] = {}
         self.names: tuple[str, ...] = ()
 
     def poll(self) -> None:
         """Pass on what has moved."""
-        pads = self._room.look()
+        pads = self._backend.look()
         self.names = tuple(pad.name for pad in pads)
         for stick in range(JOYSTICKS):
             number = self.assigned.get(stick, stick)
             reading = pads[number].read() if number is not None and number < len(pads) else None
-            before = self._told.get(stick)
+            before = self._passed_on.get(stick)
             if reading is None:
-                if before is not None:  # pulled out, or given to another
+                if before is not None:  # unplugged, or assigned to another
                     self._pass_on(stick, before, Reading((0.0,) * len(before.axes), (False,) * len(before.buttons)))
-                    del self._told[stick]
+                    del self._passed_on[stick]
             else:
-                self._told[stick] = self._pass_on(stick, before, reading)
+                self._passed_on[stick] = self._pass_on(stick, before, reading)
 
-    def tell_all_again(self) -> None:
-        """The robot has been started anew, and knows nothing."""
-        self._told.clear()
+    def forget(self) -> None:
+        """Pass everything on again: the robot was restarted, and knows nothing of it."""
+        self._passed_on.clear()
 
     def _pass_on(self, stick: int, before: Reading | None, now: Reading) -> Reading:
         before = before or Reading()
@@ -107,15 +107,15 @@ class _Pad:
         self.name, self.read = name, read
 
 
-class PygameRoom:
+class PygameBackend:
     """The gamepads that pygame knows."""
 
     def __init__(self) -> None:
-        # Read without a window of SDL's own, and while ours is the one in front.
+        # SDL has no window of its own, so gamepads are read while it is in the background.
         os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
         os.environ.setdefault("SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", "1")
         os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
-        # Not imported by name: the extra need not be there when types are checked.
+        # Imported by string: the extra may be missing where types are checked.
         self._pygame: Any = importlib.import_module("pygame")
         self._controllers: Any = importlib.import_module("pygame._sdl2.controller")
         self._pygame.display.init()
@@ -163,6 +163,6 @@ def _read_raw(joystick: Any) -> Reading:
     )
 
 
-def open_room() -> GamepadRoom | None:
-    """Where this machine's gamepads are; None without pygame."""
-    return PygameRoom() if importlib.util.find_spec("pygame") is not None else None
+def open_backend() -> GamepadBackend | None:
+    """Return this machine's gamepads; None without pygame."""
+    return PygameBackend() if importlib.util.find_spec("pygame") is not None else None

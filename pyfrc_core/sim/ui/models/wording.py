@@ -8,11 +8,6 @@ import re
 from ....physics.pose import Pose
 from ...engine.snapshot import Snapshot, Status
 
-#: The slowest and the fastest that the speed slider offers; beyond it is as fast as it goes.
-SLOWEST, FASTEST = 0.1, 8.0
-#: Where on the speed slider, from 0 to 1, "as fast as it goes" begins.
-_UNLIMITED = 0.94
-
 #: The alliance stations in words, in the order of their numbers, and as they are commanded.
 STATIONS = {f"{color.title()} {number}": f"{color}{number}" for color in ("red", "blue") for number in (1, 2, 3)}
 
@@ -31,24 +26,6 @@ def clock(seconds: float) -> str:
 def speed_text(speed: float) -> str:
     """How fast robot time is to go."""
     return "max" if speed == 0 else f"{speed:.2g}x"
-
-
-def slider_of_speed(speed: float) -> float:
-    """Where the speed slider stands, from 0 to 1: as far from one double to the next everywhere."""
-    if speed == 0:
-        return 1.0
-    speed = min(max(speed, SLOWEST), FASTEST)
-    return _UNLIMITED * math.log(speed / SLOWEST) / math.log(FASTEST / SLOWEST)
-
-
-def speed_of_slider(position: float) -> float:
-    """The speed that a place of the slider stands for, in round numbers; it snaps to real time."""
-    if position >= (1 + _UNLIMITED) / 2:
-        return 0.0
-    exact: float = SLOWEST * (FASTEST / SLOWEST) ** (min(max(position, 0.0), _UNLIMITED) / _UNLIMITED)
-    if 0.93 < exact < 1.07:
-        return 1.0
-    return round(exact, 2) if exact < 1 else round(exact, 1)
 
 
 def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:

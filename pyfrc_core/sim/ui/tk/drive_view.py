@@ -6,10 +6,10 @@ import tkinter as tk
 from collections.abc import Callable
 from tkinter import ttk
 
+from ..models.driver_station_keys import DriverStationKeys
 from ..models.keyboard import LAYOUTS
 from . import theme as colors
 from .boxes import tame
-from .keys import Keys
 from .theme import Theme
 
 _OTHERS = ". Shift: gently. 1 to 9, 0: buttons of joystick 0"
@@ -21,7 +21,7 @@ class DriveView:
     :param done: called when the user has chosen, and keys are for driving again
     """
 
-    def __init__(self, parent: tk.Misc, theme: Theme, keys: Keys, done: Callable[[], None]) -> None:
+    def __init__(self, parent: tk.Misc, theme: Theme, keys: DriverStationKeys, done: Callable[[], None]) -> None:
         px = theme.px
         self._keys, self._done = keys, done
         self.frame = colors.card(parent, theme)
@@ -33,18 +33,15 @@ class DriveView:
         self.layout = ttk.Combobox(
             head, values=[each.name for each in LAYOUTS], state="readonly", width=16, font=theme.body, takefocus=False
         )
-        self.layout.current(LAYOUTS.index(keys.driver.layout))
+        self.layout.current(LAYOUTS.index(keys.layout))
         self.layout.bind("<<ComboboxSelected>>", lambda event: self._choose())
         tame(self.layout, done)
         self.layout.pack(side="right", fill="x", expand=True)
-        self._help = ttk.Label(
-            inside, style="CardMuted.TLabel", wraplength=px(256), text=keys.driver.layout.help + _OTHERS
-        )
+        self._help = ttk.Label(inside, style="CardMuted.TLabel", wraplength=px(256), text=keys.layout.help + _OTHERS)
         self._help.pack(anchor="w", pady=(px(4), 0))
 
     def _choose(self) -> None:
         layout = LAYOUTS[self.layout.current()]
-        self._keys.driver.layout = layout
-        self._keys.pass_on()
+        self._keys.layout = layout
         self._help.configure(text=layout.help + _OTHERS)
         self._done()

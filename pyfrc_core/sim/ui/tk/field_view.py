@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import tkinter as tk
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from ....errors import SettingsError
 from ....physics.pose import Pose
 from ...engine.scene import Field, Scene, Shape, Target
 from ...engine.snapshot import Snapshot, Status
+from ..models.field_geometry import RobotDrag, grid_lines, is_on_robot, robot_polygons, tag_marks
 from ..models.viewport import Viewport
 from ..models.wording import station_name
 from . import theme as colors
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from ...engine.simulation import Simulation
 
 _ZOOM_STEP = 1.2
-#: The grid's lines are so many feet apart.
-_GRID = 5.0
-_MOST_LINES = 60
 
 
 class FieldView:
@@ -45,8 +42,9 @@ class FieldView:
         self._robot: Pose | None = None
         self._bumpers = ""
         self._targets: tuple[Target, ...] = ()
-        self._dragged: tuple[str, int, int] | None = None
-        self._held = 0.0, 0.0
+        self._robot_drag: RobotDrag | None = None
+        #: The pixel that the field was last dragged to.
+        self._panned_from: tuple[int, int] | None = None
         px = theme.px
         self._former = Trail(canvas, "trail", fill=colors.FORMER_TRAIL, width=px(2), dash=(6, 4))
         self._trail = Trail(canvas, "trail", fill=colors.TRAIL, width=px(2))
@@ -127,27 +125,20 @@ class FieldView:
         add(canvas.create_rectangle(0, 0, 0, 0, fill=colors.CARPET, outline="", tags="field"), (0, 0), (w, h))
         self._image_item = canvas.create_image(0, 0, anchor="nw", tags="field")
         if self._image is None:
-            step = max(_GRID, max(w, h) / _MOST_LINES)
-            for number in range(1, math.ceil(w / step)):
-                x = number * step
-                add(canvas.create_line(0, 0, 0, 0, fill=colors.GRID, tags="field"), (x, 0), (x, h))
-            for number in range(1, math.ceil(h / step)):
-                y = number * step
-                add(canvas.create_line(0, 0, 0, 0, fill=colors.GRID, tags="field"), (0, y), (w, y))
+            for ends in grid_lines(field):
+                add(canvas.create_line(0, 0, 0, 0, fill=colors.GRID, tags="field"), *ends)
         for shape in field.objects:
             if len(shape.points) > 1:
                 add(self._draw_shape(shape), *shape.points)
         edge = canvas.create_rectangle(0, 0, 0, 0, outline=colors.EDGE, width=px(2), tags="field")
         add(edge, (0, 0), (w, h))
         for tag in field.tags:
-            # A tag is as wide as on the field; its number stands behind it.
-            across, along = (-math.sin(tag.angle) * 0.35, math.cos(tag.angle) * 0.35), math.cos(tag.angle) * 0.8
-            ends = (tag.x - across[0], tag.y - across[1]), (tag.x + across[0], tag.y + across[1])
+            ends, number = tag_marks(tag)
             add(canvas.create_line(0, 0, 0, 0, fill=colors.TEXT, width=px(3), tags="field"), *ends)
             text = canvas.create_text(
                 0, 0, text=str(tag.number), font=self._theme.tiny, fill=colors.MUTED, tags="field"
             )
-            add(text, (tag.x + along, tag.y + math.sin(tag.angle) * 0.8))
+            add(text, number)
         canvas.tag_lower("field")
 
     def _draw_shape(self, shape: Shape) -> int:
@@ -192,24 +183,8 @@ class FieldView:
             for item in parts:
                 self.canvas.itemconfigure(item, state="hidden")
             return
-        l, w = self._field.robot_length / 2, self._field.robot_width / 2  # noqa: E741
-        bumper = 0.18 * min(l, w)
-        for item, corners in zip(
-            parts,
-            (
-                ((l, w), (l, -w), (-l, -w), (-l, w)),
-                (
-                    (l - bumper, w - bumper),
-                    (l - bumper, bumper - w),
-                    (bumper - l, bumper - w),
-                    (bumper - l, w - bumper),
-                ),
-                ((l - bumper * 1.6, 0), (l * 0.2, w * 0.45), (l * 0.2, -w * 0.45)),
-            ),
-            strict=True,
-        ):
-            places = [robot.moved(x, y, 0.0)[:2] for x, y in corners]
-            self.canvas.coords(item, *self.view.line(places))
+        for item, corners in zip(parts, robot_polygons(self._field, robot), strict=True):
+            self.canvas.coords(item, *self.view.line(corners))
             if not was_there:
                 self.canvas.itemconfigure(item, state="normal")
 
@@ -248,39 +223,29 @@ class FieldView:
         else:
             self._see(self.view.resized(event.width, event.height))
 
-    def _on_robot(self, event: tk.Event[tk.Canvas]) -> bool:
-        if self._robot is None:
-            return False
-        x, y = self.view.to_field(event.x, event.y)
-        reach = max(self._field.robot_length, self._field.robot_width) / 2
-        return math.hypot(x - self._robot.x, y - self._robot.y) < reach
+    def _drag_of_robot(self, event: tk.Event[tk.Canvas], kind: Literal["move", "turn"]) -> RobotDrag | None:
+        place = self.view.to_field(event.x, event.y)
+        if self._robot is None or not is_on_robot(self._field, self._robot, place):
+            return None
+        return RobotDrag(self._simulation, self._robot, place, kind)
 
     def _press(self, event: tk.Event[tk.Canvas]) -> None:
         self.canvas.focus_set()
-        self._dragged = "pan", event.x, event.y
-        if self._robot is not None and self._on_robot(event):
-            x, y = self.view.to_field(event.x, event.y)
-            self._dragged, self._held = ("place", event.x, event.y), (self._robot.x - x, self._robot.y - y)
+        self._robot_drag = self._drag_of_robot(event, "move")
+        self._panned_from = (event.x, event.y) if self._robot_drag is None else None
 
     def _press_to_turn(self, event: tk.Event[tk.Canvas]) -> None:
-        self._dragged = ("turn", event.x, event.y) if self._on_robot(event) else None
+        self._robot_drag = self._drag_of_robot(event, "turn")
+        self._panned_from = None
 
     def _drag(self, event: tk.Event[tk.Canvas]) -> None:
-        if self._dragged is None:
-            return
-        what, x, y = self._dragged
-        self._dragged = what, event.x, event.y
-        robot = self._robot
-        if what == "pan":
+        if self._panned_from is not None:
+            x, y = self._panned_from
+            self._panned_from = event.x, event.y
             self._whole = False
             self._see(self.view.panned(event.x - x, event.y - y))
-        elif robot is not None:
-            to_x, to_y = self.view.to_field(event.x, event.y)
-            if what == "place":
-                held_x, held_y = self._held
-                self._simulation.place(to_x + held_x, to_y + held_y, math.degrees(robot.angle))
-            else:
-                self._simulation.place(robot.x, robot.y, math.degrees(math.atan2(to_y - robot.y, to_x - robot.x)))
+        elif self._robot_drag is not None and self._robot is not None:
+            self._robot_drag.drag(self._robot, self.view.to_field(event.x, event.y))
 
     def _release(self, event: tk.Event[tk.Canvas]) -> None:
-        self._dragged = None
+        self._robot_drag = self._panned_from = None

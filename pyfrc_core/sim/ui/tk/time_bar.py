@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from ....errors import PyfrcError
 from ...engine.snapshot import Snapshot, Status
-from ..models.wording import clock, slider_of_speed, speed_of_slider, speed_text
+from ..models.time_controls import rewind, slider_of_speed, speed_of_slider, toggle
+from ..models.wording import clock, speed_text
 from .slider import Slider
 from .theme import Theme
 from .tooltip import Tooltip
@@ -29,7 +30,7 @@ class TimeBar:
         self._shown: object = None
         self._end = 0.0
         self.frame = frame = ttk.Frame(parent)
-        self.run = ttk.Button(frame, text="Pause", width=7, command=self.toggle, takefocus=False)
+        self.run = ttk.Button(frame, text="Pause", width=7, command=lambda: toggle(simulation), takefocus=False)
         self.run.pack(side="left")
         tooltip.attach(self.run, "Let robot time stand still, or go on: F5")
         self.step = ttk.Button(frame, text="Step", width=5, command=simulation.step, takefocus=False)
@@ -77,13 +78,6 @@ class TimeBar:
             self.speed.show(slider_of_speed(status.speed))
             self._speed_text.configure(text=speed_text(status.speed))
 
-    def toggle(self) -> None:
-        """Pause, or go on."""
-        if self._simulation.wants_to_run:
-            self._simulation.pause()
-        else:
-            self._simulation.resume()
-
     def _time_shown(self, time: float) -> None:
         self._write(self._time, clock(time))
 
@@ -107,7 +101,7 @@ class TimeBar:
     def _time_moved(self, place: float, let_go: bool) -> None:
         self._time_shown(place * self._end)
         if let_go:
-            self._simulation.rewind(round(place * self._end / 0.02) * 0.02)
+            rewind(self._simulation, place * self._end)
 
     def _save(self) -> None:
         name = filedialog.asksaveasfilename(

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 from ....errors import UsageError
 from ....interruption import calling_when_ended
 from ...engine.snapshot import Snapshot, Status
-from ..models.gamepads import GamepadRouter, open_room
+from ..models.driver_station_keys import SUMMARY, DriverStationKeys
+from ..models.gamepads import GamepadRouter, open_backend
 from ..models.joysticks import Sticks
 from ..models.wording import status_texts
 from .center_view import CenterView
@@ -40,9 +41,6 @@ _STATUS_FRAMES = 6
 
 #: So much of a note is shown; the tooltip has the rest.
 _MOST_NOTE = 90
-#: What is in the note's place while there is none.
-_HINT = "Ctrl+E or [ ] \\  enable   Enter  disable   Space  e-stop   F5  pause   F6  step"
-
 #: In the design's pixels.
 _WIDTH, _HEIGHT, _LEAST_WIDTH, _LEAST_HEIGHT = 1290, 696, 1000, 660
 
@@ -97,7 +95,7 @@ class Window:
         line.pack(side="bottom", fill="x", padx=px(12), pady=(0, px(5)))
         self._line = ttk.Label(line, style="Muted.TLabel", font=theme.small)
         self._line.pack(side="left")
-        self._note = ttk.Label(line, text=_HINT, style="Muted.TLabel", font=theme.small, anchor="e")
+        self._note = ttk.Label(line, text=SUMMARY, style="Muted.TLabel", font=theme.small, anchor="e")
         self._note.pack(side="right", fill="x", padx=(px(20), 0))
         self._note.bind("<Enter>", lambda event: tooltip.expect(self._noted, event.x_root, event.y_root))
         self._note.bind("<Leave>", lambda event: tooltip.hide())
@@ -116,15 +114,16 @@ class Window:
         self.field, self.console = self.center.field, self.center.console
 
         self.sticks = Sticks(simulation)
-        room = open_room()
-        self.gamepads = None if room is None else GamepadRouter(room, self.sticks)
+        backend = open_backend()
+        self.gamepads = None if backend is None else GamepadRouter(backend, self.sticks)
         self.match = MatchView(right, theme, tooltip, simulation, self.focus_field)
         self.match.frame.pack(side="top", fill="x")
         config = simulation.project.sim_config
         self.joystick = JoystickView(right, theme, tooltip, config, self.sticks, self.gamepads)
         self.joystick.frame.pack(side="top", fill="x", pady=(gap, 0))
-        self.keys = Keys(root, simulation, self.sticks, self.time)
-        self.drive = DriveView(right, theme, self.keys, self.focus_field)
+        keys = DriverStationKeys(simulation, self.sticks, close=self._quit)
+        self._keys = Keys(root, keys)
+        self.drive = DriveView(right, theme, keys, self.focus_field)
         self.drive.frame.pack(side="top", fill="x", pady=(gap, 0))
         self.focus_field()
 
@@ -157,7 +156,7 @@ class Window:
         with contextlib.suppress(tk.TclError):  # the display has gone
             self._stop_drawing()
             self._tooltip.hide()
-            self.keys.forget()
+            self._keys.close()
             self.root.destroy()
 
     def _stop_drawing(self) -> None:
@@ -186,7 +185,7 @@ class Window:
         if self.gamepads is not None:
             if status.state != "starting" and status.starts != self._starts:
                 self._starts = status.starts
-                self.gamepads.tell_all_again()
+                self.gamepads.forget()
             self.gamepads.poll()
         while self._told:
             self.console.mark(self._told.popleft())
@@ -230,7 +229,7 @@ class Window:
             self._notes = notes
             self._noted = note = " ".join(next((each for each in (*newer, *notes) if each), "").split())
             short = note if len(note) <= _MOST_NOTE else f"{note[:_MOST_NOTE]}…"
-            self._note.configure(text=short or _HINT, style="Note.TLabel" if note else "Muted.TLabel")
+            self._note.configure(text=short or SUMMARY, style="Note.TLabel" if note else "Muted.TLabel")
         self.center.show_pose(None if snapshot is None else snapshot.scene.robot)
 
     def _on_exception(self, kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:

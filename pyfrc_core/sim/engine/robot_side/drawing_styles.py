@@ -1,0 +1,111 @@
+"""Styles from the keywords of `draw_line` and `draw_text`, which have the names of tkinter's options.
+
+The names are documented, and older than front ends without tkinter; a scene has styles that any front end can draw.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from ....errors import nearest
+from ..scene import LineStyle, TextStyle
+
+#: Options that have a meaning in tkinter, and none for a drawing that stays as it is.
+_WITHOUT_EFFECT = frozenset({"tags"})
+
+Style = TypeVar("Style", LineStyle, TextStyle)
+
+
+@dataclass(frozen=True)
+class Styled:
+    """What keywords make of a drawing.
+
+    :param color: None: they say nothing of it
+    :param size: None: they say nothing of it
+    :param problem: what is wrong with the keywords; empty: nothing
+    """
+
+    color: str | None = None
+    size: int | None = None
+    problem: str = ""
+
+
+def line_style(options: Mapping[str, Any]) -> tuple[LineStyle, Styled]:
+    """Return the style of a line, with what else the keywords say."""
+    return _read("draw_line", LineStyle, _LINE, options)
+
+
+def text_style(options: Mapping[str, Any]) -> tuple[TextStyle, Styled]:
+    """Return the style of a text, with what else the keywords say."""
+    return _read("draw_text", TextStyle, _TEXT, options)
+
+
+def _one_of(*names: str) -> Callable[[Any], str]:
+    def read(value: Any) -> str:
+        if value not in names:
+            raise ValueError(f"it is one of {', '.join(names)}")
+        return str(value)
+
+    return read
+
+
+def _dash(value: Any) -> tuple[int, ...]:
+    if isinstance(value, int):
+        return (value,)
+    if isinstance(value, str):
+        value = value.split()
+    return tuple(int(each) for each in value)
+
+
+def _font(value: Any) -> dict[str, Any]:
+    """Read ``("Arial", 12, "bold")`` or ``"Arial 12 bold"``."""
+    family, *others = value.split() if isinstance(value, str) else value
+    words = {str(each).lower() for each in others}
+    sizes = [word for word in words if word.lstrip("-").isdigit()]
+    styles: dict[str, Any] = {name: True for name in ("bold", "italic", "underline") if name in words}
+    return {"family": str(family), **styles, **({"size": abs(int(sizes[0]))} if sizes else {})}
+
+
+def _single(name: str, read: Callable[[Any], Any]) -> Callable[[Any], dict[str, Any]]:
+    return lambda value: {name: read(value)}
+
+
+#: How each option is read, into attributes of the style, and `color` and `size`.
+_Readers = Mapping[str, Callable[[Any], dict[str, Any]]]
+_LINE: _Readers = {
+    "width": _single("width", float),
+    "dash": _single("dash", _dash),
+    "smooth": _single("smooth", bool),
+    "capstyle": _single("cap", _one_of("butt", "projecting", "round")),
+    "joinstyle": _single("join", _one_of("bevel", "miter", "round")),
+    "fill": _single("color", str),
+}
+_TEXT: _Readers = {
+    "anchor": _single("anchor", _one_of("center", "n", "ne", "e", "se", "s", "sw", "w", "nw")),
+    "angle": _single("angle", float),
+    "justify": _single("justify", _one_of("left", "center", "right")),
+    "width": _single("width", float),
+    "font": _font,
+    "fill": _single("color", str),
+}
+
+
+def _read(
+    function: str, make: Callable[..., Style], readers: _Readers, options: Mapping[str, Any]
+) -> tuple[Style, Styled]:
+    found: dict[str, Any] = {}
+    problem = ""
+    for name, value in options.items():
+        if name in _WITHOUT_EFFECT:
+            continue
+        if name not in readers:
+            problem = f"{function}: there is no option {name!r}: {nearest(name, list(readers))}"
+            continue
+        try:
+            found |= readers[name](value)
+        except (TypeError, ValueError) as wrong:
+            problem = f"{function}: {name}={value!r}: {wrong}"
+    styled = Styled(found.pop("color", None), found.pop("size", None), problem)
+    return make(**found), styled
