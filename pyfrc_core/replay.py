@@ -25,9 +25,9 @@ from .runtime.loading import load_robot
 from .runtime.loop_limit import LoopLimit
 from .runtime.patches import patches
 from .runtime.robot import RobotRun
-from .runtime.scripts.files import trace_beside, traced
+from .runtime.scripts.files import traced
 from .runtime.scripts.player import Player
-from .runtime.scripts.script import InputScript, load_script
+from .runtime.scripts.script import InputScript, load_script, trace_beside
 from .runtime.seeds import seed_generators
 
 

@@ -64,7 +64,7 @@ def test_nothing_draws_in_tests(make_project) -> None:
 
 def test_a_line_in_field_coordinates(renderer: UserRenderer) -> None:
     renderer.draw_line([(1, 2), (3, 4)])
-    assert only_line(renderer) == Line(((1, 2), (3, 4)), "#ff0000", True, {})
+    assert only_line(renderer) == Line(((1, 2), (3, 4)), "#ff0000", True, LineStyle())
 
 
 @pytest.mark.parametrize(

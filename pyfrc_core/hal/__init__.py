@@ -1,14 +1,20 @@
 """`hal_data`: the robot's inputs and outputs as one tree, live over WPILib's simulated HAL.
 
-The only room that names simulated devices. Importing it changes nothing in the HAL.
+The only room that names simulated devices. Importing it changes nothing in the HAL, and imports WPILib only when the
+tree is used: the window of the simulator needs paths and no tree.
 """
 
+from __future__ import annotations
+
 from functools import cache
+from typing import TYPE_CHECKING, Any
 
 from .containers import LiveDict, LiveList
-from .data import HalData
 from .kinds import Choice
 from .paths import format_path, parse_path
+
+if TYPE_CHECKING:
+    from .data import HalData
 
 __all__ = [
     "Choice",
@@ -22,6 +28,14 @@ __all__ = [
 ]
 
 
+def __getattr__(name: str) -> Any:
+    if name == "HalData":
+        from .data import HalData
+
+        return HalData
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 def devices_exist() -> bool:
     """Return whether this process has made any device in the HAL that still exists."""
     return _tree().anything_made()
@@ -32,4 +46,8 @@ def existing_devices() -> list[str]:
     return _tree().devices_made()
 
 
-_tree = cache(HalData)  # it takes longer to make than to ask
+@cache  # it takes longer to make than to ask
+def _tree() -> HalData:
+    from .data import HalData
+
+    return HalData()

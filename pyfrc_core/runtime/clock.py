@@ -17,9 +17,8 @@ from heapq import heappop, heappush
 from ..hal.timing import deliver_packet, step_us, stop_and_zero
 from ..season import CURRENT
 from .exceptions import TestEnded, TestRanTooLong
-
-#: The driver station sends a packet every 20 ms.
-PACKET_US = 20_000
+from .robot_time import PACKET_US as PACKET_US
+from .robot_time import to_us as to_us
 
 DEFAULT_TIME_LIMIT = 500.0
 
@@ -32,10 +31,6 @@ KICKOFF = int(CURRENT.kickoff.timestamp())
 INPUT, PACKET, WAKE_UP, ROBOT_LOOP, PHYSICS, OBSERVE = range(6)
 
 Action = Callable[[], None]
-
-
-def to_us(seconds: float) -> int:
-    return round(seconds * 1_000_000)
 
 
 class Clock:

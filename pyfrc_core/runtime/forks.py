@@ -13,7 +13,6 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 
 from ..hal import devices_exist, existing_devices
-from .cooperative import threads_of_the_project
 from .own_process import exit_now, write_all
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
@@ -34,6 +33,8 @@ def forking_quietly() -> Iterator[None]:
 
 def reasons_not_to_fork() -> list[str]:
     """Return what the project's code has made in this process and a fork of it would lack: threads and devices."""
+    from .cooperative import threads_of_the_project  # with which comes WPILib
+
     reasons = [f"{line} starts {_described(thread)}" for thread, line in threads_of_the_project()]
     if devices_exist():
         devices = existing_devices()

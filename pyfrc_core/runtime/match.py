@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..config.settings import MatchSettings
-from ..hal.modes import Mode
-from .clock import to_us
+from .robot_time import to_us
+
+if TYPE_CHECKING:
+    from ..hal.modes import Mode
 
 
 class MatchPeriods:

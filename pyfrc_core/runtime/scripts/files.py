@@ -9,11 +9,7 @@ from pathlib import Path
 from ..robot import RobotRun
 from ..trace import Trace
 from .recorder import Recorder
-
-
-def trace_beside(script: Path) -> Path:
-    """Where the trace of a recording is."""
-    return script.with_name(f"{script.stem}.trace.jsonl")
+from .script import trace_beside
 
 
 @contextmanager

@@ -19,7 +19,7 @@ from typing import Any
 
 from ...errors import UsageError
 from ...text_files import write_whole
-from ..clock import to_us
+from ..robot_time import to_us
 
 FORMAT = "pyfrc-input 1"
 
@@ -27,6 +27,11 @@ FORMAT = "pyfrc-input 1"
 _MOST_BYTES = 64 * 1024 * 1024
 #: No robot runs for longer than a day.
 _LONGEST = 86_400.0
+
+
+def trace_beside(script: Path) -> Path:
+    """Return the file of a recording's trace, which lies beside the script."""
+    return script.with_name(f"{script.stem}.trace.jsonl")
 
 
 class ScriptError(UsageError):

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any
 
-from ...runtime.clock import PACKET_US, to_us
+from ...runtime.robot_time import PACKET_US, to_us
 from .commands import (
     ChooseMode,
     ChosenMode,

@@ -12,9 +12,8 @@ from itertools import chain, takewhile
 from operator import attrgetter
 from pathlib import Path
 
-from ...runtime.clock import to_us
-from ...runtime.scripts.files import trace_beside
-from ...runtime.scripts.script import InputScript, Step
+from ...runtime.robot_time import to_us
+from ...runtime.scripts.script import InputScript, Step, trace_beside
 from ...runtime.trace import FORMAT
 from ...text_files import write_whole
 from .history import History, entries

@@ -13,8 +13,8 @@ from typing import Any
 
 from ...errors import PyfrcError, UsageError
 from ...project import Project
-from ...runtime.clock import PACKET_US, to_us
 from ...runtime.own_process import explain_end, moment_of
+from ...runtime.robot_time import PACKET_US, to_us
 from ...runtime.scripts.script import InputScript, Step
 from .changes import ChangeCursor, RunChanges
 from .commands import Command

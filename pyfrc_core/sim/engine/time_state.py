@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ...runtime.clock import PACKET_US
+from ...runtime.robot_time import PACKET_US
 from .commands import Command, Pause, Run, Speed
 
 

@@ -8,8 +8,8 @@ from typing import Literal
 
 from ...errors import UsageError
 from ...physics.pose import METRES_PER_FOOT
-from ...runtime.clock import PACKET_US, to_us
 from ...runtime.match import MatchPeriods
+from ...runtime.robot_time import PACKET_US, to_us
 from ..engine.commands import ChosenMode
 from ..engine.output_log import OutputCursor
 from ..engine.simulation import Simulation

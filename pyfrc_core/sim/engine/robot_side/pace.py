@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 
-from ....runtime.clock import PACKET_US
+from ....runtime.robot_time import PACKET_US
 
 wall = time.perf_counter
 

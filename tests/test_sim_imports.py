@@ -1,0 +1,39 @@
+"""The process of a front end has no robot, and imports nothing of WPILib: it would take a fifth of a second."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from textwrap import dedent
+
+from sim_robots import FILES
+
+PROGRAM = """
+    import importlib.util
+    import sys
+    from pathlib import Path
+
+    from pyfrc_core.project import find_project
+    from pyfrc_core.sim.simulate import SimRequest, simulate
+
+    code = simulate(find_project(Path.cwd()), SimRequest(ui="none", seconds=0.5, quiet=True), print)
+    import pyfrc_core.sim.ui.wpilib
+    if importlib.util.find_spec("tkinter") is not None:
+        import pyfrc_core.sim.ui.tk
+    print("imported:", [name for name in ("hal", "ntcore", "wpilib", "wpimath", "wpiutil") if name in sys.modules])
+    sys.exit(code)
+"""
+
+
+def test_the_front_ends_process_imports_nothing_of_wpilib(make_project) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", dedent(PROGRAM)],
+        cwd=make_project(FILES).path,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "the robot is there" in done.stdout
+    assert "imported: []" in done.stdout
