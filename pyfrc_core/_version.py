@@ -4,7 +4,7 @@ __version__ = "2026.1.0"
 
 
 def requirement(*extras: str) -> str:
-    """Return what pip is asked for, such as ``pyfrc[picture]>=2026.1``.
+    """Return the requirement for pip, such as ``pyfrc[picture]>=2026.1``.
 
     Always with the version: the index has older packages of this name, which are another program.
     """

@@ -1,16 +1,16 @@
-"""Whether there is room for more where a file is written."""
+"""Check the disk space of a directory."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from tempfile import TemporaryFile
 
-#: More than WPILib's data log holds back, in bytes.
+#: Bytes to try to write: more than WPILib's data log buffers.
 _ENOUGH = 1 << 17
 
 
-def lack_of_room(beside: Path) -> str:
-    """Why no more can be written into this file's directory, in the system's words; "" where it can be."""
+def check_disk_space(beside: Path) -> str:
+    """Return why nothing more can be written into this file's directory, as the system's message; "" if it can be."""
     try:
         with TemporaryFile(dir=beside.parent) as probe:
             probe.write(bytes(_ENOUGH))

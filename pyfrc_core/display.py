@@ -1,4 +1,4 @@
-"""Whether a window can be shown here; told without importing anything that shows one."""
+"""Check whether a window can be shown here, without importing a GUI toolkit."""
 
 from __future__ import annotations
 

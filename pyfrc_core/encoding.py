@@ -1,4 +1,4 @@
-"""Text files in another encoding than UTF-8, which is the only one that Python and TOML read: found, and explained."""
+"""Find and explain text files that are not in UTF-8, the only encoding that Python and TOML read."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class WrongEncoding:
 
 
 def find_wrong_encoding(file: Path) -> WrongEncoding | None:
-    """What is wrong with the encoding of `file`; None when it is UTF-8, or when there is no such file."""
+    """Return what is wrong with the encoding of `file`; None if it is UTF-8 or does not exist."""
     try:
         content = file.read_bytes()
     except OSError:

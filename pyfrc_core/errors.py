@@ -30,7 +30,7 @@ class PyfrcError(Exception):
 
 
 class UsageError(PyfrcError):
-    """The command was called wrongly: a missing project, an option that cannot be."""
+    """The command was called wrongly: a missing project, an invalid option."""
 
     exit_code = 2
 
@@ -40,7 +40,7 @@ class ProjectError(UsageError):
 
 
 class SettingsError(UsageError):
-    """A key or value in ``[tool.pyfrc]`` or ``sim/config.json`` is not what it may be."""
+    """A key or value in ``[tool.pyfrc]`` or ``sim/config.json`` is not allowed."""
 
 
 class RobotCodeError(PyfrcError):
@@ -48,7 +48,10 @@ class RobotCodeError(PyfrcError):
 
 
 def text_of(error: BaseException) -> str:
-    """``ZeroDivisionError: division by zero``; also for an error whose text cannot be had."""
+    """Return type and text of an error, such as ``ZeroDivisionError: division by zero``.
+
+    Works for errors whose own `__str__` raises, too.
+    """
     try:
         if isinstance(error, SystemExit) and not isinstance(error.code, str):
             return f"exit({'' if error.code is None else repr(error.code)}) was called"
@@ -58,7 +61,7 @@ def text_of(error: BaseException) -> str:
 
 
 def nearest(word: str, known: list[str]) -> str:
-    """A hint such as ``did you mean 'teleop'?``, or the list of what there is."""
+    """Return a hint such as ``did you mean 'teleop'?``, or the list of known words."""
     from difflib import get_close_matches
 
     by_lower_case = {each.lower(): each for each in known}

@@ -1,4 +1,4 @@
-"""Whoever ends a simulation from outside, by Ctrl-C or otherwise, lets it write its files and tidy up."""
+"""Handle Ctrl-C and termination signals so that a program can write its files and clean up before it ends."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from types import FrameType
 
-#: Sent to a program that is to end; and when its terminal is closed, where there is such a signal.
+#: Signals that end a program, and the one for a closed terminal, where it exists.
 _ENDING = ("SIGTERM", "SIGHUP")
 
 _Handler = Callable[[int, FrameType | None], object]
 
 
 class Interruption:
-    """Raises KeyboardInterrupt for signals, as long as there is something to interrupt."""
+    """Raise KeyboardInterrupt for signals until the program has begun to finish."""
 
     def __init__(self) -> None:
         self._ending = self._finishing = False
 
     def finish(self) -> None:
-        """Raise it no more: files are written now."""
+        """Ignore further signals: files are being written."""
         self._finishing = True
 
     def handle(self, number: int, frame: FrameType | None) -> None:
-        """Raise it; for a terminal that is closed once only, since the system and the shell both tell of that."""
+        """Raise KeyboardInterrupt; only once for a closed terminal, which the system and the shell both report."""
         again, self._ending = self._ending, self._ending or number != signal.SIGINT
         if not (self._finishing or again):
             raise KeyboardInterrupt
@@ -33,16 +33,16 @@ class Interruption:
 
 @contextmanager
 def ending_like_ctrl_c() -> Iterator[Interruption]:
-    """While this lasts, raise KeyboardInterrupt for them, too."""
+    """Raise KeyboardInterrupt for termination signals, too, while the context lasts."""
     interruption = Interruption()
     with _handling((*_ENDING, "SIGINT"), interruption.handle):
         yield interruption
 
 
 def calling_when_ended(call: Callable[[], object]) -> AbstractContextManager[None]:
-    """While this lasts, have them and Ctrl-C raise nothing, but call this.
+    """Call a function for Ctrl-C and termination signals, instead of raising an exception, while the context lasts.
 
-    For loops in C, which exceptions do not end wherever they are raised.
+    For event loops in C, which an exception does not reliably end.
     """
     return _handling((*_ENDING, "SIGINT"), lambda number, frame: call())
 
@@ -53,7 +53,7 @@ def _handling(names: tuple[str, ...], handle: _Handler) -> Iterator[None]:
         yield
         return
     numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
-    # None: another language's handler, which is to stay; SIG_IGN: as by nohup.
+    # None: a handler that was not set by Python, which stays; SIG_IGN: as set by nohup.
     former = {
         number: handler
         for number in numbers

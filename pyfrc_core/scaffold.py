@@ -1,4 +1,4 @@
-"""New robot projects, made from the templates: what all have in common (`base`), and what each has of its own."""
+"""Create robot projects from templates: the files that all have in common (`base`), and those of one template."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 class Template:
     """A kind of robot project.
 
-    :param description: what it is, for people who choose
-    :param packages: what its code imports besides wpilib, as pip's requirements
-    :param extras: those of robotpy's own extras that bring these packages onto the robot
+    :param description: one line for the list of templates
+    :param packages: requirements of its code besides wpilib
+    :param extras: the extras of robotpy that install these packages on the robot
     """
 
     description: str
@@ -34,7 +34,7 @@ class Template:
 
     @property
     def missing(self) -> list[str]:
-        """Those of `packages` that are not installed here."""
+        """The requirements in `packages` that are not installed here."""
         return [package for package in self.packages if not _is_installed(package)]
 
 
@@ -56,16 +56,16 @@ TEMPLATES = {
 }
 DEFAULT = "tank"
 
-#: What every project has.
+#: The directory of the files that every project has.
 _BASE = "base"
 
-#: The test module that `pyfrc add-tests` adds, and where it stands in a project.
+#: The path of the test module that `pyfrc add-tests` adds to a project.
 READY_MADE_TESTS = PurePosixPath("tests/pyfrc_test.py")
 
-#: Names that would be in the way in this repository: name there to name in the project.
+#: Files that would take effect in this repository under their own name: name here to name in the project.
 _RENAMED = {"gitignore": ".gitignore", "github": ".github", "vscode": ".vscode"}
 
-#: Files whose ``$names`` are filled in.
+#: The suffix of files whose ``$names`` are substituted.
 _FILLED_IN = ".template"
 
 _LEFT_OUT = {"__pycache__", ".pytest_cache", ".mypy_cache", ".ruff_cache"}
@@ -76,11 +76,11 @@ _NOT_ON_WINDOWS = re.compile(r'[<>:"|?*\\\x00-\x1f]|[. ]$|^(con|prn|aux|nul|com[
 def create_project(
     directory: Path, installed: Path, template: str = DEFAULT, team: int | None = None
 ) -> list[PurePosixPath]:
-    """Make a project of a template; answers the files written, relative to `directory`.
+    """Create a project from a template and return the files written, relative to `directory`.
 
-    :param installed: the package that carries the templates when it is installed
-    :raises UsageError: when one of its files is there already, or the directory's name or the team's number is not
-        one; nothing is written then
+    :param installed: the package that contains the templates when it is installed
+    :raises UsageError: when a file exists already, or the directory's name or the team number is invalid; nothing is
+        written then
     """
     _check_name(directory)
     texts = _texts(templates_directory(installed), template, team)
@@ -101,8 +101,8 @@ def create_project(
 def add_tests(project: Project, installed: Path) -> tuple[Path, bool]:
     """Write the ready-made tests into the project's directory of tests.
 
-    :returns: the file, and whether it was written: not when it was there already
-    :raises UsageError: when something else is where the directory has to be
+    :returns: the file, and whether it was written: False if it existed already
+    :raises UsageError: when a file is in place of the directory
     """
     directory = next((each for each in project.test_directories if each.is_dir()), project.test_directories[0])
     file = directory / READY_MADE_TESTS.name
@@ -115,16 +115,16 @@ def add_tests(project: Project, installed: Path) -> tuple[Path, bool]:
 
 
 def templates_directory(installed: Path) -> Path:
-    """The templates: in the installed package, or in the checkout when pyfrc runs from one.
+    """Return the directory of the templates: in the installed package, or in the checkout when pyfrc runs from one.
 
-    :param installed: the package that carries them when it is installed
+    :param installed: the package that contains them when it is installed
     """
     inside, beside = installed / "templates", installed.parent / "templates"
     return inside if inside.is_dir() else beside
 
 
 def _texts(templates: Path, name: str, team: int | None) -> dict[PurePosixPath, str]:
-    """The project's files, and what stands in each."""
+    """Return the project's files and their contents."""
     from .config.sim_schema import sim_config_schema
 
     values = _values(TEMPLATES[name], team)
@@ -141,7 +141,7 @@ def _texts(templates: Path, name: str, team: int | None) -> dict[PurePosixPath, 
 
 
 def _values(template: Template, team: int | None) -> Mapping[str, str]:
-    """What the ``$names`` in the base's files stand for."""
+    """Return the values of the ``$names`` in the base's files."""
     if team is None:
         number = "# team_number = 9999  # your team's, for: pyfrc deploy"
     else:
@@ -165,7 +165,7 @@ def _toml_array(texts: tuple[str, ...] | list[str]) -> str:
 
 
 def _check_name(directory: Path) -> None:
-    """See that a directory that is to be made has a name that every computer of the team can have."""
+    """:raises UsageError: when the directory is to be created and some operating system does not allow its name"""
     if directory.exists():
         return
     name = directory.name
@@ -178,7 +178,7 @@ def _check_name(directory: Path) -> None:
 
 
 def _taken(directory: Path, target: PurePosixPath) -> PurePosixPath | None:
-    """What is in the way of a file: itself, or a file where one of its directories has to be."""
+    """Return the path that prevents writing a file: the file itself, or a file in place of one of its directories."""
     for place in reversed(target.parents[:-1]):
         if os.path.lexists(directory / place) and not (directory / place).is_dir():
             return place

@@ -1,4 +1,4 @@
-"""Text from elsewhere, such as a robot's, without anything that controls a terminal.
+"""Make text from untrusted sources, such as a robot, safe to print in a terminal.
 
 Escape sequences can move the cursor over what was printed before, change the window's title, or have the terminal send
 keys; characters for right-to-left text can change the order in which a line is read; invisible characters, such as tags

@@ -1,4 +1,4 @@
-"""Writing files so that nobody ever finds half of one."""
+"""Write files atomically."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tempfile import NamedTemporaryFile
 
 
 def write_whole(file: Path, text: Iterable[str]) -> None:
-    """Write `text` to `file`, whose directory is made if need be: beside it first, then in its place."""
+    """Write `text` to `file` by way of a temporary file beside it; create its directory if necessary."""
     file.parent.mkdir(parents=True, exist_ok=True)
     try:
         _write_beside(file, text)

@@ -1,4 +1,4 @@
-"""The values of ``sim/config.json`` in effect, as the plain dict that physics modules of 2019 read."""
+"""The effective values of ``sim/config.json`` as the plain dict that physics modules of 2019 read."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from .sim import SimConfig
 
 
 def document_of(config: SimConfig, file: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return ``{"pyfrc": {"robot": {"w": 2.0, ...}, ...}}``: what the file holds, with every default filled in.
+    """Return ``{"pyfrc": {"robot": {"w": 2.0, ...}, ...}}``: the file's content with every default filled in.
 
     :param config: the values in effect
-    :param file: what the file holds, with the keys of other tools
+    :param file: the file's content, including the keys of other tools
     """
     values = config.model_dump(mode="json")
     values["robot"]["h"] = config.robot.h  # the older name of `l`, which the model leaves out

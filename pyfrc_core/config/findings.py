@@ -1,7 +1,7 @@
-"""What is wrong with, or without effect in, a settings file: where it stands, what it is, what to do about it.
+"""Findings in a settings file: mistakes and values without effect, each with its place and a remedy.
 
-Serves pyproject.toml and ``sim/config.json`` alike. pydantic finds the mistakes; here they get the file's own
-places and words.
+Used for pyproject.toml and ``sim/config.json``. pydantic finds the mistakes; this module adds the lines of the file and
+the words of its format.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 #: The keys and indices that lead to a value, from the top of its file.
 Path = tuple[str | int, ...]
 
-#: So many findings are told of one file; a file with more has one cause for most of them.
+#: The maximum number of findings reported for one file; if there are more, most have the same cause.
 MOST_TOLD = 20
 
 _UNKNOWN_KEY = ("unexpected_keyword_argument", "extra_forbidden")
@@ -30,45 +30,45 @@ _NO_ARRAY = ("tuple_type", "list_type")
 
 
 class SettingsWarning(UserWarning):
-    """Something in a settings file that has no effect, such as a key that nobody knows; the warning's place is there.
+    """A part of a settings file that has no effect, such as an unknown key.
 
-    Its text is about the place only: Python tells that with every warning.
+    Its text does not name the place: Python shows the file and line of every warning.
     """
 
 
 class Document(Protocol):
-    """A settings file that can tell where a value stands."""
+    """A settings file that knows the line of each value."""
 
     #: The file as the user knows it, such as ``sim/config.json``.
     name: str
-    #: What the file's format calls a collection of keys and values.
+    #: The format's term for a collection of keys and values, with an article.
     table: str
 
     def line_of(self, path: Path) -> int | None:
-        """The line of a key or an item, from 1; of the nearest thing around it where it is not there."""
+        """Return the line of a key or an item, from 1; if it is missing, the line of the nearest enclosing key."""
 
     def excerpt(self, path: Path, value: object) -> str:
-        """The value as it stands in the file, shortened when it is long."""
+        """Return the value as written in the file, shortened when it is long."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One sentence about one place in a settings file."""
+    """One message about one place in a settings file."""
 
     file: str
-    #: From 1, where it is known.
+    #: From 1; None when unknown.
     line: int | None
     message: str
     remedy: str | None = None
 
     @property
     def where(self) -> str:
-        """``sim/config.json:7``."""
+        """The place, such as ``sim/config.json:7``."""
         return self.file if self.line is None else f"{self.file}:{self.line}"
 
     @property
     def text(self) -> str:
-        """What is to be said, without its place."""
+        """The message and remedy, without the place."""
         return f"{self.message}\n  {self.remedy}" if self.remedy else self.message
 
     def __str__(self) -> str:
@@ -80,12 +80,12 @@ def finding_at(document: Document, path: Path, message: str, remedy: str | None 
 
 
 def in_order(findings: Iterable[Finding]) -> list[Finding]:
-    """In the order of the file."""
+    """Return the findings sorted by line."""
     return sorted(findings, key=lambda finding: finding.line or 0)
 
 
 def dotted(path: Path) -> str:
-    """``pyfrc.robot.start_positions[0].x``; a key that is no plain word stands in quotes and brackets."""
+    """Return a path as text, such as ``pyfrc.robot.start_positions[0].x``; unusual keys in quotes and brackets."""
     text = ""
     for part in path:
         if isinstance(part, int):
@@ -98,7 +98,7 @@ def dotted(path: Path) -> str:
 
 
 def shortened(text: str, most: int = 60) -> str:
-    """The text on one line that a terminal can show, with its length when that is more than what is shown."""
+    """Return the text as one printable line, shortened to `most` characters and with its length if it is longer."""
     start = " ".join(text[: 4 * most].split())
     start = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in start)
     if len(start) <= most and len(text) <= 4 * most:
@@ -107,7 +107,7 @@ def shortened(text: str, most: int = 60) -> str:
 
 
 def settings_error(findings: Sequence[Finding]) -> SettingsError:
-    """All of a file's mistakes as one error, whose first line is the first of them."""
+    """Return all mistakes of a file as one error, which begins with the first of them."""
     first, *others = findings
     if not others:
         return SettingsError(first.message, where=first.where, remedy=first.remedy)
@@ -121,11 +121,11 @@ def mistakes(
     prefix: Path = (),
     known: Mapping[Path, list[str]] = MappingProxyType({}),
 ) -> list[Finding]:
-    """What pydantic found wrong, in the order of the file, for the user.
+    """Return pydantic's errors as findings, in the order of the file.
 
-    :param data: what was checked
-    :param prefix: where in the document `data` stands
-    :param known: the keys there are in each table, by its path in `data`, for those of which others are mistakes
+    :param data: the data that was validated
+    :param prefix: the path of `data` in the document
+    :param known: the allowed keys of each table that forbids others, by its path in `data`
     """
     by_path: dict[Path, list[Any]] = {}
     for error in invalid.errors(include_url=False, include_context=False):
@@ -142,19 +142,19 @@ def mistakes(
             what = f"item {last + 1}" if isinstance(last, int) else f"the key {last!r}"
             message = f"{dotted(whole[:-1])}: {what} is missing"
         else:
-            # Of a key that may be one of several types, each says what is wrong with it.
+            # For a key with several allowed types, pydantic reports an error for each type.
             said = ", or ".join(dict.fromkeys(_words(error, document) for error in errors))
             remedy = _hint(errors[0])
             message = f"{dotted(whole) or 'the whole file'} = {document.excerpt(whole, errors[0]['input'])}: {said}"
         findings.append(finding_at(document, whole, message, remedy))
-    told = in_order(findings)
+    ordered = in_order(findings)
     if len(by_path) > MOST_TOLD:
-        told.append(Finding(document.name, None, f"... and {len(by_path) - MOST_TOLD} mistakes more"))
-    return told
+        ordered.append(Finding(document.name, None, f"... and {len(by_path) - MOST_TOLD} mistakes more"))
+    return ordered
 
 
 def _path_in(data: Any, error: Any) -> Path:
-    """Where the error is, without pydantic's own names in its path: those that lead nowhere in the data."""
+    """Return the path of an error in the data, without the parts that pydantic adds for its own types."""
     path: Path = ()
     for part in error["loc"]:
         if (isinstance(data, dict) and part in data) or (
@@ -168,7 +168,7 @@ def _path_in(data: Any, error: Any) -> Path:
 
 
 def _hint(error: Any) -> str | None:
-    """What to do, where that is certain: a number in quotes."""
+    """Return the remedy for a number in quotes; None for other errors."""
     if error["type"] in _NO_NUMBER and isinstance(error["input"], str):
         number = error["input"].strip()
         if re.fullmatch(r"-?[0-9]{1,15}(\.[0-9]{1,15})?", number):
@@ -177,7 +177,7 @@ def _hint(error: Any) -> str | None:
 
 
 def _words(error: Any, document: Document) -> str:
-    """pydantic's message, in the words of the file's format."""
+    """Return pydantic's message in the terms of the file's format."""
     if error["type"] in _NO_TABLE:
         return f"input should be {document.table}"
     if error["type"] in _NO_ARRAY:

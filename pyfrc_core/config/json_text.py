@@ -1,11 +1,10 @@
-"""A JSON file's content, and the place of everything in it.
+"""A JSON file: its content, and the line of each value in it.
 
-Python's own `json` says what the text means. It does not tell where in the text a value stands; so when somebody
-asks (on the way to an error, a warning, or ``config show``), the text is gone through once more with `json`'s own
-`raw_decode`, which answers where the value at an offset ends. What is a string, a number or a value is thus decided
-in one place, which no parser of ours and no dependency can disagree with.
+Python's `json` parses the text but does not report the positions of values. When a position is needed (for an error, a
+warning, or ``config show``), the text is scanned a second time with `json`'s `raw_decode`, which returns where the
+value at an offset ends. Both passes use Python's own scanner, so they cannot disagree about what is a string.
 
-Only JSON itself is taken: NaN and Infinity, which Python would read, are refused.
+Only standard JSON is accepted: NaN and Infinity, which Python would read, are errors.
 """
 
 from __future__ import annotations
@@ -22,13 +21,13 @@ from typing import Any, NamedTuple
 from ..errors import SettingsError
 from .findings import Path, shortened
 
-#: Deeper nesting is refused: Python's own limit depends on who calls.
+#: Deeper nesting is an error: Python's own limit depends on the depth of the caller's stack.
 MOST_NESTED = 100
-#: Bytes of a file; longer ones are surely something else.
+#: Maximum size of a file in bytes; a larger one is not a configuration.
 MOST_BYTES = 64 * 2**20
 
 _BLANK = re.compile(r"[ \t\n\r]*")
-#: What nesting and constants are looked for in: strings are passed over, also one that never ends.
+#: Tokens for finding nesting and constants: strings are skipped, unterminated ones too.
 _TOKENS = re.compile(r'"[^"\\]*(?:\\.[^"\\]*)*(?:"|\\?\Z)|[\[{]|[\]}]|NaN|-?Infinity', re.DOTALL)
 
 
@@ -36,7 +35,7 @@ class Member(NamedTuple):
     """One entry of an object or array, with offsets into the text."""
 
     key: str | int
-    #: Where its key stands; of an array's item, where the item does.
+    #: Where its key begins; for an item of an array, where the item begins.
     start: int
     value: int
     end: int
@@ -56,15 +55,15 @@ def _whole(digits: str) -> int | float:
 
 
 def _line_after(text: str, end: int | None = None) -> int:
-    """The number of the line, from 1, that `text` is in at `end`; lines end as anybody's do: \\n, \\r\\n, \\r."""
+    """Return the line number, from 1, at the offset `end`; lines end with \\n, \\r\\n or \\r."""
     return text.count("\n", 0, end) + text.count("\r", 0, end) - text.count("\r\n", 0, end) + 1
 
 
 class JsonText:
-    """A JSON file, read and understood.
+    """A JSON file, as a `Document`.
 
     :param name: the file as the user knows it
-    :raises SettingsError: when it cannot be read, is not UTF-8 or not JSON, with the line
+    :raises SettingsError: when it cannot be read, is not UTF-8 or is not valid JSON, with the line
     """
 
     table = "an object"
@@ -76,7 +75,7 @@ class JsonText:
         self._has_repeated_keys = False
         self._decoder = json.JSONDecoder(object_pairs_hook=self._object, parse_int=_whole, parse_constant=_refuse)
         self._check_nesting()
-        #: What the file says.
+        #: The content of the file.
         self.value = self._parsed()
 
     # -- places -------------------------------------------------------------------------------------------------
@@ -93,24 +92,24 @@ class JsonText:
         return shortened(self._text[found.value : found.end])
 
     def repeated_keys(self) -> Iterator[tuple[Path, int]]:
-        """The keys that stand more than once in one object, and the line of their first time."""
+        """Yield the keys that occur more than once in one object, with the line of the first occurrence."""
         if self._has_repeated_keys:
             yield from self._repeated_below((), self._top.value)
 
     def _repeated_below(self, path: Path, start: int) -> Iterator[tuple[Path, int]]:
         first: dict[str | int, Member] = {}
-        told = set()
+        reported = set()
         for member in self._members(start):
             key = member.key
-            if first.setdefault(key, member) is not member and key not in told:
-                told.add(key)
+            if first.setdefault(key, member) is not member and key not in reported:
+                reported.add(key)
                 yield (*path, key), self._line_at(first[key].start)
         for member in {member.key: member for member in self._members(start)}.values():
             if self._text[member.value] in "{[":
                 yield from self._repeated_below((*path, member.key), member.value)
 
     def _follow(self, path: Path) -> list[Member]:
-        """The entries on the way to `path`, as far as it leads; of a key that is there twice, the one that counts."""
+        """Return the entries along `path`, as far as they exist; the last one of a repeated key."""
         found = [self._top]
         for part in path:
             entries = [member for member in self._members(found[-1].value) if member.key == part]
@@ -130,7 +129,7 @@ class JsonText:
         return self._known_members[start]
 
     def _find_members(self, start: int) -> Iterator[Member]:
-        """The entries of the object or array at an offset; none of anything else."""
+        """Yield the entries of the object or array at an offset; nothing for other values."""
         text = self._text
         if text[start] not in "{[":
             return
@@ -215,7 +214,7 @@ class JsonText:
                 raise self._error(f"objects and arrays are nested more than {MOST_NESTED} deep", token.start())
 
     def _malformed(self, wrong: json.JSONDecodeError) -> SettingsError:
-        """What is wrong with the syntax, told by what stands there more than by what the parser was about to do."""
+        """Return an error that describes the text at the position rather than what the parser expected there."""
         text, at = self._text, wrong.pos
         rest = text[at:].lstrip(" \t\n\r")
         before = text[:at].rstrip(" \t\n\r")

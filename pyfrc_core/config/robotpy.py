@@ -12,7 +12,7 @@ from .toml_file import TomlFile
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
 
-#: What the optional components install on a robot; the others are for desktops only.
+#: The packages that the optional components install on a robot; the others are for desktops only.
 COMPONENTS: dict[str, tuple[str, ...]] = {
     "apriltag": ("robotpy-apriltag",),
     "commands2": ("robotpy-commands-v2",),
@@ -30,7 +30,7 @@ COMPONENT_MODULES = {
 
 @dataclass(frozen=True)
 class RobotPackages:
-    """What a project asks of its robot.
+    """The packages that a project needs on its robot.
 
     :param version:    of WPILib; none: any
     :param components: the names of optional components
@@ -45,7 +45,7 @@ class RobotPackages:
 
 
 def load_robot_packages(pyproject: Path) -> RobotPackages:
-    """Return what ``[tool.robotpy]`` asks for; nothing where there is no such file or table.
+    """Return what ``[tool.robotpy]`` asks for, or nothing if there is no such file or table.
 
     :raises SettingsError: with the file and line of a requirement that cannot be read
     """

@@ -1,7 +1,7 @@
-"""``[tool.pyfrc]`` in a robot project's pyproject.toml: what it may hold, and the defaults.
+"""``[tool.pyfrc]`` in a robot project's pyproject.toml: its keys and their defaults.
 
-Plain dataclasses, so that a project that leaves everything at its default never waits for pydantic to be
-imported; pydantic does the checking of those that do not.
+Plain dataclasses, so that a project with default settings does not wait for the import of pydantic, which validates
+the settings of the others.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .toml_file import TomlFile
 
 
 class _Positive:
-    """The constraint "greater than 0", told to pydantic only when it is there to be told."""
+    """The constraint "greater than 0", which imports pydantic only when pydantic asks for it."""
 
     @staticmethod
     def __get_pydantic_core_schema__(source: Any, handler: Any) -> Any:
@@ -33,7 +33,7 @@ class _Positive:
         return core_schema.no_info_after_validator_function(check, handler(source))
 
 
-#: For pydantic: keys that a dataclass does not know are errors, and so is ``"15"`` for a number.
+#: For pydantic: unknown keys are errors, and so is ``"15"`` for a number.
 STRICT: Any = {"extra": "forbid", "strict": True}
 
 Seconds = Annotated[float, _Positive]
@@ -94,15 +94,15 @@ class FuzzSettings:
     hang_seconds: Seconds = 2.0
     #: A loop that takes longer than its period, in robot time.
     slow_loops: bool = True
-    #: A motor that is told to move while the robot is disabled.
+    #: A motor command while the robot is disabled.
     motors_while_disabled: bool = True
-    #: A motor that is told to move by NaN.
+    #: A motor command with the value NaN.
     not_a_number: bool = True
-    #: A motor that is told to move by more than 1, or less than -1.
+    #: A motor command greater than 1 or less than -1.
     out_of_range: bool = True
     #: An error that the HAL reports.
     hal_errors: bool = True
-    #: A mode that the robot does not get out of, or a program that ends.
+    #: A robot that does not leave a mode, or a program that ends.
     stuck_modes: bool = True
 
 

@@ -1,7 +1,7 @@
-"""``sim/config.json``: what stands under its key ``pyfrc``, as typed objects.
+"""``sim/config.json``: typed models of the content under its key ``pyfrc``.
 
-Lengths are in feet, angles in degrees clockwise; x grows to the right, y grows downwards. Here are the keys, their
-types and defaults; `sim_file` reads the file, `resolve` adds what a season brings.
+Lengths are in feet, angles in degrees clockwise; x grows to the right, y grows downwards. This module has the keys,
+their types and defaults; `sim_file` reads the file, and `resolve` adds the values of a season.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from . import tables
 
 _FIELD = CURRENT.field
 
-# JSON's strings are no numbers, and true is none either. The bound is what is finite, in the schema's terms.
+# Strict: a string or true is not a number. The bounds exclude infinity, which JSON Schema cannot express otherwise.
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-sys.float_info.max, le=sys.float_info.max)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0, le=sys.float_info.max)]
 Flag = Annotated[bool, Field(strict=True)]
 
 
 class _Part(BaseModel):
-    # Unknown keys are no mistakes here: they are warned of when the file is read.
+    # Unknown keys are not errors here: reading the file warns about them.
     model_config = ConfigDict(frozen=True, extra="ignore")
 
 
@@ -77,7 +77,7 @@ class Polygon(_Part):
 
 
 def _shape(value: Any) -> str | None:
-    """Which of the two an object is, told by the key that only one of them has."""
+    """Return the tag of the model for an object, by the key that only one of the two has."""
     if isinstance(value, Rectangle | Polygon):
         return f"<{type(value).__name__}>"
     if not isinstance(value, dict) or ("rect" in value) == ("points" in value):
@@ -96,7 +96,7 @@ FieldObject = Annotated[
 
 
 def _year(value: Any) -> int | None:
-    """A year written as number or string."""
+    """Return a year written as a number or a string as an int."""
     if value is None:
         return None
     if isinstance(value, float) and value.is_integer():
@@ -112,7 +112,7 @@ _YEAR_SCHEMA = {
     "anyOf": [
         {"enum": [*FIELDS, *map(str, FIELDS)]},
         {"type": "integer", "minimum": 1000, "maximum": 9999},
-        # The length too: to some, a line end may follow what the pattern ends with.
+        # With a length, since some validators let a line break follow the end of a pattern.
         {"type": "string", "pattern": "^[1-9][0-9]{3}$", "maxLength": 4},
         {"type": "null"},
     ]
@@ -120,7 +120,7 @@ _YEAR_SCHEMA = {
 
 
 class FieldConfig(_Part):
-    """The field: its size, its drawing, and what was particular to the season."""
+    """The field: its size, its drawing, and the season's rules."""
 
     season: Annotated[int | None, BeforeValidator(_year), WithJsonSchema(_YEAR_SCHEMA)] = Field(
         default=None,
@@ -153,7 +153,7 @@ class Joystick(_Part):
 
 
 class SimConfig(_Part):
-    """What pyfrc's tests, physics and simulator know of the robot and the field."""
+    """The settings of the robot and the field for tests, physics and the simulator."""
 
     robot: RobotConfig = RobotConfig()
     field: FieldConfig = FieldConfig()
@@ -186,13 +186,13 @@ class SimConfig(_Part):
 
     @property
     def start(self) -> StartPosition:
-        """Where the robot starts."""
+        """The start position of the robot."""
         robot = self.robot
         return StartPosition(name="start", x=robot.starting_x, y=robot.starting_y, angle=robot.starting_angle)
 
     @property
     def says_start(self) -> bool:
-        """Whether the robot's start is the file's, and not the default."""
+        """Whether the file gives a start position."""
         return not self.robot.model_fields_set.isdisjoint({"starting_x", "starting_y", "starting_angle"})
 
 

@@ -1,4 +1,4 @@
-"""Reads ``sim/config.json``: the values in effect, what in it has no effect, and where each value comes from."""
+"""Read ``sim/config.json``: the values in effect, the keys without effect, and the origin of each value."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ SIM_CONFIG = File("sim", "config.json")
 class LoadedSimConfig:
     """``sim/config.json``, or the defaults where there is none."""
 
-    #: The values that hold, a season's data and older names applied.
+    #: The values in effect, after `resolve`.
     config: SimConfig
-    #: The file as the user knows it, whether it is there or not.
+    #: The file's name as the user knows it, whether the file exists or not.
     name: str
-    #: What in the file has no effect, in the file's order.
+    #: The parts of the file that have no effect, in the file's order.
     warnings: tuple[Finding, ...] = ()
     #: The file's text; None where there is no file.
     text: JsonText | None = None
     _origins: Origins = field(default_factory=dict)
 
     def settings(self) -> Iterator[tuple[str, Any, str]]:
-        """Each value in effect: its path (``pyfrc.robot.w``), the value as in JSON, and where it comes from."""
+        """Yield each value in effect: its path (``pyfrc.robot.w``), the value as in JSON, and its origin."""
         for path, value in _leaves(self.config.model_dump(mode="json"), ()):
             yield dotted(("pyfrc", *path)), value, self._source(path)
 
     def as_json(self) -> dict[str, Any]:
-        """The values in effect and their sources, by path; itself a content that ``sim/config.json`` may have.
+        """Return the values in effect and their sources by path, in a form that ``sim/config.json`` may have.
 
-        What the season decides stands apart, under ``season``: in the file it would be ignored.
+        The values that the season decides are under ``season``: under ``field`` they would be ignored.
         """
         values = self.config.model_dump(mode="json")
         sources = {path: source for path, _, source in self.settings()}
@@ -70,7 +70,7 @@ class LoadedSimConfig:
         if isinstance(origin, str):
             return origin
         if len(path) == 4 and path[2] == "axes":
-            # An axis may stand in the file by its letter.
+            # The file may name an axis by its letter.
             names = [(*path[:3], key) for key, number in AXES.numbers.items() if str(number) == path[3]]
             origin = next(filter(self._has, names), path)
         if origin == path and not self._has(path):
@@ -84,11 +84,11 @@ class LoadedSimConfig:
 
 
 def load_sim_config(root: File, *, shown_from: File | None = None) -> LoadedSimConfig:
-    """What ``sim/config.json`` below the project's directory says; the file is only read.
+    """Read ``sim/config.json`` below the project's directory.
 
     :param root: the directory of the robot's code
-    :param shown_from: the directory that the file's name is told from; default: `root`
-    :raises SettingsError: with each mistake's line, path and value, and what is allowed there
+    :param shown_from: the directory that the displayed file name is relative to; default: `root`
+    :raises SettingsError: with each mistake's line, path and value, and the allowed values
     """
     file = root / SIM_CONFIG
     shown_from = shown_from or root
@@ -117,7 +117,7 @@ def _shown(file: File, directory: File) -> str:
 
 
 def _misplaced(root: File) -> Iterator[File]:
-    """The files that are surely meant to be ``sim/config.json``: they speak of pyfrc, and stand near."""
+    """Yield misplaced files that are probably meant to be ``sim/config.json``: files nearby with a key ``pyfrc``."""
     near = [root / "config.json", root / "tests" / SIM_CONFIG]
     if not (root.parent / "robot.py").exists():  # whose it would be
         near.append(root.parent / SIM_CONFIG)
@@ -133,14 +133,14 @@ def _misplaced(root: File) -> Iterator[File]:
 
 def _warnings(given: SimConfig, text: JsonText, directory: File) -> tuple[Finding, ...]:
     found = _find_warnings(given, text, directory)
-    told = in_order(finding_at(text, path, message, remedy) for path, message, remedy in islice(found, MOST_TOLD))
+    warnings = in_order(finding_at(text, path, message, remedy) for path, message, remedy in islice(found, MOST_TOLD))
     if next(found, None) is not None:
-        told.append(Finding(text.name, None, "... and there is more"))
-    return tuple(told)
+        warnings.append(Finding(text.name, None, "... and there is more"))
+    return tuple(warnings)
 
 
 def _find_warnings(given: SimConfig, text: JsonText, directory: File) -> Iterator[tuple[Path, str, str | None]]:
-    """What in the file has no effect: the path, what is to be said of it, and what can be done."""
+    """Yield what has no effect in the file: the path, the message, and the remedy."""
     for path, line in text.repeated_keys():
         if path[0] == "pyfrc":  # all else is other tools'
             yield path, f"{dotted(path)} stands here again, and replaces what line {line} says", None
@@ -165,7 +165,7 @@ def _find_warnings(given: SimConfig, text: JsonText, directory: File) -> Iterato
 
 
 def _unknown_keys(given: Any, data: Any, path: Path) -> Iterator[tuple[Path, list[str]]]:
-    """The keys in `data` that did not get into its model `given`; and those that are known there."""
+    """Yield the keys in `data` that its model `given` does not have, with the known keys there."""
     if isinstance(given, BaseModel):
         known = type(given).model_fields
         for key, item in data.items():
@@ -183,7 +183,7 @@ def _unknown_keys(given: Any, data: Any, path: Path) -> Iterator[tuple[Path, lis
 
 
 def _same_axis(axes: dict[str, str]) -> Iterator[tuple[str, str]]:
-    """Pairs of keys that name the same axis."""
+    """Yield pairs of keys that name the same axis."""
     seen: dict[int, str] = {}
     for key in axes:
         first = seen.setdefault(AXES.numbers[key], key)
@@ -199,7 +199,7 @@ def _is_file(directory: File, name: str) -> bool:
 
 
 def _leaves(value: Any, path: Path) -> Iterator[tuple[Path, Any]]:
-    """The values at the ends of an object of objects; an array is one."""
+    """Yield the leaf values of nested objects; an array is a leaf."""
     if isinstance(value, dict) and value:
         for key, item in value.items():
             yield from _leaves(item, (*path, key))

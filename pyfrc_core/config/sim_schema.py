@@ -1,4 +1,4 @@
-"""The JSON Schema of ``sim/config.json``, from which an editor completes keys and shows what they mean."""
+"""The JSON Schema of ``sim/config.json``, with which an editor completes and explains keys."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .sim import SimConfigFile
 
 
 def sim_config_schema() -> str:
-    """The schema as text (JSON Schema, draft 2020-12; ASCII, so that any redirection keeps it).
+    """Return the schema as text (JSON Schema, draft 2020-12; ASCII, so that any redirection keeps it).
 
     With ``"$schema": "config.schema.json"`` at the top of ``sim/config.json``, editors use the file of that name.
     """

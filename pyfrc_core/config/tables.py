@@ -1,4 +1,4 @@
-"""Tables in ``sim/config.json`` whose keys are numbers (JSON can only write them as strings), and its arrays."""
+"""Types of ``sim/config.json``: tables whose keys are numbers (strings in JSON), and arrays of limited length."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-#: Items of an array, keys of a table.
+#: The maximum number of items of an array, or of keys of a table.
 MOST = 1000
 
 
 @dataclass(frozen=True, eq=False)
 class Numbered:
-    """For a ``dict[int, ...]``: which keys there are, and the number that each stands for.
+    """The allowed keys of a ``dict[int, ...]`` and the number that each means.
 
-    :param allowed: the keys in words, for the message about any other
+    :param allowed: a description of the keys, for the message about any other key
     """
 
     allowed: str
@@ -38,7 +38,7 @@ class Numbered:
 
 
 class Array:
-    """For an array: that it has no more than `MOST` items."""
+    """An array of at most `MOST` items."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(_not_too_many, handler(source))
@@ -48,7 +48,7 @@ class Array:
 
 
 def _not_too_many(value: Any) -> Any:
-    # Asked before the items are looked at: a file with millions of them would be millions of mistakes.
+    # Checked before the items: a file with millions of them would otherwise give millions of errors.
     if isinstance(value, list | dict) and len(value) > MOST:
         raise ValueError(f"there should be at most {MOST} of them, not {len(value)}")
     return value

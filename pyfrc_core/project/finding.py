@@ -18,11 +18,11 @@ _ROBOT_CLASS = re.compile(
 
 
 def find_project(start: Path | None = None, main: Path | None = None, class_name: str | None = None) -> Project:
-    """The robot project that a command is about.
+    """Find the robot project of a command.
 
-    :param start: the project's directory, when the user names it; else the current one and those above are searched
-    :param main: the file with the robot class, when the user names it
-    :raises ProjectError: saying where was looked and for what
+    :param start: the project's directory, if the user names it; otherwise the current one and its parents are searched
+    :param main: the file with the robot class, if the user names it
+    :raises ProjectError: with the directories and names that were searched for
     """
     if main is not None:
         file = (start / main if start is not None and not main.is_absolute() else main).absolute()
@@ -91,7 +91,7 @@ def _defines_robot(file: Path) -> bool:
 
 
 def _projects_below(directory: Path) -> list[Path]:
-    """The directories in this one that hold a robot project, as in a repository with several of them."""
+    """Return the subdirectories that contain a robot project, as in a repository with several of them."""
     try:
         found = sorted(file.parent for file in directory.glob(f"*/{MAIN_FILE}") if file.is_file())
     except OSError:

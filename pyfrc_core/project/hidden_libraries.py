@@ -1,6 +1,6 @@
-"""Files of a robot project that have the name of a library: ``import random`` then finds the project's `random.py`.
+"""Find files of a robot project that hide a library: ``import random`` then imports the project's `random.py`.
 
-Checked before a command runs the robot, since the failure itself is cryptic, and often in code of others.
+Checked before a command runs the robot, since the resulting error is cryptic and often raised in library code.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ..errors import ProjectError
 
-#: Libraries that robots, their tests or pyfrc import. They only count where they are installed.
+#: Libraries that robots, their tests or pyfrc import. Only installed ones are checked.
 LIBRARIES = frozenset(
     {
         *("commands2", "cscore", "cv2", "hal", "magicbot", "navx", "ntcore", "numpy", "pathplannerlib"),
@@ -25,7 +25,7 @@ LIBRARIES = frozenset(
     }
 )
 
-#: Modules of Python that no library needs: a robot may well have a `turtle.py` of its own.
+#: Standard modules that no library imports: a project may have a `turtle.py` of its own.
 RARELY_IMPORTED = frozenset(
     {
         *("aifc", "antigravity", "asynchat", "asyncore", "audioop", "cgi", "cgitb", "chunk", "colorsys", "crypt"),
@@ -49,19 +49,19 @@ class HiddenLibrary:
 
     @property
     def text(self) -> str:
-        """What is wrong with it."""
+        """The problem in one sentence."""
         if self.library in sys.builtin_module_names or FrozenImporter.find_spec(self.library) is not None:
             return f"{self.name} has the name of a library: import {self.library} finds that, never this file"
         return f"{self.name} hides a library: import {self.library} finds it instead"
 
     @property
     def remedy(self) -> str:
-        """What to do about it."""
+        """The remedy in one sentence."""
         return f"Give {self.name if self.name.endswith(f'{self.library}.py') else self.library + '/'} another name."
 
 
 def find_hidden_libraries(root: Path, main_file: Path | None = None) -> Iterator[HiddenLibrary]:
-    """The files of the project in `root` that hide a library, in the order of their names.
+    """Yield the files of the project in `root` that hide a library, sorted by name.
 
     :param main_file: the robot's file, which may have any name
     """
@@ -79,14 +79,14 @@ def refuse_hidden_libraries(root: Path, main_file: Path | None = None) -> None:
 
 
 def find_hidden_by_any_name(root: Path, main_file: Path | None = None) -> Iterator[HiddenLibrary]:
-    """Also those that hide an installed module of any other name; for the explanation of an import that failed."""
+    """Yield files that hide any installed module, to explain an import that failed."""
     for library, file in _modules_of(root):
         if file != main_file and library != "tests" and (_is_library(library, root) or _is_installed(library, root)):
             yield HiddenLibrary(file.relative_to(root).as_posix(), library)
 
 
 def _modules_of(root: Path) -> list[tuple[str, Path]]:
-    """The modules and packages in the project's directory. A directory without an `__init__.py` hides nothing."""
+    """Return the modules and packages in the project's directory; directories without `__init__.py` hide nothing."""
     found: dict[str, Path] = {}
     try:
         entries = sorted(root.iterdir())

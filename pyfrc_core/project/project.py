@@ -25,8 +25,8 @@ class Project:
     """One robot project.
 
     :param main_file: the file with the robot class, absolute
-    :param class_name: the robot class's name, where the user has said it
-    :param settings_file: the pyproject.toml that names the main file, where one does
+    :param class_name: the robot class's name, if the user has named it
+    :param settings_file: the pyproject.toml that names the main file, if one does
     """
 
     main_file: Path
@@ -44,7 +44,7 @@ class Project:
 
     @cached_property
     def pyproject(self) -> Path:
-        """The project's pyproject.toml: beside the code, or one above it as its tests may be."""
+        """The project's pyproject.toml: beside the code, or in the directory above, as tests may be."""
         if self.settings_file is not None:
             return self.settings_file
         beside, above = self.root / "pyproject.toml", self.root.parent / "pyproject.toml"
@@ -56,7 +56,7 @@ class Project:
 
     @cached_property
     def loaded_sim_config(self) -> LoadedSimConfig:
-        """``sim/config.json`` with its places; read once, when what has no effect in it is told as a warning."""
+        """``sim/config.json`` with the lines of its keys; reading it warns about keys without effect, once."""
         from ..config.sim_file import load_sim_config
 
         loaded = load_sim_config(self.root)
@@ -75,23 +75,23 @@ class Project:
     @property
     def game_specific_messages(self) -> tuple[str, ...]:
         """The messages that the field may send in autonomous; none in most seasons."""
-        # Most projects have no such file: asked first, since reading it takes pydantic.
+        # Most projects have no such file: checked first, since reading it imports pydantic.
         if not os.path.lexists(self.root / "sim" / "config.json"):
             return ()
         return self.sim_config.game_specific_messages
 
     @property
     def physics_file(self) -> Path:
-        """Where the project's physics module is, if it has one."""
+        """The path of the project's physics module, which may not exist."""
         return self.root / "physics.py"
 
     @property
     def test_directories(self) -> tuple[Path, Path]:
-        """Where tests may be, in the order in which they are looked for."""
+        """The possible directories of tests, in search order."""
         return self.root / "tests", self.root.parent / "tests"
 
     def find_tests(self) -> Path | None:
-        """The directory of the project's tests, if it has any test files."""
+        """Return the directory of the project's tests, or None if there are no test files."""
         for directory in self.test_directories:
             if any(directory.glob("**/test_*.py")) or any(directory.glob("**/*_test.py")):
                 return directory

@@ -1,4 +1,4 @@
-"""Which source files are the robot's own code: their `time.sleep` is robot time, their lines are shown first."""
+"""The source files of a robot project: their `time.sleep` is robot time, and errors show their lines first."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from types import FrameType, TracebackType
 
-# A virtual environment inside the project holds other people's code.
+# A virtual environment inside the project contains libraries.
 _NOT_OURS = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
 _PYFRC = tuple(
     str(Path(__file__).resolve().parents[2] / package) + os.sep for package in ("pyfrc_core", "pyfrc", "pyfrc_cli")
@@ -15,7 +15,7 @@ _PYFRC = tuple(
 
 
 def is_pyfrc(filename: str) -> bool:
-    """Whether this file is one of pyfrc's own."""
+    """Return whether this file is part of pyfrc."""
     return filename.startswith(_PYFRC)
 
 
@@ -32,7 +32,7 @@ class RobotFiles:
         self._known: dict[str, bool] = {}
 
     def is_robot_code(self, filename: str) -> bool:
-        """Whether this file is part of the robot program (its tests are not)."""
+        """Return whether this file is part of the robot program; its tests are not."""
         known = self._known.get(filename)
         if known is None:
             known = self.is_project_file(filename) and not filename.startswith((self._tests, self._tests_beside))
@@ -40,21 +40,22 @@ class RobotFiles:
         return known
 
     def is_project_file(self, filename: str) -> bool:
-        """Whether this file belongs to the project at all: the robot program or its tests."""
+        """Return whether this file belongs to the project: the robot program or its tests."""
         if any(part in filename for part in _NOT_OURS) or filename.startswith(_PYFRC):
             return False
         return filename.startswith((self.root, self._tests_beside))
 
     def relative(self, filename: str) -> str:
-        """The name to show to the user: relative to the project."""
+        """Return the file name to show to the user: relative to the project."""
         if filename.startswith(self._tests_beside):
             return str(Path("..", "tests", filename.removeprefix(self._tests_beside)))
         return filename.removeprefix(self.root)
 
     def innermost_line(self, traceback: TracebackType | None, tests: bool = True) -> str | None:
-        """``robot.py:12`` for the user's line nearest to where an exception was raised, if one took part.
+        """Return the user's line nearest to where an exception was raised, such as ``robot.py:12``, if there is one.
 
-        The robot's own line comes before a test's: the test only called it. Without `tests`, only the robot's counts.
+        A line of the robot program has precedence over a test's, which only called it. Without `tests`, lines of tests
+        are ignored.
         """
         robot_line = test_line = None
         while traceback is not None:
@@ -68,7 +69,7 @@ class RobotFiles:
         return robot_line or (test_line if tests else None)
 
     def line_of_thread(self, ident: int) -> str | None:
-        """``robot.py:12`` for the user's line that a running thread is at, if it is in the user's code."""
+        """Return the user's line that a running thread is at, such as ``robot.py:12``, if it is in the user's code."""
         frame = sys._current_frames().get(ident)
         while frame is not None:
             if (line := self.line_of_frame(frame)) is not None:
@@ -77,6 +78,6 @@ class RobotFiles:
         return None
 
     def line_of_frame(self, frame: FrameType) -> str | None:
-        """``robot.py:12`` for the user's line that a frame is at, if it is in the user's code."""
+        """Return the line that a frame is at, such as ``robot.py:12``, if it is in the user's code."""
         filename = frame.f_code.co_filename
         return f"{self.relative(filename)}:{frame.f_lineno}" if self.is_project_file(filename) else None

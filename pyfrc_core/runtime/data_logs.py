@@ -24,7 +24,7 @@ import wpilib
 import wpiutil
 from wpiutil.log import DataLog, IntegerLogEntry, StringLogEntry
 
-from ..disk_space import lack_of_room
+from ..disk_space import check_disk_space
 from . import own_process
 from .clock import KICKOFF, OBSERVE, PACKET_US, Clock, to_us
 
@@ -224,7 +224,7 @@ class DataLogs:
         log.writer.flush()
         if log.file == Path(os.devnull):
             return
-        if why := lack_of_room(log.file):
+        if why := check_disk_space(log.file):
             # WPILib would end the process when it closes the file.
             print(f"data log: {log.file} is not complete: {why}", file=sys.stderr)
             return

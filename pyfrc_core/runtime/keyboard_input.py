@@ -1,4 +1,4 @@
-"""``input()`` in robot code: refused with the line, since a robot has no keyboard and would wait for ever."""
+"""Refuse ``input()`` in robot code, with its line: a robot has no keyboard and would wait forever."""
 
 from __future__ import annotations
 

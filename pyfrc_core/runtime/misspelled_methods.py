@@ -1,8 +1,8 @@
-"""Methods that WPILib never calls because their name is not quite the one it calls: ``teleopPeriodc``.
+"""Find methods that WPILib never calls because of a misspelled name, such as ``teleopPeriodc``.
 
-WPILib calls the base class's empty method instead, so that the robot silently does nothing. Reported are only methods
-that resemble a method to be overridden in their own base class, that the class does not override as well, and that
-nothing in the project refers to.
+WPILib calls the base class's empty method instead, so the robot silently does nothing. A method is reported only if its
+name resembles an overridable method of the base class that the class does not override, and if nothing in the project
+refers to it.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ..project import Project
 
-#: The libraries whose classes have methods to be overridden.
+#: The libraries whose classes have overridable methods.
 _LIBRARIES = ("wpilib", "commands2", "magicbot")
 
 _MODES = re.compile(r"_?(robot|disabled|autonomous|teleop|test|simulation)(Init|Periodic|Exit)")
 
-#: Those besides the modes' that robot code overrides.
+#: Overridable methods besides those of the modes.
 _OVERRIDDEN = frozenset(
     {
         *("startCompetition", "endCompetition", "driverStationConnected", "createObjects", "onException"),
@@ -31,7 +31,7 @@ _OVERRIDDEN = frozenset(
     }
 )
 
-#: Other words for the modes: those of WPILib 2027, and abbreviations.
+#: Synonyms of the modes: the names of WPILib 2027, and abbreviations.
 _SYNONYMS = (
     (re.compile("^auto(n|nomus|nomos)?(?=init|periodic|exit)"), "autonomous"),
     (re.compile("^(teleoperated|tele)(?=init|periodic|exit)"), "teleop"),
@@ -54,13 +54,13 @@ class MisspelledMethod:
 
     @property
     def text(self) -> str:
-        """What is wrong, without its place."""
+        """The problem in one sentence, without its place."""
         season = " (snake_case names are those of WPILib 2027)" if "_" in self.name.strip("_") else ""
         return f"WPILib never calls {self.class_name}.{self.name}: did you mean {self.meant}?{season}"
 
     @property
     def remedy(self) -> str:
-        """What to do about it."""
+        """The remedy in one sentence."""
         return f"Rename it to {self.meant}."
 
     def __str__(self) -> str:
@@ -68,7 +68,7 @@ class MisspelledMethod:
 
 
 def find_misspelled_methods(project: Project) -> list[MisspelledMethod]:
-    """Those in all classes of the project's modules that have been imported, in the order of their lines."""
+    """Return the misspelled methods in the project's imported modules, sorted by line."""
     found = [each for cls in _classes(project) for each in _in_class(cls, project)]
     return sorted(set(found), key=lambda each: (each.where.rpartition(":")[0], int(each.where.rpartition(":")[2])))
 
@@ -102,7 +102,7 @@ def _in_class(cls: type, project: Project) -> Iterator[MisspelledMethod]:
 
 
 def _nearest(name: str, known: set[str]) -> str | None:
-    """The name that `name` is most probably meant to be."""
+    """Return the most probable correct name, if there is one."""
     plain = _plain(name)
     allowed = {each: 2 if len(each) >= 12 else 1 if len(each) >= 7 else 0 for each in known}
     distances = {each: _distance(plain, each.strip("_").lower()) for each in known}
@@ -111,7 +111,7 @@ def _nearest(name: str, known: set[str]) -> str | None:
 
 
 def _plain(name: str) -> str:
-    """The name in one spelling: ``teleop_periodic`` and ``TeleopPeriodic`` are the same."""
+    """Return the name in a normal form: ``teleop_periodic`` and ``TeleopPeriodic`` are the same."""
     plain = name.replace("_", "").lower()
     for synonym, word in _SYNONYMS:
         plain = synonym.sub(word, plain)
@@ -119,7 +119,7 @@ def _plain(name: str) -> str:
 
 
 def _distance(one: str, other: str) -> int:
-    """How many letters are to be left out, added, replaced, or swapped with the next, to make one of the other."""
+    """Return the edit distance: insertions, deletions, replacements, swaps; 3 if the lengths differ by more than 2."""
     if abs(len(one) - len(other)) > 2:
         return 3
     before: list[int] = []
@@ -135,7 +135,7 @@ def _distance(one: str, other: str) -> int:
 
 
 def _is_referred_to(name: str, project: Project) -> bool:
-    """Whether anything but its definition has this name: what the robot calls itself is no mistake."""
+    """Return whether the project uses this name anywhere besides its definition."""
     reference = re.compile(rf"(?<!def )\b{re.escape(name)}\b")
     for module in list(sys.modules.values()):
         file = getattr(module, "__file__", None) if isinstance(module, ModuleType) else None

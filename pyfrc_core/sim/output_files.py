@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from ..disk_space import lack_of_room
+from ..disk_space import check_disk_space
 from ..errors import UsageError
 from .engine.simulation import Simulation
 
@@ -39,7 +39,7 @@ class OutputFiles:
             return []
         written = [] if self._record is None else simulation.save_all(self._record)
         if self._wpilog is not None and _stamp(self._wpilog) != self._former_log:
-            if why := lack_of_room(self._wpilog):
+            if why := check_disk_space(self._wpilog):
                 raise UsageError(f"{self._wpilog} is not complete: {why}", remedy="Make room on the disk.")
             written.append(self._wpilog)
         if self._picture is not None:

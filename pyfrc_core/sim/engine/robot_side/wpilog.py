@@ -22,7 +22,7 @@ from wpiutil.log import (
     StringLogEntry,
 )
 
-from ....disk_space import lack_of_room
+from ....disk_space import check_disk_space
 from ....errors import UsageError
 
 _DRIVER_STATION = {
@@ -75,7 +75,7 @@ class WpiLog:
     def close(self) -> None:
         """Write what is still to be written."""
         self._log.flush()
-        if lack_of_room(self._file):
+        if check_disk_space(self._file):
             _UNFINISHED.append(self._log)
         else:
             self._log.stop()
