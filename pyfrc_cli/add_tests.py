@@ -1,4 +1,4 @@
-"""`pyfrc add-tests`."""
+"""The command `pyfrc add-tests`."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .verbosity import hint
 def command(directory: Path | None, main: Path | None, robot_class: str | None) -> None:
     """Add the ready-made tests to the robot project, as tests/pyfrc_test.py.
 
-    They run the robot through its modes and a practice match, to find out whether its code crashes. A file that is
-    there already is left alone.
+    They run the robot through its modes and a practice match, to check that its code does not crash. An existing file
+    is not changed.
 
     \b
-    Exit codes: 0 the file is there, written now or before, 2 wrong usage.
+    Exit codes: 0 the file exists, written now or before, 2 wrong usage.
     """
     from pyfrc_core.scaffold import add_tests
 
     file, written = add_tests(chosen_project(directory, main, robot_class), Path(__file__).parent)
-    hint(f"wrote {from_here(file)}" if written else f"left alone: {from_here(file)} (exists)")
+    hint(f"wrote {from_here(file)}" if written else f"unchanged: {from_here(file)} (exists)")
     hint("\nRun the tests with: pyfrc test")

@@ -1,4 +1,4 @@
-"""`pyfrc completion`, and what the scripts that it prints ask of `pyfrc` whenever somebody presses Tab."""
+"""The command `pyfrc completion`, and the completions that its scripts request when the user presses Tab."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Register-ArgumentCompleter -Native -CommandName %(prog_name)s -ScriptBlock {
 
 
 class PowerShellComplete(ShellComplete):
-    """Completion in PowerShell, which click does not know."""
+    """Completion in PowerShell, which click does not support."""
 
     name = "powershell"
     source_template = _POWERSHELL
@@ -42,26 +42,26 @@ class PowerShellComplete(ShellComplete):
         return words, incomplete
 
     def format_completion(self, item: CompletionItem) -> str:
-        # PowerShell shows the help, too, and takes no empty one.
+        # PowerShell also shows the help, which must not be empty.
         return f"{item.value}\t{item.help or item.value}"
 
     def complete(self) -> str:
-        """One completion a line; none for files, since PowerShell then completes those itself."""
+        """Return one completion per line; none for files, which PowerShell completes itself."""
         found = self.get_completions(*self.get_completion_args())
         return "\n".join(self.format_completion(item) for item in found if item.type == "plain")
 
 
-#: The shells, and where each finds the script at every start.
+#: The shells, and the line that loads the script at each start.
 SHELLS = {
     "bash": 'eval "$(pyfrc completion bash)"   in ~/.bashrc',
-    "zsh": 'eval "$(pyfrc completion zsh)"   in ~/.zshrc, behind compinit',
+    "zsh": 'eval "$(pyfrc completion zsh)"   in ~/.zshrc, after compinit',
     "fish": "pyfrc completion fish | source   in ~/.config/fish/config.fish",
     "powershell": "pyfrc completion powershell | Out-String | Invoke-Expression   in your $PROFILE",
 }
 
-_HELP = f"""Print the script that has SHELL complete pyfrc's commands and options when you press Tab.
+_HELP = f"""Print a script for SHELL that completes pyfrc's commands and options when you press Tab.
 
-Have it read whenever the shell starts, by this line:
+To load it whenever the shell starts, add its line:
 
 \b
 {chr(10).join(SHELLS.values())}

@@ -1,4 +1,4 @@
-"""`pyfrc config`."""
+"""The command `pyfrc config`."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def command() -> None:
 
 @command.command("check", context_settings=_HELP)
 @project_options
-@click.option("--strict", is_flag=True, help="Let warnings fail the command, as for continuous integration.")
+@click.option("--strict", is_flag=True, help="Fail on warnings, for example in continuous integration.")
 def check(directory: Path | None, main: Path | None, robot_class: str | None, strict: bool) -> None:
-    """Say what is wrong with sim/config.json, which of its keys have no effect, and what is hard to believe.
+    """Check sim/config.json for mistakes, keys without effect, and implausible values.
 
     \b
-    Exit codes: 0 nothing is wrong, 1 there are warnings (with --strict), 2 something is wrong.
+    Exit codes: 0 no mistakes, 1 there are warnings (with --strict), 2 there are mistakes.
     """
     from pyfrc_core.config.findings import MOST_TOLD
     from pyfrc_core.wording import counted
@@ -39,7 +39,7 @@ def check(directory: Path | None, main: Path | None, robot_class: str | None, st
     warnings = [*loaded.warnings, *loaded.lint()]
     for warning in warnings:
         click.secho(f"warning: {warning}", fg="yellow")
-    what = "no mistakes" if loaded.text else "there is no such file, so everything is at its default"
+    what = "no mistakes" if loaded.text else "the file does not exist, so all values are defaults"
     if warnings:
         many = len(loaded.warnings) > MOST_TOLD
         what += f", but {f'more than {MOST_TOLD} warnings' if many else counted(len(warnings), 'warning')}"
@@ -49,12 +49,12 @@ def check(directory: Path | None, main: Path | None, robot_class: str | None, st
 
 @command.command("show", context_settings=_HELP)
 @project_options
-@click.option("--json", "as_json", is_flag=True, help="As JSON, which sim/config.json itself may hold.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, in the format of sim/config.json.")
 def show(directory: Path | None, main: Path | None, robot_class: str | None, as_json: bool) -> None:
-    """Show the values in effect, and where each comes from.
+    """Show all values, and where each comes from.
 
     \b
-    Exit codes: 0 shown, 2 something is wrong in the file, or there is no project.
+    Exit codes: 0 shown, 2 the file has mistakes, or there is no project.
     """
     loaded = _loaded(directory, main, robot_class)
     if as_json:
@@ -68,7 +68,7 @@ def show(directory: Path | None, main: Path | None, robot_class: str | None, as_
 
 @command.command("schema", context_settings=_HELP)
 def schema() -> None:
-    """Print the JSON Schema of sim/config.json, for editors to complete from.
+    """Print the JSON Schema of sim/config.json, for completion in editors.
 
     Write it to sim/config.schema.json, and put "$schema": "config.schema.json" at the top of sim/config.json.
 

@@ -1,4 +1,4 @@
-"""`pyfrc coverage`."""
+"""The command `pyfrc coverage`."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from .wrapping import WRAPPING, wrapped_command
 
 
 @click.command("coverage", context_settings=WRAPPING)
-@click.option("--html", metavar="DIR", type=click.Path(path_type=Path), help="Write the report as web pages, too.")
-@click.option("--xml", metavar="FILE", type=click.Path(path_type=Path), help="Write it as Cobertura XML, too.")
+@click.option("--html", metavar="DIR", type=click.Path(path_type=Path), help="Also write the report as web pages.")
+@click.option("--xml", metavar="FILE", type=click.Path(path_type=Path), help="Also write it as Cobertura XML.")
 @click.option(
-    "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Write it as coverage.py's JSON, too."
+    "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Also write it as coverage.py's JSON."
 )
 @click.option(
     "--fail-under",
@@ -35,7 +35,7 @@ def command(
 ) -> None:
     """Measure which lines of the robot project run in another command: test, sim, fuzz or replay.
 
-    The options of this command stand before that one's name: pyfrc coverage --html htmlcov test -j 2
+    Write this command's options before the other command's name: pyfrc coverage --html htmlcov test -j 2
 
     \b
     Exit codes: the other command's, if it failed; else

@@ -1,4 +1,4 @@
-"""`pyfrc fuzz`."""
+"""The command `pyfrc fuzz`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _DEFAULT_SECONDS = 60.0
 
-#: Seconds between two lines about the progress, on a terminal and elsewhere.
+#: Seconds between two progress lines, on a terminal and elsewhere.
 _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
 
 
@@ -30,23 +30,23 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     "seconds",
     type=click.FloatRange(min=0, min_open=True),
     metavar="SECONDS",
-    help=f"Begin no more matches after so long. Default: {_DEFAULT_SECONDS:g}.",
+    help=f"Start no more matches after this time. Default: {_DEFAULT_SECONDS:g}.",
 )
-@click.option("--runs", type=click.IntRange(min=1), metavar="N", help="Play so many matches instead.")
+@click.option("--runs", type=click.IntRange(min=1), metavar="N", help="Play this many matches instead.")
 @click.option(
     "--seed",
     type=click.IntRange(min=0),
     metavar="N",
     default=0,
     show_default=True,
-    help="What all chance comes from: with --runs, the same seed does the same.",
+    help="Random seed: with --runs, the same seed repeats the same campaign.",
 )
 @click.option(
     "-j",
     "--jobs",
     type=click.IntRange(min=1),
     metavar="N",
-    help="How many robots run at the same time. Default: as many as there are processors.",
+    help="How many matches run at the same time. Default: the number of processors.",
 )
 def command(
     directory: Path | None,
@@ -57,46 +57,46 @@ def command(
     seed: int,
     jobs: int | None,
 ) -> None:
-    """Play many matches with everything mashed, and keep the shortest way to each failure.
+    """Play many matches with random inputs, and save the shortest script of each failure.
 
-    What is found is kept as tests/fuzz/NAME.jsonl, for pyfrc replay, and tests/test_fuzz_regressions.py fails until it
+    A script is saved as tests/fuzz/NAME.jsonl, for pyfrc replay; tests/test_fuzz_regressions.py fails until the robot
     is repaired.
 
     \b
-    Exit codes: 0 nothing was found; 1 something was found, or failed as it did before; 2 wrong usage, no such project,
-    or interrupted before anything was found.
+    Exit codes: 0 nothing was found; 1 a failure was found, or an earlier one is still there; 2 wrong usage, no such
+    project, or interrupted before anything was found.
     """
     if seconds is not None and runs is not None:
-        raise click.UsageError("--time and --runs exclude each other.")
+        raise click.UsageError("--time and --runs are mutually exclusive.")
     from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
     from pyfrc_core.processors import usable_processors
 
     project = chosen_project(directory, main, robot_class)
     if seconds is None and runs is None:
         seconds = _DEFAULT_SECONDS
-    teller = _Teller(verbosity().quiet)
-    campaign = run_campaign(project, CampaignOptions(seed, runs, seconds, jobs or usable_processors()), teller)
-    teller.end(campaign.progress)
+    printer = _ProgressPrinter(verbosity().quiet)
+    campaign = run_campaign(project, CampaignOptions(seed, runs, seconds, jobs or usable_processors()), printer)
+    printer.end(campaign.progress)
     if campaign.interrupted:
         click.echo("interrupted")
-    if not campaign.found:
+    if not campaign.findings:
         hint("Nothing was found.")
-    sys.exit(1 if campaign.found else 2 if campaign.interrupted else 0)
+    sys.exit(1 if campaign.findings else 2 if campaign.interrupted else 0)
 
 
-class _Teller:
-    """Tells how it goes: in one line that changes, or, where that cannot be, in one now and then."""
+class _ProgressPrinter:
+    """Prints the progress: on a terminal in one line that is rewritten, elsewhere in a new line now and then."""
 
     def __init__(self, quiet: bool) -> None:
         self._quiet = quiet
         self._on_terminal = sys.stdout.isatty() and not quiet
-        self._told = time.monotonic()
+        self._printed = time.monotonic()
 
     def on_progress(self, progress: CampaignProgress) -> None:
         now = time.monotonic()
-        if self._quiet or now - self._told < (_ON_TERMINAL if self._on_terminal else _ELSEWHERE):
+        if self._quiet or now - self._printed < (_ON_TERMINAL if self._on_terminal else _ELSEWHERE):
             return
-        self._told = now
+        self._printed = now
         if self._on_terminal:
             click.echo(f"\r\033[K{_line(progress)}", nl=False)
         else:
@@ -105,15 +105,15 @@ class _Teller:
     def on_found(self, found: FuzzFinding) -> None:
         self._clear()
         click.secho(found.failure.text, fg="red")
-        if found.kept is None:
-            click.echo("  This did not happen again when it was replayed: nothing is kept.")
+        if found.entry is None:
+            click.echo("  This failure did not repeat in a replay, so no script was saved.")
         elif found.known:
-            click.echo(f"  not repaired yet: {found.kept.shown}")
+            click.echo(f"  still fails: {found.entry.display_path}")
         else:
             for line in found.story[:-1]:
                 click.echo(f"  {line}")
             hint(f"  {counted(found.writes, 'write')}, {counted(found.runs, 'run')} of the robot to find them")
-            click.echo(f"  pyfrc replay {found.kept.shown}")
+            click.echo(f"  pyfrc replay {found.entry.display_path}")
 
     def end(self, progress: CampaignProgress) -> None:
         self._clear()

@@ -1,4 +1,4 @@
-"""`pyfrc init`."""
+"""The command `pyfrc init`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .verbosity import hint
 
 
 def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) -> None:
-    """List the templates, and end."""
+    """List the templates and exit."""
     if not wanted or ctx.resilient_parsing:
         return
     width = max(map(len, TEMPLATES))
@@ -33,30 +33,30 @@ def _show_templates(ctx: click.Context, param: click.Parameter, wanted: bool) ->
     type=click.Choice(list(TEMPLATES)),
     default=DEFAULT,
     show_default=True,
-    help="What kind of robot it is.",
+    help="The kind of robot.",
 )
-@click.option("--team", type=int, metavar="N", help="Your team's number.")
+@click.option("--team", type=int, metavar="N", help="Your team number.")
 @click.option(
     "--list",
     is_flag=True,
     is_eager=True,
     expose_value=False,
     callback=_show_templates,
-    help="Show the templates, and what each is.",
+    help="Show the templates and their descriptions.",
 )
 def command(directory: Path, template: str, team: int | None) -> None:
-    """Make a new robot project in DIRECTORY (default: here), with tests and a simulation.
+    """Create a new robot project in DIRECTORY (default: the current one), with tests and a simulation.
 
-    Nothing that is there is overwritten.
+    Existing files are not changed.
 
     \b
-    Exit codes: 0 the project is there, 1 it cannot be written, 2 wrong usage.
+    Exit codes: 0 the project was created, 1 it cannot be written, 2 wrong usage.
     """
     for file in create_project(directory, Path(__file__).parent, template, team):
         hint(f"wrote {directory / file}")
     place = "" if directory == Path() else f"cd {shlex.quote(str(directory))} && "
     if missing := TEMPLATES[template].missing:
-        hint(f"\nIt needs what is not installed here: {', '.join(missing)}")
-        hint(f"Install it with: {place}python -m pip install -r requirements.txt")
+        hint(f"\nIt needs packages that are not installed: {', '.join(missing)}")
+        hint(f"Install them with: {place}python -m pip install -r requirements.txt")
     hint(f"\nTest it with: {place}pyfrc test")
     hint(f"Drive it with: {place}pyfrc sim")

@@ -1,4 +1,4 @@
-"""The command line: one group, whose commands are imported only when they are called for."""
+"""The command line: a group of commands, each imported only when it is used."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .verbosity import QUIET, VERBOSE, Verbosity, add_options
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-#: Each command, its module, and its line in the help: known here so that the help needs to import none of them.
+#: Each command's module and help text, listed here so that the help imports none of them.
 COMMANDS = {
-    "init": ("pyfrc_cli.init", "Make a new robot project from a template."),
-    "fuzz": ("pyfrc_cli.fuzz", "Mash the robot in many matches, and keep the shortest way to each failure."),
-    "replay": ("pyfrc_cli.replay", "Run the robot as a recorded input script says."),
+    "init": ("pyfrc_cli.init", "Create a new robot project from a template."),
+    "fuzz": ("pyfrc_cli.fuzz", "Play matches with random inputs, and save the shortest script of each failure."),
+    "replay": ("pyfrc_cli.replay", "Run the robot with the inputs of a recorded script."),
     "sim": ("pyfrc_cli.sim", "Drive the robot on the desk: simulate it, in a window or without one."),
     "test": ("pyfrc_cli.test", "Run the robot project's tests."),
     "coverage": ("pyfrc_cli.coverage", "Measure which lines of the robot run in another command."),
@@ -34,19 +34,19 @@ COMMANDS = {
     "add-tests": ("pyfrc_cli.add_tests", "Add the ready-made tests to the robot project."),
     "create-tests": ("pyfrc_cli.add_tests", "The older name of: add-tests."),
     "create-physics": ("pyfrc_cli.create_physics", "Write a physics.py and sim/config.json that fit the robot."),
-    "deploy": ("pyfrc_cli.deploy", "Bring the robot program onto the robot, and start it there."),
-    "deploy-info": ("pyfrc_cli.deploy_info", "Show what is on the robot, and which earlier releases."),
+    "deploy": ("pyfrc_cli.deploy", "Deploy the robot program, and start it."),
+    "deploy-info": ("pyfrc_cli.deploy_info", "Show the program on the robot and its earlier releases."),
     "undeploy": ("pyfrc_cli.undeploy", "Stop the robot program and remove it from the robot."),
     "console": ("pyfrc_cli.console", "Show what the robot program prints."),
-    "virtual-robot": ("pyfrc_cli.virtual_robot", "Start a robot on this computer, to deploy to."),
+    "virtual-robot": ("pyfrc_cli.virtual_robot", "Start a virtual robot on this computer, to deploy to."),
     "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
-    "doctor": ("pyfrc_cli.doctor", "Find out what is missing here, or does not fit together."),
-    "completion": ("pyfrc_cli.completion", "Print the script for completion in your shell."),
+    "doctor": ("pyfrc_cli.doctor", "Find missing packages, wrong settings and connection problems."),
+    "completion": ("pyfrc_cli.completion", "Print the completion script for your shell."),
 }
 
 
 class Commands(click.Group):
-    """The suite's commands, each loaded when it is used."""
+    """The group of all commands; each is imported when it is used."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(COMMANDS)
@@ -61,7 +61,7 @@ class Commands(click.Group):
             close = difflib.get_close_matches(args[0], COMMANDS, n=1)
             hint = f" Did you mean {close[0]!r}?" if close else ""
             if args[0].endswith(".py"):
-                hint = " pyfrc finds the robot's file by itself, as in: pyfrc sim"
+                hint = " pyfrc finds the robot's file by itself, for example: pyfrc sim"
             raise click.UsageError(f"There is no command {args[0]!r}.{hint}", ctx)
         return super().resolve_command(ctx, args)
 
@@ -77,7 +77,7 @@ class Commands(click.Group):
 
 
 def loaded(name: str) -> click.Command:
-    """One of the commands."""
+    """Import and return a command."""
     command: click.Command = importlib.import_module(COMMANDS[name][0]).command
     group = command.commands.values() if isinstance(command, click.Group) else ()
     for each in (command, *group):
@@ -92,18 +92,18 @@ def cli() -> None:
 
 
 def run() -> None:
-    """Run the command line; errors that pyfrc knows are told in a sentence, with exit code 1 or 2."""
+    """Run the command line. An error that pyfrc knows is shown as one sentence, with exit code 1 or 2."""
     _escape_unknown_letters()
-    told = Verbosity()
-    # None: by whether it goes to a terminal.
+    chosen = Verbosity()
+    # None: colors only on a terminal.
     color = False if os.environ.get("NO_COLOR") else None
     if COMPLETE_VARIABLE in os.environ:
-        from . import completion  # noqa: F401 - it knows a shell more than click does
+        from . import completion  # noqa: F401 - it registers PowerShell
     from pyfrc_core.errors import PyfrcError
     from pyfrc_core.terminal_text import visible
 
     try:
-        sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color, obj=told))
+        sys.exit(cli.main(prog_name="pyfrc", standalone_mode=False, color=color, obj=chosen))
     except click.exceptions.Abort:
         click.secho("interrupted", err=True)
         sys.exit(2)
@@ -116,31 +116,31 @@ def run() -> None:
             click.echo(remedy, err=True)
         sys.exit(error.exit_code)
     except (PyfrcError, OSError) as error:
-        if told.verbose:
+        if chosen.verbose:
             click.echo(visible(traceback.format_exc()), err=True, nl=False)
         else:
-            click.secho(f"error: {visible(_told(error))}", fg="red", err=True, color=color)
+            click.secho(f"error: {visible(_message(error))}", fg="red", err=True, color=color)
         sys.exit(getattr(error, "exit_code", 1))
 
 
 def _escape_unknown_letters() -> None:
-    """Have letters that the output's encoding lacks written as escapes, where Python would raise an exception."""
+    """Write letters that the output's encoding lacks as escapes, where Python would raise an exception."""
     if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
         sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _remedy(error: click.ClickException) -> str:
-    """What somebody meant who is used to another tool."""
+    """Return advice for users who are used to another tool."""
     command = error.ctx.info_name if isinstance(error, click.UsageError) and error.ctx is not None else None
     if isinstance(error, click.NoSuchOption) and command == "test":
-        return "Options of pytest stand behind --, as in: pyfrc test -- -k drive"
+        return "Write options of pytest after --, for example: pyfrc test -- -k drive"
     if command is not None and re.search(r"unexpected extra arguments? \(.*\.py\b", error.message):
-        return "pyfrc finds the robot's file; another than robot.py is named with --main FILE."
+        return "pyfrc finds the robot's file. Use --main FILE if it is not called robot.py."
     return ""
 
 
-def _told(error: Exception) -> str:
-    """The system's errors without their number: the file, and what is wrong with it."""
+def _message(error: Exception) -> str:
+    """Return the message; for an error of the operating system the file and the reason, without the error number."""
     if isinstance(error, OSError) and error.filename is not None and error.strerror:
         return f"{error.filename}: {error.strerror}"
     return str(error)

@@ -1,4 +1,4 @@
-"""`pyfrc profile`."""
+"""The command `pyfrc profile`."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from .wrapping import WRAPPING, wrapped_command
     "--outfile",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Have cProfile count every call, too, and write this for pstats and its like. Costs much more.",
+    help="Also profile every call with cProfile, and write its file for pstats. Much slower.",
 )
 @click.option(
     "--html",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help=f'Draw where the time went as a web page, with: pip install "{requirement("profile")}"',
+    help=f'Draw a flame graph as a web page. Needs: pip install "{requirement("profile")}"',
 )
 @click.option(
-    "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Write all that was measured as JSON."
+    "--json", "as_json", metavar="FILE", type=click.Path(path_type=Path), help="Write all measurements as JSON."
 )
 @click.option(
     "--top",
@@ -50,9 +50,9 @@ def command(
 ) -> None:
     """Measure how long the robot's functions take in another command: test, sim, fuzz or replay.
 
-    Of each function that WPILib, commands2 or magicbot calls: how its times are distributed; when and where the loop
-    overran its period, and because of what; on which lines the time went. The options of this command stand before
-    the other one's name: pyfrc profile --json profile.json test -j 1
+    Shows for each function that WPILib, commands2 or magicbot calls how its times are distributed; when and where the
+    loop overran its period, and which function caused it; and which lines took the time. Write this command's options
+    before the other command's name: pyfrc profile --json profile.json test -j 1
 
     \b
     Exit codes: the other command's; 2 wrong usage.

@@ -1,4 +1,4 @@
-"""The options that say which robot project a command is about; the same for every command."""
+"""The options that choose the robot project; the same for every command."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def project_options(command: Function) -> Function:
-    """Adds ``--project``, ``--main`` and ``--robot-class``."""
+    """Add ``--project``, ``--main`` and ``--robot-class``."""
     for option in (
         click.option(
             "--robot-class",
             metavar="NAME",
-            help="The robot class, when the file has several.",
+            help="The robot class, if the file has several.",
         ),
         click.option(
             "--main",
             metavar="FILE",
             type=click.Path(path_type=Path),
-            help="The file with your robot class, when it is not called robot.py.",
+            help="The file with your robot class, if it is not called robot.py.",
         ),
         click.option(
             "--project",
             "directory",
             metavar="DIR",
             type=click.Path(path_type=Path),
-            help="Your robot project. Default: the current directory, or the nearest above it with a robot.py.",
+            help="The robot project. Default: the current directory, or the nearest one above it with a robot.py.",
         ),
     ):
         command = option(command)
@@ -42,9 +42,9 @@ def project_options(command: Function) -> Function:
 
 
 def chosen_project(directory: Path | None, main: Path | None, robot_class: str | None) -> Project:
-    """The project that the options choose.
+    """Return the project that the options choose.
 
-    :raises ProjectError: also when one of its files hides a library
+    :raises ProjectError: when there is none, or one of its files hides a library
     """
     from pyfrc_core.project import find_project
     from pyfrc_core.project.hidden_libraries import refuse_hidden_libraries
@@ -55,7 +55,7 @@ def chosen_project(directory: Path | None, main: Path | None, robot_class: str |
 
 
 def from_here(file: Path) -> str:
-    """`file` as the user's shell finds it."""
+    """Return the path relative to the current directory, where that is possible."""
     try:
         return Path(os.path.relpath(file)).as_posix()
     except ValueError:  # on Windows: on another drive

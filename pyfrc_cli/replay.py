@@ -1,4 +1,4 @@
-"""`pyfrc replay`."""
+"""The command `pyfrc replay`."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from .verbosity import hint
     "--trace",
     metavar="FILE",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="Write what the robot does, as JSON lines with a hash at the end.",
+    help="Write a trace of the robot, as JSON lines with a hash at the end.",
 )
 @click.option(
     "--picture",
     metavar="FILE",
     type=click.Path(path_type=Path, dir_okay=False),
-    help="Draw the driven path on the field, such as path.png.",
+    help="Draw the robot's path on the field, for example to path.png.",
 )
 @click.argument("file", type=click.Path(path_type=Path))
 def command(
@@ -37,11 +37,11 @@ def command(
     picture: Path | None,
     file: Path,
 ) -> None:
-    """Run the robot as an input script says: one that pyfrc fuzz or pyfrc test --record has written.
+    """Run the robot with the inputs of a script that pyfrc fuzz or pyfrc test --record has written.
 
     \b
-    Exit codes: 0 it did what it did when recorded, or the script does not tell;
-    1 it did something else, or its code failed; 2 wrong usage, or no such script.
+    Exit codes: 0 the trace equals the recorded one, or none was recorded;
+    1 it differs, or the robot's code failed; 2 wrong usage, or no such script.
     """
     from pyfrc_core.replay import replay
 
@@ -51,16 +51,16 @@ def command(
 
         draw_script(project, file, picture, until)
         hint(f"wrote {picture}")
-    replayed = replay(project, file, until=until, trace=trace)
-    hint(f"replayed {replayed.seconds:.2f} s of robot time")
-    if replayed.failure is not None:
-        click.secho(f"then {replayed.failure}", fg="red")
-    if replayed.difference is not None:
-        where = replayed.difference
-        click.secho(f"It differs from the recorded trace, first at {where.now:.2f} s:", fg="red")
+    result = replay(project, file, until=until, trace=trace)
+    hint(f"replayed {result.seconds:.2f} s of robot time")
+    if result.failure is not None:
+        click.secho(f"then {result.failure}", fg="red")
+    if result.difference is not None:
+        where = result.difference
+        click.secho(f"The trace differs from the recorded one, first at {where.now:.2f} s:", fg="red")
         click.echo(f"  {where.path} was {json.dumps(where.recorded)}, is {json.dumps(where.replayed)}")
-    elif replayed.equal:
+    elif result.equal:
         hint("The trace equals the recorded one.")
-    elif replayed.equal is not None:
+    elif result.equal is not None:
         click.echo("The trace differs from the recorded one.")
-    sys.exit(1 if replayed.failure is not None or replayed.difference is not None or replayed.equal is False else 0)
+    sys.exit(1 if result.failure is not None or result.difference is not None or result.equal is False else 0)

@@ -1,7 +1,7 @@
-"""Our commands as plug-ins of the `robotpy` command, where that is installed: `robotpy test` is `pyfrc test`.
+"""pyfrc's commands as plug-ins of the `robotpy` command, if that is installed: `robotpy test` is `pyfrc test`.
 
-It finds them by their entry points. They hand on all that stands behind their name as it is, so that a command has the
-same options, and the same exit codes, whichever way it is called.
+`robotpy` finds them by their entry points. They pass on all arguments after their name, so that a command has the same
+options and exit codes either way.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ from collections.abc import Sequence
 from pathlib import Path
 
 
-class _HandedOn:
-    """A plug-in that becomes one of our commands."""
+class _PassThrough:
+    """A plug-in that runs one of pyfrc's commands."""
 
     name: str
 
     def __init__(self, parser: argparse.ArgumentParser) -> None:
-        # So that argparse takes nothing for an option of its own, not even -h: the command has its own help.
+        # argparse must not parse any option, not even -h: the command has its own help.
         parser.prefix_chars = "\0"
-        parser.add_argument("arguments", nargs=argparse.REMAINDER, help=f"as of: pyfrc {self.name}")
+        parser.add_argument("arguments", nargs=argparse.REMAINDER, help=f"the same as for: pyfrc {self.name}")
 
     def run(self, main_file: Path, arguments: Sequence[str]) -> int:
-        """Run the command on the robot program `main_file`; its exit code."""
+        """Run the command on the robot program `main_file`; return its exit code."""
         from .start import become
 
         words = command_line(self.name, main_file, arguments)
@@ -32,51 +32,52 @@ class _HandedOn:
         return become([sys.executable, "-m", "pyfrc", *words])
 
 
-class Test(_HandedOn):
+class Test(_PassThrough):
     """Run the robot project's tests."""
 
     name = "test"
     __test__ = False  # pytest: no test class
 
 
-class Sim(_HandedOn):
-    """Drive the robot on the desk."""
+class Sim(_PassThrough):
+    """Simulate the robot."""
 
     name = "sim"
 
 
-class Coverage(_HandedOn):
+class Coverage(_PassThrough):
     """Measure which lines of the robot run in another command."""
 
     name = "coverage"
 
 
-class Profiler(_HandedOn):
+class Profiler(_PassThrough):
     """Measure how long the robot's functions take in another command."""
 
     name = "profiler"
 
 
-class CreatePhysics(_HandedOn):
+class CreatePhysics(_PassThrough):
     """Write a physics.py and sim/config.json that fit the robot."""
 
     name = "create-physics"
 
 
-class AddTests(_HandedOn):
+class AddTests(_PassThrough):
     """Add the ready-made tests to the robot project."""
 
     name = "add-tests"
 
 
 def command_line(name: str, main_file: Path, arguments: Sequence[str]) -> list[str]:
-    """What to call `pyfrc` with.
+    """Return the arguments for `pyfrc`.
 
-    :param main_file: the robot program that robotpy means: ``robot.py`` here where the user has named none
+    :param main_file: the robot program; robotpy passes ``robot.py`` in the current directory when the user has named
+        none
     """
     from pyfrc_core.project import MAIN_FILE
 
-    # A project may name another main file itself: so it is named as a project where it can be.
+    # The project's settings may name another main file, so the project is passed where possible.
     usual = main_file.name == MAIN_FILE
     which = ["--project", str(main_file.parent)] if usual else ["--main", str(main_file)]
     at = _place_of_options(name, arguments)
@@ -84,7 +85,10 @@ def command_line(name: str, main_file: Path, arguments: Sequence[str]) -> list[s
 
 
 def _place_of_options(name: str, arguments: Sequence[str]) -> int:
-    """Where a project's options stand; those of a command that wraps another belong to that one."""
+    """Return the index for the project's options.
+
+    For a command that wraps another, they belong to the wrapped command.
+    """
     if name not in ("coverage", "profiler"):
         return 0
     from .main import cli

@@ -1,4 +1,4 @@
-"""`pyfrc test`."""
+"""The command `pyfrc test`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .verbosity import verbosity
 
 
 def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int | Literal["auto"] | None:
-    """A number of processes, or ``auto``."""
+    """Parse a number of processes, or ``auto``."""
     if value is None or value == "auto":
         return value  # type: ignore[return-value]
     if not value.isdecimal() or int(value) < 1:
@@ -25,27 +25,27 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
 @project_options
 @click.option("--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own.")
 @click.option(
-    "-j", "--jobs", callback=_jobs, metavar="N", help="How many tests run at a time. Default: auto, one a core."
+    "-j", "--jobs", callback=_jobs, metavar="N", help="How many tests run at a time. Default: auto, one per core."
 )
-@click.option("--seed", type=click.IntRange(min=0), help="What the random generators start from. Default: 0.")
+@click.option("--seed", type=click.IntRange(min=0), help="Random seed. Default: 0.")
 @click.option(
     "--isolation",
     type=click.Choice(["auto", "fork", "spawn", "none"]),
-    help="What each test that uses the robot runs in: a fork of this process, a new one, or this one.",
+    help="Where each test that uses the robot runs: in a fork of this process, a new process, or this one.",
 )
-@click.option("--no-isolation", is_flag=True, help="Run all tests in one process: --isolation none.")
+@click.option("--no-isolation", is_flag=True, help="Run all tests in one process, like --isolation none.")
 @click.option("--coverage", is_flag=True, help="Measure which lines of the project the tests run, and report them.")
 @click.option(
     "--coverage-html",
     metavar="DIR",
     type=click.Path(path_type=Path),
-    help="Write the report as web pages, too.",
+    help="Also write the report as web pages.",
 )
 @click.option(
     "--coverage-xml",
     metavar="FILE",
     type=click.Path(path_type=Path),
-    help="Write the report as Cobertura XML, too.",
+    help="Also write the report as Cobertura XML.",
 )
 @click.option(
     "--fail-under",
@@ -57,13 +57,13 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
     "--trace",
     metavar="DIR",
     type=click.Path(path_type=Path),
-    help="Write what the robot did in each test, as JSON lines with a hash at the end.",
+    help="Write a trace of the robot in each test, as JSON lines with a hash at the end.",
 )
 @click.option(
     "--record",
     metavar="DIR",
     type=click.Path(path_type=Path),
-    help="Write what the robot was told in each test, for: pyfrc replay",
+    help="Record the robot's inputs in each test, for pyfrc replay.",
 )
 @click.argument("pytest_args", nargs=-1, type=click.UNPROCESSED)
 def command(
@@ -85,29 +85,29 @@ def command(
 ) -> None:
     """Run the robot project's tests, found in its directory tests/ or in ../tests.
 
-    What stands behind -- is passed on to pytest, as in: pyfrc test -- -x -k drive. So are -v and -q.
+    Anything after -- is passed on to pytest, for example: pyfrc test -- -x -k drive. So are -v and -q.
 
     \b
     Exit codes: 0 all passed, 1 a test failed or the robot's code did,
     2 wrong usage, 5 no test was selected.
     """
     if no_isolation and isolation not in (None, "none"):
-        raise click.UsageError(f"--no-isolation and --isolation {isolation} cannot both be.")
+        raise click.UsageError(f"--no-isolation and --isolation {isolation} are mutually exclusive.")
     project = chosen_project(directory, main, robot_class)
-    told = verbosity()
-    as_pytest_has_it = ["-q"] * told.quiet + ["-v"] * told.verbose
+    chosen = verbosity()
+    pytest_verbosity = ["-q"] * chosen.quiet + ["-v"] * chosen.verbose
     from pyfrc_core.measure.coverage import CoverageOptions, measuring
 
-    wanted = CoverageOptions(
-        # Asking for a report of it asks for coverage.
+    coverage_options = CoverageOptions(
+        # The options for reports imply --coverage.
         enabled=coverage or bool(coverage_html or coverage_xml) or fail_under is not None,
         html=coverage_html,
         xml=coverage_xml,
         fail_under=fail_under,
-        quiet=told.quiet,
+        quiet=chosen.quiet,
     )
-    with measuring(project, wanted) as measured:
-        # Imported within, for the robot's modules to be imported while their lines are counted.
+    with measuring(project, coverage_options) as measured:
+        # Imported here, so that lines of the robot's modules are counted while they are imported.
         from pyfrc_core.test_support.options import TestOptions
         from pyfrc_core.test_support.run_tests import run_tests
 
@@ -119,5 +119,5 @@ def command(
             trace_directory=trace,
             record_directory=record,
         )
-        status = run_tests(project, options, builtin=builtin, pytest_args=[*as_pytest_has_it, *pytest_args])
+        status = run_tests(project, options, builtin=builtin, pytest_args=[*pytest_verbosity, *pytest_args])
     sys.exit(status or measured.status)

@@ -1,4 +1,4 @@
-"""How much commands tell: `-v` and `-q`, which mean the same before a command's name and behind it."""
+"""The options `-v` and `-q`, which have the same meaning before and after a command's name."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import click
 
 @dataclass
 class Verbosity:
-    """What the user has said about it.
+    """How much to print.
 
-    :param verbose: the traceback of an error is told, too
-    :param quiet:   what was asked for, warnings and errors are told, nothing else
+    :param verbose: also print the traceback of an error
+    :param quiet: print only results, warnings and errors
     """
 
     verbose: bool = False
@@ -21,18 +21,18 @@ class Verbosity:
 
 
 def verbosity() -> Verbosity:
-    """That of the command which is running."""
+    """Return the verbosity of the command that is running."""
     return _of(click.get_current_context())
 
 
 def hint(text: str, **style: Any) -> None:
-    """Print what somebody who wants it quiet does not want to know: progress, what to do next, praise."""
+    """Print progress or advice, unless the user wants it quiet."""
     if not verbosity().quiet:
         click.secho(text, **style)
 
 
 def add_options(command: click.Command) -> None:
-    """Give a command `-v` and `-q`, once."""
+    """Add `-v` and `-q` to a command that does not have them."""
     if QUIET not in command.params:
         command.params += [VERBOSE, QUIET]
 
@@ -45,18 +45,18 @@ def _of(context: click.Context) -> Verbosity:
 def _choose(context: click.Context, option: click.Parameter, chosen: bool) -> None:
     if not chosen or context.resilient_parsing:
         return
-    said = _of(context)
-    setattr(said, str(option.name), True)
-    if said.verbose and said.quiet:
-        raise click.UsageError("--verbose and --quiet cannot both be.", context)
+    chosen_verbosity = _of(context)
+    setattr(chosen_verbosity, str(option.name), True)
+    if chosen_verbosity.verbose and chosen_verbosity.quiet:
+        raise click.UsageError("--verbose and --quiet are mutually exclusive.", context)
 
 
 def _option(letter: str, name: str, help_text: str) -> click.Option:
-    # Eager, for options that are answered while the line is read, such as --list.
+    # Eager, for options that act while the command line is parsed, such as --list.
     return click.Option(
         [f"-{letter}", f"--{name}"], is_flag=True, is_eager=True, expose_value=False, callback=_choose, help=help_text
     )
 
 
 VERBOSE = _option("v", "verbose", "Show the traceback of errors; with test, name each test.")
-QUIET = _option("q", "quiet", "Print only what was asked for, warnings and errors.")
+QUIET = _option("q", "quiet", "Print only results, warnings and errors.")

@@ -1,4 +1,4 @@
-"""Commands that measure another command while it runs: `pyfrc coverage test`, `pyfrc profile replay script.jsonl`."""
+"""Commands that measure another command: `pyfrc coverage test`, `pyfrc profile replay script.jsonl`."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from .project_options import chosen_project
 if TYPE_CHECKING:
     from pyfrc_core.project import Project
 
-#: For the wrapping command: what stands behind the wrapped command's name is for that.
+#: Settings of the wrapping command: arguments after the wrapped command's name belong to that one.
 WRAPPING: dict[str, Any] = {"help_option_names": ["-h", "--help"], "allow_interspersed_args": False}
 
 
 @dataclass(frozen=True)
 class Wrapped:
-    """A command with its options, about to be run.
+    """A command with its options, ready to run.
 
-    :param project: the robot project that it is about
+    :param name: its name
+    :param project: its robot project
     """
 
     name: str
@@ -30,7 +31,7 @@ class Wrapped:
     _context: click.Context
 
     def run(self) -> int:
-        """Run it; answers its exit code."""
+        """Run it; return its exit code."""
         try:
             with self._context:
                 self._context.command.invoke(self._context)
@@ -39,22 +40,25 @@ class Wrapped:
         except click.exceptions.Exit as ended:
             return ended.exit_code
         except (KeyboardInterrupt, click.Abort):
-            click.secho("interrupted", err=True)  # what was measured until now is still of interest
+            click.secho("interrupted", err=True)  # the measurements until now are still reported
             return 2
         return 0
 
 
 def wrapped_command(context: click.Context, words: Sequence[str], wrappable: Sequence[str]) -> Wrapped:
-    """The command that these words say.
+    """Parse the words as a command.
 
-    :param context: that of the command which wraps it
-    :param wrappable: the names of the commands that it may be
-    :raises click.UsageError: when it is none of them, or its options are wrong
+    :param context: the context of the wrapping command
+    :param words: the wrapped command's name and arguments
+    :param wrappable: the names of the commands that can be wrapped
+    :raises click.UsageError: when it is not one of them, or its options are wrong
     """
     name, *arguments = words
     known = [each for each in wrappable if each in COMMANDS]
     if name not in known:
-        raise click.UsageError(f"{name!r} is not a command to be measured: those are {', '.join(known)}.", context)
+        raise click.UsageError(
+            f"{name!r} is not a command that can be measured. These can: {', '.join(known)}.", context
+        )
     inner = loaded(name).make_context(name, arguments, parent=context)
     options = inner.params
     return Wrapped(name, chosen_project(options["directory"], options["main"], options["robot_class"]), inner)

@@ -1,4 +1,4 @@
-"""`pyfrc replay`: runs the robot as an input script says, and compares what it does with what it did when recorded."""
+"""`pyfrc replay`: run the robot with the inputs of a script, and compare its trace with the recorded one."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ from .runtime.seeds import seed_generators
 
 @dataclass(frozen=True)
 class Difference:
-    """Where two traces first differ.
+    """The first difference between two traces.
 
     :param now: robot time, in seconds
-    :param path: the place in `hal_data`
-    :param recorded: its value when the script was recorded; None when it was not there, or not changed
-    :param replayed: its value now
+    :param path: the path in `hal_data`
+    :param recorded: the recorded value; None when there is none, or it did not change
+    :param replayed: the value in the replay
     """
 
     now: float
@@ -48,14 +48,14 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Replayed:
-    """What came of a replay.
+class ReplayResult:
+    """Result of a replay.
 
     :param seconds: how much robot time passed
-    :param failure: what the robot's code raised, naming its line
-    :param digest: the hash of what the robot did
-    :param equal: whether that is what it did when recorded; None when the recording does not tell
-    :param difference: where it first differs, if the recording's trace is there to tell
+    :param failure: the exception that the robot's code raised, with its line
+    :param digest: the hash of the trace
+    :param equal: whether the trace equals the recorded one; None when the recording has no hash
+    :param difference: the first difference, if the recording has a trace
     """
 
     seconds: float
@@ -65,19 +65,19 @@ class Replayed:
     difference: Difference | None
 
 
-def replay(project: Project, file: Path, *, until: float | None = None, trace: Path | None = None) -> Replayed:
-    """Run the robot as the script in `file` says.
+def replay(project: Project, file: Path, *, until: float | None = None, trace: Path | None = None) -> ReplayResult:
+    """Run the robot with the inputs of the script in `file`.
 
-    :param until: an earlier end, in seconds of robot time; the whole is then not compared, what was until then is
-    :param trace: where to write what the robot does
-    :raises ScriptError: when the script is not one, or does not fit the robot
+    :param until: an earlier end, in seconds of robot time; then the trace is compared up to there only
+    :param trace: where to write the trace
+    :raises ScriptError: when the script is not valid, or does not fit the robot
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     from .fuzz.oracle import oracle_if_fuzzed
 
     script = load_script(file)
-    if script.story and (ended := _how_its_process_ends(project, script)) is not None:
-        return Replayed(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
+    if script.story and (ended := _process_failure(project, script)) is not None:
+        return ReplayResult(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
     patches.install(project.files)
     robot_class = load_robot(project)
     until_us = None if until is None else to_us(until)
@@ -93,23 +93,23 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
             try:
                 seed_generators(script.seed)
                 with oracle_if_fuzzed(run, project, script), traced(run, written) as recorder:
-                    with _taken_down(failures, project):
+                    with _collected(failures, project):
                         construct(project, run, robot_class)
                         Player(script, run).play(until_us)
                     seconds = run.clock.now
             finally:
-                with _taken_down(failures, project):
+                with _collected(failures, project):
                     run.close()
         beside = trace_beside(file)
         difference = _first_difference(beside, written, run_us=until_us) if beside.is_file() else None
     whole = until_us is None or until_us >= script.end_us
     equal = script.trace == recorder.digest() if script.trace and whole else None
-    return Replayed(seconds, failures[0] if failures else None, recorder.digest(), equal, difference)
+    return ReplayResult(seconds, failures[0] if failures else None, recorder.digest(), equal, difference)
 
 
 @contextmanager
-def _taken_down(failures: list[PyfrcError], project: Project) -> Iterator[None]:
-    """Take down what robot code raises, `exit()` and a `KeyboardInterrupt` of its own among it; not Ctrl-C."""
+def _collected(failures: list[PyfrcError], project: Project) -> Iterator[None]:
+    """Collect what robot code raises, including `exit()` and its own `KeyboardInterrupt`, but not Ctrl-C."""
     by_user = False
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
@@ -118,8 +118,8 @@ def _taken_down(failures: list[PyfrcError], project: Project) -> Iterator[None]:
         signal.default_int_handler(signum, frame)
 
     before = signal.getsignal(signal.SIGINT)
-    listens = before is signal.default_int_handler and threading.current_thread() is threading.main_thread()
-    if listens:
+    handles_interrupt = before is signal.default_int_handler and threading.current_thread() is threading.main_thread()
+    if handles_interrupt:
         signal.signal(signal.SIGINT, interrupt)
     try:
         yield
@@ -130,12 +130,12 @@ def _taken_down(failures: list[PyfrcError], project: Project) -> Iterator[None]:
             raise
         failures.append(as_robot_code_error(error, project.files))
     finally:
-        if listens:
+        if handles_interrupt:
             signal.signal(signal.SIGINT, before)
 
 
-def _how_its_process_ends(project: Project, script: InputScript) -> str | None:
-    """Of a script that fuzzing has kept since the robot's process ended with it, how that was; tried in another one."""
+def _process_failure(project: Project, script: InputScript) -> str | None:
+    """Return how the process ends with a script of `pyfrc fuzz` that is known to end it; run in a separate process."""
     from .fuzz.failure import PROCESS_ENDED
     from .fuzz.match_executor import open_match_executor
 

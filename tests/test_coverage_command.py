@@ -166,7 +166,7 @@ def test_too_little_is_a_failure(project: RobotProject) -> None:
     result = project.run("coverage", "--fail-under", "99.5", "test", "-j", "1", "--", "-q")
     assert result.code == 1
     assert "2 passed" in result.stdout
-    assert "is less than the 99.5 % asked for" in result.stderr
+    assert "is less than the required 99.5 %" in result.stderr
 
 
 def test_a_command_that_fails_keeps_its_exit_code_and_is_reported(make_project: MakeProject) -> None:
@@ -182,12 +182,12 @@ def test_a_command_that_fails_keeps_its_exit_code_and_is_reported(make_project: 
     ("words", "complaint"),
     [
         ((), "Missing argument 'COMMAND"),
-        (("tets",), "'tets' is not a command to be measured: those are test, "),
-        (("init",), "'init' is not a command to be measured"),
+        (("tets",), "'tets' is not a command that can be measured. These can: test, "),
+        (("init",), "'init' is not a command that can be measured"),
         (("test", "--no-such-option"), "No such option"),
-        (("test", "--coverage"), "coverage is measured already"),
-        (("coverage", "test"), "'coverage' is not a command to be measured"),
-        (("--xml", ".", "test"), "something else is there already"),
+        (("test", "--coverage"), "coverage is already being measured"),
+        (("coverage", "test"), "'coverage' is not a command that can be measured"),
+        (("--xml", ".", "test"), "that is a directory"),
         (("test", "--project", "nowhere"), "there is no directory nowhere"),
     ],
 )

@@ -367,7 +367,7 @@ def test_a_lift_moves_its_encoder(make_project: MakeProject) -> None:
     assert "no drivetrain recognised" in told
     assert "four_motor_swerve_drivetrain" in told
     assert "PWM 4 (lift.motor) with lift.encoder (DIO 8, 9)" in told
-    assert "Left as they are, as nothing is known of what they do: PWM 5 (spare)." in (
+    assert "Not simulated, since their purpose is unknown: PWM 5 (spare)." in (
         project.path / "physics.py"
     ).read_text().replace("\n# ", " ")
     run_tests(project)
@@ -449,7 +449,7 @@ def test_what_is_on_the_can_bus_is_named_by_its_number(make_project: MakeProject
     assert "left: SPARK MAX[2] (chassis.left)\n  right: SPARK MAX[1] (chassis.right)" in create(project)
     config = json.loads((project.path / "sim/config.json").read_text())
     assert config["pyfrc"]["CAN"] == {"1": "chassis.right", "2": "chassis.left", "3": "arm"}
-    assert "what they do: SPARK MAX[3] (arm)." in (project.path / "physics.py").read_text().replace("\n# ", " ")
+    assert "purpose is unknown: SPARK MAX[3] (arm)." in (project.path / "physics.py").read_text().replace("\n# ", " ")
 
 
 def test_swerve_is_not_taken_for_a_tank(make_project: MakeProject) -> None:
@@ -486,13 +486,11 @@ def test_a_robot_with_nothing_at_all(make_project: MakeProject) -> None:
 
 def test_existing_files_are_left_alone(make_project: MakeProject) -> None:
     project = make_project(EMPTY | {"physics.py": "# mine\n"})
-    assert create(project).startswith(
-        "no drivetrain recognised\nleft alone: physics.py (exists)\nwrote sim/config.json"
-    )
+    assert create(project).startswith("no drivetrain recognised\nunchanged: physics.py (exists)\nwrote sim/config.json")
     assert (project.path / "physics.py").read_text() == "# mine\n"
     # Both there: nothing is run, not even the robot.
     project.write({"robot.py": "raise RuntimeError\n"})
-    assert create(project) == "left alone: physics.py (exists)\nleft alone: sim/config.json (exists)\n"
+    assert create(project) == "unchanged: physics.py (exists)\nunchanged: sim/config.json (exists)\n"
     assert {path.name for path in project.path.iterdir()} - {"__pycache__"} == {"physics.py", "robot.py", "sim"}
     assert sorted(path.name for path in (project.path / "sim").iterdir()) == ["config.json", "config.schema.json"]
 
@@ -516,8 +514,10 @@ def test_existing_files_that_are_not_valid(
     (project.path / "physics.py").write_text(physics)
     result = project.run("create-physics")
     assert result.code == 0
-    assert result.stdout == "left alone: physics.py (exists)\nleft alone: sim/config.json (exists)\n"
-    warnings = [line for line in result.stderr.splitlines() if line.startswith("warning: what is there is not valid: ")]
+    assert result.stdout == "unchanged: physics.py (exists)\nunchanged: sim/config.json (exists)\n"
+    warnings = [
+        line for line in result.stderr.splitlines() if line.startswith("warning: the existing file is not valid: ")
+    ]
     assert len(warnings) == 2
     assert all(mistake in warning for mistake, warning in zip(mistakes, warnings, strict=True))
 
@@ -569,7 +569,7 @@ def test_files_are_named_from_the_current_directory(make_project: MakeProject, o
     assert "\nwrote src/physics.py\nwrote src/sim/config.json\n" in told
     assert "at the top of src/physics.py to" in told
     told = project.run("create-physics", *(options and ["--main", "robot.py"]), cwd=below).stdout
-    assert "left alone: physics.py (exists)\n" in told
+    assert "unchanged: physics.py (exists)\n" in told
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
@@ -602,7 +602,10 @@ FAILING = {
         "        while True:\n            try: ever()\n            except BaseException: pass",
         "the robot code hangs here",
     ),
-    "by sleeping": ("time.sleep(1e9)", "the robot is still here after 10000 s of robot time, and cannot be driven."),
+    "by sleeping": (
+        "time.sleep(1e9)",
+        "the robot is still in this line after 10000 s of robot time, and cannot be driven.",
+    ),
     "by ending the process": ("os._exit(0)", "the robot's process ended itself with exit code 0"),
     "in C": ("ctypes.string_at(0)", "the robot's process was ended by signal 11 (SIGSEGV, segmentation fault)"),
 }
@@ -668,7 +671,7 @@ def test_a_robot_that_fails_when_driven_still_gets_its_files(make_project: MakeP
     assert result.code == 0
     assert "right: PWM 1 (right_motor), forward at -1" in result.stdout
     place = project.place("robot.py", "put(1)")
-    assert result.stderr.startswith(f"warning: the sticks could not be tried: {place}: AttributeError")
+    assert result.stderr.startswith(f"warning: the joysticks could not be tested: {place}: AttributeError")
     assert place in (project.path / "physics.py").read_text()
 
 
@@ -714,7 +717,7 @@ def test_any_names_make_a_valid_file(make_project: MakeProject) -> None:
 
 
 def test_a_file_that_is_not_valid_is_never_written() -> None:
-    with pytest.raises(PyfrcError, match=r"(?s)no valid Python.*\n    def = 1\n.*please report it"):
+    with pytest.raises(PyfrcError, match=r"(?s)not valid Python.*\n    def = 1\n.*please report it"):
         checked("x = 1\ndef = 1\n")
 
 
@@ -741,8 +744,8 @@ class MyRobot(wpilib.TimedRobot):
 def test_names_that_partly_contradict_the_sticks(make_project: MakeProject) -> None:
     told = create(make_project({"robot.py": BOTH_DRIVE}))
     assert "left: PWM 0 (fl), PWM 1 (rl), PWM 4 (l)\n  right: PWM 2 (fr), PWM 3 (rr), PWM 5 (r), forward at -1" in told
-    assert "called after, unlike the rest: PWM 1 (rl), PWM 3 (rr)." in told
-    assert "note: Which motor is on which side was told by their names.\n" in told
+    assert "names, unlike the others: PWM 1 (rl), PWM 3 (rr)." in told
+    assert "note: The motors' sides were derived from their names.\n" in told
 
 
 def test_names_that_contradict_the_sticks_and_do_not_help(make_project: MakeProject) -> None:
@@ -758,7 +761,7 @@ def test_names_that_contradict_the_sticks_and_do_not_help(make_project: MakeProj
         )
     )
     assert told.startswith("no drivetrain recognised\n")
-    assert "unlike the rest: " in told
+    assert "unlike the others: " in told
 
 
 def test_mecanum_with_followers(make_project: MakeProject) -> None:
@@ -800,7 +803,7 @@ class Module:
     head = "class MyRobot(wpilib.TimedRobot):\n    def robotInit(self):"
     project = make_project({"robot.py": f"import wpilib\n\n{module}\n\n{head}{init}"})
     told = create(project)
-    assert told.startswith("swerve drive, which is left to you\n  drive: PWM 0 (")
+    assert told.startswith("swerve drive, which you need to complete\n  drive: PWM 0 (")
     assert "\n  steering: PWM 4 (" in told
     assert "drivetrains.four_motor_swerve_drivetrain()" in told
     assert "docs/physics.md" in told
@@ -822,4 +825,4 @@ def test_a_single_encoder_of_the_drivetrain(make_project: MakeProject) -> None:
             }
         )
     )
-    assert "note: The encoder was taken for the left side's.\n" in told
+    assert "note: The encoder was assigned to the left side.\n" in told

@@ -88,7 +88,7 @@ def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(make_project) -> None:
     before = kept(project)
     again = project.run("fuzz", "--seed", "1", "--runs", "8")
     assert again.code == 1
-    assert f"not repaired yet: {file}" in again.output
+    assert f"still fails: {file}" in again.output
     assert kept(project).keys() == before.keys()
 
     robot = project.path / "robot.py"
@@ -119,16 +119,19 @@ def test_in_a_robot_without_a_fault_nothing_is_found(make_project) -> None:
 
 #: What robots must not do: what it is called, the code of `autonomousPeriodic`, and what is told.
 FAULTS = {
-    "slow_loops": ("wpilib.wait(0.05)", "robot.py:{}: a loop of 0.02 s waits here, for longer than that"),
-    "not_a_number": ("self.motor.set(math.nan)", "robot.py:{}: set() is given NaN"),
-    "out_of_range": ("self.motor.set(1.5)", "robot.py:{}: set() is given a power of more than 1"),
+    "slow_loops": (
+        "wpilib.wait(0.05)",
+        "robot.py:{}: a loop with a period of 0.02 s waits here for longer than its period",
+    ),
+    "not_a_number": ("self.motor.set(math.nan)", "robot.py:{}: set() was called with NaN"),
+    "out_of_range": ("self.motor.set(1.5)", "robot.py:{}: set() was called with a power of more than 1"),
     "hal_errors": (
         'hal.sendError(True, 1, False, "too hot", "Motor", "", True)',
         "the HAL reports an error: Motor: too hot",
     ),
     "stuck_modes": (
         "while True: wpilib.wait(0.02)",
-        "robot.py:{}: the robot is still in autonomous mode, 3 s after that was over",
+        "robot.py:{}: the robot is still in autonomous mode, 3 s after that mode ended",
     ),
     "hangs": ("while True: pass", "robot.py:{}: autonomousPeriodic() hangs"),
     "process_ended": ("os._exit(3)", "robot.py:{}: the robot's process ended itself with exit code 3"),
@@ -195,7 +198,7 @@ def test_motors_that_drive_on_their_own_are_heard_through_the_drive(make_project
     project = make_project({"robot.py": robot, "pyproject.toml": SHORT_MATCHES.format(20, "")})
     result = project.run("fuzz", "--runs", "2")
     assert (
-        f"{project.place('robot.py', 'arcadeDrive')}: arcadeDrive() is to move a motor while the robot is dis"
+        f"{project.place('robot.py', 'arcadeDrive')}: arcadeDrive() commands a motor to move while the robot i"
         in result.stdout
     )
 
@@ -239,7 +242,7 @@ def test_where_processes_cannot_be_forked_new_ones_find_the_same(make_project) -
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (("--time", "5", "--runs", "5"), "exclude each other"),
+        (("--time", "5", "--runs", "5"), "mutually exclusive"),
         (("--runs", "0"), "0 is not in the range"),
         (("--time", "0"), "0"),
         (("--project", "nowhere"), "there is no directory nowhere"),

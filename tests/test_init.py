@@ -212,7 +212,7 @@ def test_add_tests_writes_the_documented_file_once(make_project: MakeProject, co
     (project.path / "tests/pyfrc_test.py").write_text("# mine\n")
     second = project.run(command)
     assert second.code == 0
-    assert second.stdout.startswith("left alone: tests/pyfrc_test.py (exists)\n")
+    assert second.stdout.startswith("unchanged: tests/pyfrc_test.py (exists)\n")
     assert (project.path / "tests/pyfrc_test.py").read_text() == "# mine\n"
 
 

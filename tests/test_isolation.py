@@ -765,7 +765,7 @@ def test_coverage_below_what_is_asked_for_fails_and_names_the_lines(make_project
     )
     assert result.code == 1, result.output
     assert "2 passed" in result.stdout
-    assert "is less than the 100 % asked for" in result.output
+    assert "is less than the required 100 %" in result.output
     assert re.search(rf"^arm\.py .* {project.line('arm.py', 'return 1')}$", result.stdout, re.MULTILINE)
     assert (project.path / "pages" / "index.html").is_file()
     files = ElementTree.parse(project.path / "reports.xml").getroot().iter("class")

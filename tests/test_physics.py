@@ -298,7 +298,7 @@ def test_a_call_that_cannot_be_says_what_can(arguments: tuple[float, ...]) -> No
 
 
 def test_a_transform_is_for_move_robot() -> None:
-    with pytest.raises(TypeError, match="this was given a Transform2d"):
+    with pytest.raises(TypeError, match="and a time, not a Transform2d"):
         controller().drive(Transform2d(), 0.02)  # type: ignore[call-overload]
     with pytest.raises(TypeError, match="takes a Transform2d, not a NoneType"):
         controller().move_robot(None)  # type: ignore[arg-type]

@@ -382,7 +382,7 @@ def test_the_older_name_wraps_a_replay(make_project: MakeProject) -> None:
     assert "The trace equals the recorded one." in result.stdout
     assert re.search(r"^  the whole loop +\d+ ", result.stdout, re.MULTILINE)
     assert "and 1 more function (--top 2)" in result.stdout
-    assert re.search(r"^What measuring has cost: .* µs a call.*samples?; \d+% of the ", result.stdout, re.MULTILINE)
+    assert re.search(r"^Cost of measuring: .* µs a call.*samples?; \d+% of the ", result.stdout, re.MULTILINE)
 
 
 def test_a_failing_command_is_reported_with_its_exit_code(make_project: MakeProject) -> None:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyfrc_core.measure.figures import Figures, Line, Measurand, Overrun, added_up, distribution
+from pyfrc_core.measure.figures import CodeLine, Figures, Measurand, Overrun, added_up, distribution
 from pyfrc_core.measure.profile_report import as_json, as_text
 from pyfrc_core.measure.stopwatch_cost import Cost
 
@@ -39,7 +39,7 @@ def test_what_processes_kept_adds_up(tmp_path_factory: pytest.TempPathFactory, p
     for number, (nanoseconds, computing, waiting) in enumerate(processes):
         figures = Figures(samples=2, sampling_ns=5)
         figures.times_of(TELEOP).extend(nanoseconds)
-        figures.on_line(Line("robot.py:4", "MyRobot.teleopPeriodic"), computing, waiting)
+        figures.on_line(CodeLine("robot.py:4", "MyRobot.teleopPeriodic"), computing, waiting)
         figures.stacks[(("MyRobot.teleopPeriodic", "robot.py", 4),)] = computing
         files.append(directory / f"{number}.figures")
         figures.keep(files[-1])
@@ -72,8 +72,8 @@ def test_the_report_groups_overruns_and_says_when_they_were() -> None:
     assert "MyRobot.teleopPeriodic robot.py:3 test 1 40.0 ms 39.0 ms 20 ms 9.50 s" in lines
     assert lines.index(teleop) + 2 == next(at for at, line in enumerate(lines) if line.startswith("Held up:"))
     assert lines[-1] == (
-        "What measuring has cost: 3.0 ms for timing (0.30 µs a call), 2.0 ms for 1 sample; "
-        "5% of the 100.0 ms that the robot took by itself."
+        "Cost of measuring: 3.0 ms for timing (0.30 µs a call), 2.0 ms for 1 sample; "
+        "5% of the 100.0 ms that the robot took without it."
     )
 
 

@@ -63,7 +63,7 @@ def test_each_command_takes_it_behind_its_name(path: tuple[str, ...]) -> None:
 def test_quiet_and_verbose_cannot_both_be(args: list[str], project: RobotProject) -> None:
     result = project.run(*args)
     assert (result.code, result.stdout) == (2, "")
-    assert "--verbose and --quiet cannot both be" in result.stderr
+    assert "--verbose and --quiet are mutually exclusive" in result.stderr
 
 
 @pytest.mark.parametrize(

@@ -1,1 +1,1 @@
-"""Fuzzing: matches in which everything the robot has is mashed, until something breaks; then the shortest way there."""
+"""Fuzzing: run matches with random inputs until the robot fails, then find the shortest script of the failure."""

@@ -1,7 +1,7 @@
-"""A campaign: many matches, steered by the lines they reach; each different failure once, made short, and kept.
+"""Run a campaign: many matches, guided by the lines they reach. Each distinct failure is shrunk and saved once.
 
-Matches are made up and learned from in batches, in the order of their numbers. So what a campaign does follows from
-its seed alone, in however many processes it runs.
+Matches are generated in batches, and their results are used in the order of their numbers. So the result of a campaign
+depends on its seed alone, and not on the number of processes.
 """
 
 from __future__ import annotations
@@ -26,12 +26,13 @@ _BATCH = 32
 
 @dataclass(frozen=True)
 class CampaignOptions:
-    """How a campaign was asked for.
+    """Options of a campaign.
 
-    :param seed: what all its chance comes from
-    :param runs: how many matches, or None
-    :param seconds: for how long, in real time, or None; what was found by then is made short all the same
-    :param jobs: how many robots at a time
+    :param seed: the random seed
+    :param runs: the number of matches, or None
+    :param seconds: when to start no more matches, in seconds of real time, or None; failures found by then are still
+        shrunk
+    :param jobs: how many matches to run at a time
     """
 
     seed: int
@@ -42,13 +43,14 @@ class CampaignOptions:
 
 @dataclass
 class CampaignProgress:
-    """How far a campaign has come.
+    """Progress of a campaign.
 
+    :param matches: how many matches were run
     :param simulated: robot time, in seconds
-    :param covered: how much of the robot's lines was reached, from 0 to 1; None while none was seen to be, as where
-        lines cannot be watched
-    :param crashes: how many different failures there are
-    :param doing: what it does now
+    :param covered: the share of the robot's lines that was reached, from 0 to 1; None when no lines were observed, as
+        on systems where they cannot be
+    :param crashes: the number of distinct failures
+    :param doing: the current activity
     """
 
     matches: int = 0
@@ -60,18 +62,19 @@ class CampaignProgress:
 
 @dataclass(frozen=True)
 class FuzzFinding:
-    """A failure, for people.
+    """A failure, with what a user needs to know of it.
 
-    :param story: what happens, moment by moment; the failure last
-    :param kept: where the way there is; None when it did not fail in the same way again
-    :param known: whether an earlier campaign had kept it
-    :param runs: how many robots were run to make it short
-    :param writes: how many things the shortest way writes
+    :param failure: the failure
+    :param story: the events that lead to it, one line each; the failure comes last
+    :param entry: the script in the corpus; None when the failure did not repeat
+    :param known: whether an earlier campaign saved it
+    :param runs: how many matches it took to shrink the script
+    :param writes: how many writes the shortest script has
     """
 
     failure: FuzzFailure
     story: tuple[str, ...]
-    kept: CorpusEntry | None
+    entry: CorpusEntry | None
     known: bool = False
     runs: int = 0
     writes: int = 0
@@ -79,18 +82,20 @@ class FuzzFinding:
 
 @dataclass
 class Campaign:
-    """What came of a campaign.
+    """Result of a campaign.
 
-    :param interrupted: whether somebody has ended it
+    :param progress: how far it came
+    :param findings: the failures that it found
+    :param interrupted: whether the user interrupted it
     """
 
     progress: CampaignProgress = field(default_factory=CampaignProgress)
-    found: list[FuzzFinding] = field(default_factory=list)
+    findings: list[FuzzFinding] = field(default_factory=list)
     interrupted: bool = False
 
 
 class CampaignListener(Protocol):
-    """Whoever is told how a campaign goes."""
+    """Receives the progress and the findings of a campaign."""
 
     def on_progress(self, progress: CampaignProgress) -> None: ...
 
@@ -98,21 +103,21 @@ class CampaignListener(Protocol):
 
 
 def run_campaign(project: Project, options: CampaignOptions, listener: CampaignListener) -> Campaign:
-    """Run a campaign to its end, or until Ctrl-C: then what it has found is kept, too.
+    """Run a campaign to its end, or until Ctrl-C; its findings are saved in both cases.
 
     :raises RobotCodeError: when the robot's code cannot be imported
-    :raises ScriptError: when a script that was kept before is none
+    :raises ScriptError: when a script in the corpus is not valid
     """
     deadline = None if options.seconds is None else time.monotonic() + options.seconds
     with open_match_executor(project, options.jobs) as executor:
         runner = _Runner(executor, options, deadline, listener)
         try:
             with executor.interruptible():
-                runner.look_at_kept()
+                runner.replay_corpus()
                 runner.run()
         except KeyboardInterrupt:
             runner.campaign.interrupted = True
-            runner.keep_the_rest()
+            runner.save_unshrunk()
         return runner.campaign
 
 
@@ -125,32 +130,32 @@ class _Runner:
         self._options = options
         self._deadline = deadline
         self._listener = listener
-        self._kept = Corpus(executor.project)
+        self._corpus = Corpus(executor.project)
         self._scheduler = SeedScheduler(options.seed)
         self._all_lines = executor.lines
         self._reached: frozenset[Line] = frozenset()
         self._failures: list[FuzzFailure] = []
-        #: Found, and not made short yet.
+        #: Failures that are not shrunk yet.
         self._waiting: list[MatchResult] = []
         self._shrinking: Shrinker | None = None
 
-    def look_at_kept(self) -> None:
-        """What earlier campaigns have found, and is not repaired, is not found anew."""
-        scripts = list(self._kept.all())
-        with closing(self._executor.play(ReplayTask(kept.script) for kept in scripts)) as results:
-            for kept, played in zip(scripts, results, strict=True):
+    def replay_corpus(self) -> None:
+        """Replay the scripts of earlier campaigns; failures that are still there are reported as known."""
+        scripts = list(self._corpus.all())
+        with closing(self._executor.play(ReplayTask(entry.script) for entry in scripts)) as results:
+            for entry, played in zip(scripts, results, strict=True):
                 if played.failure is not None and self._is_new(played.failure):
-                    self._tell(FuzzFinding(played.failure, story_of(kept.script, played.failure), kept, known=True))
+                    self._report(FuzzFinding(played.failure, story_of(entry.script, played.failure), entry, known=True))
 
     def run(self) -> None:
-        """Play batch after batch."""
+        """Run batch after batch."""
         number = 0
         while not self._over(number):
             size = _BATCH if self._options.runs is None else min(_BATCH, self._options.runs - number)
             self._play(range(number, number + size))
             number += size
             while self._waiting:
-                self._keep(self._waiting[0])
+                self._shrink(self._waiting[0])
                 self._waiting.pop(0)
             self.campaign.progress.doing = ""
 
@@ -184,24 +189,24 @@ class _Runner:
         self._failures.append(failure)
         return True
 
-    # -- keeping -----------------------------------------------------------------------------------------------
+    # -- saving -----------------------------------------------------------------------------------------------
 
-    def _keep(self, played: MatchResult) -> None:
+    def _shrink(self, played: MatchResult) -> None:
         assert played.failure is not None
         progress = self.campaign.progress
 
-        def tell(runs: int) -> None:
-            progress.doing = f"making it short: run {runs}"
+        def report_run(runs: int) -> None:
+            progress.doing = f"shrinking: run {runs}"
             self._listener.on_progress(progress)
 
-        shrinker = Shrinker(self._executor, played.script, played.failure, played.inputs, tell=tell)
+        shrinker = Shrinker(self._executor, played.script, played.failure, played.inputs, on_run=report_run)
         self._shrinking = shrinker
         shrinker.shrink()
         self._write(shrinker, repeats=shrinker.repeats and shrinker.play_again())
         self._shrinking = None
 
-    def keep_the_rest(self) -> None:
-        """Somebody has ended the campaign: what it has found is kept as it is now."""
+    def save_unshrunk(self) -> None:
+        """Save the remaining failures as they are, after an interrupt."""
         for played in self._waiting:
             assert played.failure is not None
             shrinker, self._shrinking = self._shrinking, None
@@ -210,11 +215,11 @@ class _Runner:
 
     def _write(self, shrinker: Shrinker, repeats: bool) -> None:
         script, failure = shrinker.script, shrinker.failure
-        kept = self._kept.keep(script, failure) if repeats else None
+        entry = self._corpus.add(script, failure) if repeats else None
         writes = sum(len(step.writes) for step in script.steps)
-        self._tell(FuzzFinding(failure, story_of(script, failure), kept, runs=shrinker.runs, writes=writes))
+        self._report(FuzzFinding(failure, story_of(script, failure), entry, runs=shrinker.runs, writes=writes))
 
-    def _tell(self, found: FuzzFinding) -> None:
-        self.campaign.found.append(found)
+    def _report(self, found: FuzzFinding) -> None:
+        self.campaign.findings.append(found)
         self.campaign.progress.crashes = len(self._failures)
         self._listener.on_found(found)

@@ -1,4 +1,4 @@
-"""What a campaign keeps in the project: scripts in ``tests/fuzz``, and a test file that replays them."""
+"""The corpus of a project: scripts of failures in ``tests/fuzz``, and a test file that replays them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DIRECTORY = "fuzz"
 TEST_FILE = "test_fuzz_regressions.py"
 
 _TEST = '''\
-"""Replays what `pyfrc fuzz` has found: each script in the directory fuzz must no longer make the robot fail."""
+"""Replay the failures that `pyfrc fuzz` has found: no script in the directory fuzz may make the robot fail again."""
 
 from pathlib import Path
 
@@ -30,53 +30,53 @@ SCRIPTS = sorted(Path(__file__).with_name("fuzz").glob("*.jsonl"))
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=[script.stem for script in SCRIPTS])
 def test_it_is_repaired(script, control, robot):
-    """The robot does not fail any more when it is told this."""
+    """Check that the robot does not fail with this script."""
     control.replay(script)
 '''
 
 
 @dataclass(frozen=True)
 class CorpusEntry:
-    """A script that was kept."""
+    """A script in the corpus."""
 
     file: Path
     script: InputScript
 
     @property
-    def shown(self) -> str:
-        """The file as one would type its name here."""
+    def display_path(self) -> str:
+        """Return the path relative to the current directory, if the file is below it; else the absolute path."""
         return os.path.relpath(self.file) if self.file.is_relative_to(Path.cwd()) else str(self.file)
 
 
 class Corpus:
-    """The scripts in a project's tests."""
+    """The scripts of failures among a project's tests."""
 
     def __init__(self, project: Project) -> None:
         self._project = project
-        # Beside the tests there are; where there are none, beside the robot.
+        # Beside the existing tests; in a project without tests, beside the robot program.
         self._tests = project.find_tests() or project.test_directories[0]
 
     def all(self) -> Iterator[CorpusEntry]:
-        """Those that earlier campaigns have left.
+        """Return the scripts of earlier campaigns.
 
-        :raises ScriptError: when one is not what it must be
+        :raises ScriptError: when a file is not a valid script
         """
         for file in sorted((self._tests / DIRECTORY).glob("*.jsonl")):
             yield CorpusEntry(file, load_script(file))
 
-    def keep(self, script: InputScript, failure: FuzzFailure) -> CorpusEntry:
-        """Write a script under a name of its own, and the test file if there is none."""
-        kept = replace(
+    def add(self, script: InputScript, failure: FuzzFailure) -> CorpusEntry:
+        """Write a script to a file with a new name, and the test file if it does not exist."""
+        complete = replace(
             script,
             packages={name: version(name) for name in ("pyfrc", "wpilib")},
             story=story_of(script, failure),
         )
         file = self._free_name(_name_of(failure))
-        kept.save(file)
+        complete.save(file)
         test_file = self._tests / TEST_FILE
         if not test_file.exists():
             write_whole(test_file, [_TEST])
-        return CorpusEntry(file, kept)
+        return CorpusEntry(file, complete)
 
     def _free_name(self, name: str) -> Path:
         directory = self._tests / DIRECTORY
@@ -88,7 +88,7 @@ class Corpus:
 
 
 def _name_of(failure: FuzzFailure) -> str:
-    """Without a line's number, which changes with every line above it."""
+    """Return a file name without a line number, since that changes with every line above it."""
     module = failure.place.partition(":")[0].removesuffix(".py")
     parts = [failure.kind, *re.split(r"[/\\]", module), failure.function]
     return re.sub(r"[^\w-]+", "_", "-".join(part for part in parts if part)).lower()

@@ -1,4 +1,4 @@
-"""What people choose, type and click in a dashboard: found in NetworkTables, where the robot has put it."""
+"""Generate a dashboard's inputs: find in NetworkTables what drivers may select, type and click, and change it."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from ..runtime.scripts.targets import NETWORK
 from .inputs import Input
 from .values import draw
 
-_PEOPLES_TABLES = ("/SmartDashboard/", "/Shuffleboard/")
+_DASHBOARD_TABLES = ("/SmartDashboard/", "/Shuffleboard/")
 
 #: Seconds from one choice to the next, on average.
 _PAUSE = 3.0
 
 
 def find_dashboard() -> Iterator[Input]:
-    """The choosers' options, commands' buttons, plain entries."""
+    """Return the choosers' options, the commands' buttons, and plain entries."""
     network = ntcore.NetworkTableInstance.getDefault()
     for topic in network.getTopics():
         name = topic.getName()
         table, _, entry = name.rpartition("/")
-        if not name.startswith(_PEOPLES_TABLES) or entry.startswith("."):
+        if not name.startswith(_DASHBOARD_TABLES) or entry.startswith("."):
             continue
         sort, made_by = topic.getType(), network.getEntry(f"{table}/.type").getString("")
         if made_by == "String Chooser":
@@ -41,7 +41,7 @@ def find_dashboard() -> Iterator[Input]:
 
 
 class DashboardGenerator:
-    """One match's people at the dashboard."""
+    """Generates one match's dashboard inputs."""
 
     def __init__(self, rng: random.Random) -> None:
         self._rng = rng
@@ -50,8 +50,8 @@ class DashboardGenerator:
         self._numbers: dict[str, float] = {}
         self._chosen: set[str] = set()
 
-    def know(self, inputs: list[Input]) -> None:
-        """What there is to choose."""
+    def set_inputs(self, inputs: list[Input]) -> None:
+        """Set the inputs to generate values for."""
         self._inputs = inputs
         for each in inputs:
             if each.kind == "number" and each.target not in self._numbers:
@@ -59,7 +59,7 @@ class DashboardGenerator:
                 self._numbers[each.target] = entry.getDouble(0.0)
 
     def write(self, now_us: int, found: dict[str, Any]) -> None:
-        """Add what is to be written now: a choice for each new chooser, and now and then something."""
+        """Add the writes of this time: a choice for each new chooser, and a random change now and then."""
         rng = self._rng
         for each in self._inputs:
             if each.kind == "choice" and each.target not in self._chosen:

@@ -1,4 +1,4 @@
-"""A script as a person tells it: "at 21.34 s in teleoperated: joystick 0 button 3 pressed while POV 90"."""
+"""Describe a script in words: "at 21.34 s in teleoperated: joystick 0 button 3 pressed while POV 90"."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ _NAMES = {
 
 
 def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
-    """What happens, a line for each moment; the last says what comes of it."""
-    told = []
+    """Return a line for each moment of the script; the last line describes the failure."""
+    lines = []
     mode = "disabled"
     held: dict[str, Any] = {}
     for step in script.steps:
@@ -45,35 +45,35 @@ def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
         now = {target: value for target, value in step.writes.items() if target != MODE}
         gone = {found[1] for target, value in now.items() if (found := _PLUGGED.fullmatch(target)) and not value}
         held = {target: value for target, value in held.items() if _stick(target) not in gone}
-        what = ", ".join(_told(target, value) for target, value in now.items())
+        what = ", ".join(_described(target, value) for target, value in now.items())
         if what and (still := _still_held(held, now)):
             what += f" while {still}"
         when = f"{name} begins" if MODE in step.writes else f"in {name}"
-        told.append(f"at {step.at_us / 1e6:.2f} s {when}" + (f": {what}" if what else ""))
+        lines.append(f"at {step.at_us / 1e6:.2f} s {when}" + (f": {what}" if what else ""))
         held |= now
     failed_us = max(0, script.end_us - PACKET_US)
-    return (*told, f"at {failed_us / 1e6:.2f} s: {failure.text.partition(chr(10))[0]}")
+    return (*lines, f"at {failed_us / 1e6:.2f} s: {failure.text.partition(chr(10))[0]}")
 
 
 def _still_held(held: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """The controls that people are still holding, and not doing something else with now."""
+    """Return the controls that are held and not changed at this moment."""
     sticks = {_stick(target) for target in now} - {None}
     found = []
     for target, value in held.items():
         if target not in now and _CONTROL.fullmatch(target) and value not in (False, 0, NOT_PRESSED):
-            text = _told(target, value).removesuffix(" pressed")
-            # Of the joystick that is spoken of, its number has been said.
+            text = _described(target, value).removesuffix(" pressed")
+            # The number of the joystick was named before.
             found.append(text.split(" ", 2)[2] if sticks == {_stick(target)} else text)
     return " and ".join(found)
 
 
 def _stick(target: str) -> str | None:
-    """The number of the joystick that a control is on."""
+    """Return the number of the joystick that a control belongs to."""
     control = _CONTROL.fullmatch(target)
     return control[1] if control is not None else None
 
 
-def _told(target: str, value: Any) -> str:
+def _described(target: str, value: Any) -> str:
     control = _CONTROL.fullmatch(target)
     if control is not None:
         stick, sort, number = control.groups()

@@ -1,4 +1,4 @@
-"""What went wrong in a match, told apart from other failures by its kind and the user's innermost line."""
+"""Failures of a match; two are the same when their kind and the user's innermost line are equal."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from ..runtime.exceptions import TestFroze
 from ..runtime.failures import NamesItsPlace, headline
 from ..runtime.loop_limit import LoopWaitsError
 
-#: The kind of code that never ends.
+#: Kind of a failure: the code hangs.
 HANGS = "hangs"
-#: The kind of a periodic function that does not return.
+#: Kind of a failure: a periodic function does not return.
 WAITS = "loop_waits"
-#: The kind of a process that ended.
+#: Kind of a failure: the process ended.
 PROCESS_ENDED = "process_ended"
 
 _ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]+")
 
 
 class MisbehaviorError(NamesItsPlace):
-    """The robot has done, without an exception, what no robot should.
+    """The robot misbehaves without raising an exception.
 
-    :param kind: the setting that switches this off
-    :param place: the user's line, such as ``robot.py:12``; empty when it cannot be told
-    :param function: the function that this is in
+    :param kind: the setting that disables this check
+    :param place: the user's line, such as ``robot.py:12``; empty when it is unknown
+    :param function: the name of the function with that line
     """
 
     def __init__(self, what: str, kind: str, place: str, function: str) -> None:
@@ -37,13 +37,13 @@ class MisbehaviorError(NamesItsPlace):
 
 @dataclass(frozen=True)
 class FuzzFailure:
-    """What went wrong.
+    """A failure of the robot's code.
 
-    :param kind: an exception's type, or what else it is
-    :param place: the user's innermost line, such as ``robot.py:12``; of code that hangs its function's first, since the
-        line that it is found in is chance; empty when it cannot be told
-    :param function: the function that this is in
-    :param text: what people are told: it begins with the line
+    :param kind: an exception's type, or one of the kinds of this package
+    :param place: the user's innermost line, such as ``robot.py:12``; for code that hangs the first line of its
+        function, since the line at which it is interrupted varies; empty when it is unknown
+    :param function: the name of the function with that line
+    :param text: the message for users, which begins with the line
     """
 
     kind: str
@@ -52,15 +52,15 @@ class FuzzFailure:
     text: str
 
     def same_as(self, other: FuzzFailure | None) -> bool:
-        """Whether this is the same mistake."""
+        """Return whether both failures have the same cause."""
         return other is not None and (self.kind, self.place) == (other.kind, other.place)
 
 
 def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
-    """What an error says that a run has ended with."""
+    """Return the failure that this error stands for."""
     if isinstance(error, MisbehaviorError):
         return FuzzFailure(error.kind, error.place, error.function, str(error))
-    if isinstance(error, LoopWaitsError):  # which of its lines waits is chance
+    if isinstance(error, LoopWaitsError):  # the line that waits varies
         return FuzzFailure(WAITS, error.begins_at, error.function, str(error))
     code, line = _innermost(error.__traceback__, files)
     text = _ADDRESS.sub("", headline(error, files) or text_of(error))
@@ -72,14 +72,14 @@ def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
 
 
 def user_frame(frame: FrameType | None, files: RobotFiles) -> FrameType | None:
-    """The innermost frame of the robot's own code, from `frame` outwards."""
+    """Return the innermost frame of the robot's own code, from `frame` outwards."""
     while frame is not None and not files.is_robot_code(frame.f_code.co_filename):
         frame = frame.f_back
     return frame
 
 
 def place_of(frame: FrameType | None, files: RobotFiles) -> tuple[str, str]:
-    """The line that a frame is at, and its function."""
+    """Return the line at which a frame is, and the name of its function."""
     if frame is None:
         return "", ""
     return f"{files.relative(frame.f_code.co_filename)}:{frame.f_lineno}", frame.f_code.co_name

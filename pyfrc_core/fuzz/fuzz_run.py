@@ -1,4 +1,4 @@
-"""A match being mashed: the generator's writes, made and kept."""
+"""One fuzzed match: apply the generated inputs to a run, and record them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from .input_generator import InputGenerator
 
 
 class FuzzRun:
-    """Has a generator write to a run.
+    """Writes generated inputs to a run.
 
     :param run: the robot has been constructed, and not started
-    :param journal: where to note what is written, before it is
+    :param generator: generates the inputs
+    :param journal: a file to which each step is written before it is applied
     """
 
     def __init__(self, run: RobotRun, generator: InputGenerator, journal: IO[bytes] | None = None) -> None:
@@ -29,7 +30,7 @@ class FuzzRun:
         self._targets = Targets(run.hal_data, run.connection.packet)
 
     def write(self) -> None:
-        """What there is to be written now; to be called once before the robot starts."""
+        """Write the inputs that are due now; call it once before the robot starts."""
         now_us = self._run.clock.now_us
         writes = self._generator.writes(now_us)
         if writes:
@@ -40,19 +41,19 @@ class FuzzRun:
             self._targets.write(target, value, now_us)
 
     def on_packet(self, now: float) -> bool:
-        """To be called before each packet; answers whether the match goes on."""
+        """Write the inputs of the next packet; return whether the match continues."""
         self.write()
         now_us = self._run.clock.now_us
         self._targets.count_down(now_us)
         return not self._generator.over(now_us)
 
     def script(self, robot: str, seed: int) -> InputScript:
-        """What was written up to now, as a script that ends after this packet."""
+        """Return the inputs up to now as a script that ends after this packet."""
         return InputScript(tuple(self.steps), self._run.clock.now_us + PACKET_US, robot=robot, seed=seed)
 
 
 def read_journal(journal: Path) -> Iterator[Step]:
-    """What was noted in a journal."""
+    """Return the steps in a journal."""
     if journal.is_file():
         with journal.open("rb") as file:
             while True:

@@ -1,4 +1,7 @@
-"""Which joysticks a robot asks for, and as what: the HAL cannot tell, the robot's objects can."""
+"""Find the joysticks that a robot has created, and their classes.
+
+The HAL does not know the classes, so the robot's objects are searched.
+"""
 
 from __future__ import annotations
 
@@ -10,19 +13,19 @@ from typing import Any
 import wpilib
 from wpilib.interfaces import GenericHID
 
-#: The axes of gamepads that are triggers: they go from 0 to 1, not from -1.
+#: The trigger axes of gamepads: their values go from 0 to 1, not from -1.
 TRIGGERS: dict[str, tuple[int, ...]] = {"XboxController": (2, 3), "PS4Controller": (3, 4), "PS5Controller": (3, 4)}
 
-#: Where robots with more than this many objects keep a joystick is not looked for any longer.
+#: The search ends after this many objects.
 _MOST_OBJECTS = 20_000
 
 _CONTAINERS = (list, tuple, set, frozenset)
-#: What leads to everything in the process.
+#: Objects that are not followed, since they refer to everything in the process.
 _TOO_FAR = (types.ModuleType, type)
 
 
 def find_gamepads(robot: Any) -> dict[int, str]:
-    """By port, the class of the joystick that the robot has made for it; those that can be found."""
+    """Return the class name of the joystick at each port, as far as they are found."""
     found: dict[int, str] = {}
     for stick in _reachable(robot):
         name = next((each.__name__ for each in type(stick).__mro__ if hasattr(wpilib, each.__name__)), "")
@@ -32,7 +35,7 @@ def find_gamepads(robot: Any) -> dict[int, str]:
 
 
 def _reachable(robot: Any) -> Iterator[GenericHID]:
-    """Breadth first, through attributes, containers and what functions have in their closures."""
+    """Search breadth first, through attributes, containers and the closures of functions."""
     seen, waiting = {id(robot)}, [robot]
     for each in waiting:
         if isinstance(each, GenericHID):

@@ -1,4 +1,4 @@
-"""Errors that the HAL reports: it writes them to standard error."""
+"""Errors that the HAL writes to standard error."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from contextlib import contextmanager
 from typing import IO
 
 _ERROR = re.compile(rb"^Error at ([^\n]*)\n", re.MULTILINE)
-#: What is no fault of the robot's code (joysticks that are not plugged in), is found in a better way (slow loops), or
-#: comes from every robot that has nothing to tell its drive for a tenth of a second, and stands still.
+#: Reports that are no fault of the robot's code: joysticks that are not plugged in; slow loops, which are detected in a
+#: better way; drives without a command for a tenth of a second, which every robot has while it stands still.
 _NO_FAULT = re.compile(rb"Joystick .*not (?:available|attached|plugged)|Loop time of|Output not updated", re.IGNORECASE)
 
 
 class HalReports:
     """The reports of one run.
 
-    :param file: where standard error goes meanwhile
+    :param file: the file to which standard error is redirected
     """
 
     def __init__(self, file: IO[bytes]) -> None:
@@ -27,7 +27,7 @@ class HalReports:
         self._read = 0
 
     def error(self) -> str | None:
-        """The first error that was reported since this was last asked; only of lines that are whole."""
+        """Return the first error since the last call, from complete lines only; None if there was none."""
         descriptor = self._file.fileno()
         size = os.fstat(descriptor).st_size
         if size == self._read:
@@ -41,7 +41,7 @@ class HalReports:
         return None
 
     def _read_again(self, size: int) -> bytes:
-        """Where there is only one place to read and to write at, as on Windows."""
+        """Read from a file with a single position for reading and writing, as on Windows."""
         descriptor = self._file.fileno()
         os.lseek(descriptor, self._read, os.SEEK_SET)
         new = os.read(descriptor, size - self._read)
@@ -51,9 +51,9 @@ class HalReports:
 
 @contextmanager
 def hal_reports() -> Iterator[HalReports]:
-    """Listen while this lasts; what was reported is passed on to standard error at the end.
+    """Collect the reports until the context ends, then copy them to standard error.
 
-    Some of it comes from C, and some through Python's own standard error, which need not be the same (in pytest).
+    Some come from C, others through Python's own standard error; under pytest these are two streams.
     """
     stderr = sys.stderr
     stderr.flush()

@@ -1,4 +1,4 @@
-"""Mashes a robot for a whole match: says at each packet what changes, from a generator of random numbers only."""
+"""Generate the inputs of a whole match, packet by packet, from one random number generator."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ if TYPE_CHECKING:
 
 _SECOND_US = 1_000_000
 
-#: Robots make their joysticks when they start: they are not looked for any longer than this.
+#: Robots create their joysticks when they start: they are not searched for after this time.
 _GAMEPADS_UNTIL_US = 2 * _SECOND_US
 
-#: How often to look whether the robot's simulation moves what it measures.
-_LOOK_EVERY_US = 5 * PACKET_US
+#: Interval of the checks whether the robot's simulation drives its sensors.
+_CHECK_EVERY_US = 5 * PACKET_US
 
-#: A robot with a simulation is driven for so long, enabled, before its sensors are mashed: the simulation moves them.
+#: How long a robot with a simulation is enabled before its sensors are written: the simulation drives some of them.
 _DRIVEN_US = 5 * _SECOND_US
 
 _PLUGGED = re.compile(r"joysticks\[(\d)\]\.plugged")
 
 
 class InputGenerator:
-    """One match's fuzz_run. The same numbers mash the same robot in the same way.
+    """Generates one match's inputs: the same seed gives the same robot the same inputs.
 
-    :param chance: where all its randomness comes from
-    :param run: the robot's run, only to look at
-    :param seconds: how long the match is, before, autonomous, pause and all
-    :param physics_inputs: targets of sensors that are left alone, since the robot's physics drives them; others that
-        are found to be driven during the match are left alone from then on
-    :param settings: how long the match's periods are at most
-    :param game_messages: those that the field may send, if that is known
+    :param rng: the only source of randomness
+    :param run: the robot's run, which is only read
+    :param seconds: the length of the match, with all its periods
+    :param physics_inputs: targets of sensors that the robot's physics drives, and that are never written; sensors that
+        turn out to be driven during the match are excluded from then on
+    :param settings: the maximum length of each period
+    :param game_messages: the messages that the field may send, if they are known
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class InputGenerator:
         settings: MatchSettings | None = None,
         game_messages: Sequence[str] = (),
     ) -> None:
-        #: What it has found to mash, by target.
+        #: The inputs found so far, by target.
         self.inputs: dict[str, Input] = {}
         self._rng = rng
         self._run = run
@@ -70,47 +70,47 @@ class InputGenerator:
         self._sensors = SensorGenerator(rng, self._hal_data)
         self._dashboard = DashboardGenerator(rng)
         self._driven = set(physics_inputs)
-        self._sensors.waits = not physics_inputs and _is_simulated(run)
+        self._sensors.paused = not physics_inputs and _is_simulated(run)
         self._enabled_since_us: int | None = None
         self._enabled_us = 0
         self._attached = True
-        self._find_us = self._look_us = PACKET_US
+        self._find_us = self._check_us = PACKET_US
         self._next_us = 0
 
     @property
     def driven_by_physics(self) -> frozenset[str]:
-        """The targets that are left alone, since the robot's simulation drives them; as far as it has shown."""
+        """Return the targets that are not written, since the robot's simulation drives them, as far as is known."""
         return frozenset(self._driven)
 
     def over(self, now_us: int) -> bool:
-        """Whether the match is over."""
+        """Return whether the match is over."""
         return now_us >= self._end_us
 
     def writes(self, now_us: int) -> Mapping[str, Any]:
-        """What to write before the packet of this moment, by target; most often nothing."""
+        """Return what to write before the packet of this time, by target; often nothing."""
         found: dict[str, Any] = {}
         if now_us < self._next_us:
             return found
         while self._planned < len(self._plan) and self._plan[self._planned].at_us <= now_us:
-            self._happen(now_us, self._plan[self._planned].writes, found)
+            self._apply_event(now_us, self._plan[self._planned].writes, found)
             self._planned += 1
-        if now_us == 0:  # the robot has not started
+        if now_us == 0:  # the robot has not been started
             return found
         if now_us >= self._find_us:
             self._find_inputs(now_us)
-        if now_us >= self._look_us:
-            self._look_for_physics(now_us)
+        if now_us >= self._check_us:
+            self._check_physics(now_us)
         parts: list[JoystickGenerator | SensorGenerator | DashboardGenerator] = [self._sensors]
-        if self._attached:  # else nothing that people do arrives
+        if self._attached:  # else no input of the drivers arrives
             parts += [self._sticks, self._dashboard]
         for part in parts:
             if part.next_us <= now_us:
                 part.write(now_us, found)
         plan = self._plan[self._planned].at_us if self._planned < len(self._plan) else self._end_us
-        self._next_us = min(self._find_us, self._look_us, plan, *(part.next_us for part in parts))
+        self._next_us = min(self._find_us, self._check_us, plan, *(part.next_us for part in parts))
         return found
 
-    def _happen(self, now_us: int, event: Mapping[str, Any], found: dict[str, Any]) -> None:
+    def _apply_event(self, now_us: int, event: Mapping[str, Any], found: dict[str, Any]) -> None:
         found |= event
         for target, value in event.items():
             if target == MODE:
@@ -124,37 +124,37 @@ class InputGenerator:
         if self._enabled_since_us is not None:
             self._enabled_us += now_us - self._enabled_since_us
         self._enabled_since_us = None if mode.startswith("disabled") else now_us
-        if self._rng.random() < 0.3:  # in the very packet
+        if self._rng.random() < 0.3:  # in the same packet
             self._sticks.change_pose(now_us)
 
     def _find_inputs(self, now_us: int) -> None:
-        """Robots make devices, and entries of their dashboard, whenever they like."""
+        """Search again: robots may create devices and dashboard entries at any time."""
         self._find_us += _SECOND_US
-        if now_us <= _GAMEPADS_UNTIL_US and not self._sticks.unplugged:  # those have no controls
+        if now_us <= _GAMEPADS_UNTIL_US and not self._sticks.unplugged:  # unplugged joysticks have no controls
             gamepads = find_gamepads(self._run.robot)
             controls = list(find_controls(self._hal_data, gamepads))
-            self._sticks.know(controls, gamepads)
+            self._sticks.set_controls(controls, gamepads)
             self._remember(controls)
         sensors = sorted(find_sensors(self._hal_data))
         self._remember(sensors)
-        self._sensors.know(sensors)
-        self._sensors.left_alone = {each.device for each in sensors if each.target in self._driven}
-        self._dashboard.know(sorted(find_dashboard()))
+        self._sensors.set_inputs(sensors)
+        self._sensors.excluded = {each.device for each in sensors if each.target in self._driven}
+        self._dashboard.set_inputs(sorted(find_dashboard()))
 
     def _remember(self, inputs: list[Input]) -> None:
         self.inputs |= {each.target: each for each in inputs}
 
-    def _look_for_physics(self, now_us: int) -> None:
-        self._look_us += _LOOK_EVERY_US
-        for each in self._sensors.look():
+    def _check_physics(self, now_us: int) -> None:
+        self._check_us += _CHECK_EVERY_US
+        for each in self._sensors.find_driven():
             self._driven.add(each.target)
-            self._sensors.left_alone.add(each.device)
-        if self._sensors.waits:
+            self._sensors.excluded.add(each.device)
+        if self._sensors.paused:
             since_us = now_us if self._enabled_since_us is None else self._enabled_since_us
-            self._sensors.waits = self._enabled_us + now_us - since_us < _DRIVEN_US
+            self._sensors.paused = self._enabled_us + now_us - since_us < _DRIVEN_US
 
 
 def _is_simulated(run: RobotRun) -> bool:
-    """Whether something may drive the robot's sensors."""
+    """Return whether the robot has a simulation, which may drive its sensors."""
     own = getattr(type(run.robot), "_simulationPeriodic", None)
     return run.physics is not None or own not in (None, wpilib.IterativeRobotBase._simulationPeriodic)

@@ -1,6 +1,6 @@
-"""What of a robot can be mashed: its joysticks' controls, and the sensors of the devices that it has made.
+"""Find a robot's inputs: the controls of its joysticks, and the sensors that it has created.
 
-What its dashboard lets people choose is in `dashboard`.
+Inputs from the dashboard are in `dashboard_generator`.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from .values import Kind
 class Input:
     """One input.
 
-    :param target: what an input script calls it
-    :param kind: what sort of values it has
-    :param device: what it is part of: the inputs of one device belong together
-    :param options: of kinds that have a few values only, those
+    :param target: its name in an input script
+    :param kind: the kind of its values
+    :param device: what it belongs to: the inputs of one device change together
+    :param options: the possible values, for kinds with a few values only
     """
 
     target: str
@@ -37,7 +37,7 @@ class Input:
 
 
 def find_controls(hal_data: HalData, gamepads: Mapping[int, str]) -> Iterator[Input]:
-    """The axes, buttons and POVs of the joysticks that are plugged in."""
+    """Return the axes, buttons and POVs of the joysticks that are plugged in."""
     for number, stick in enumerate(hal_data["joysticks"]):
         axes, buttons, povs = stick.counts()
         name, triggers = f"joysticks[{number}]", TRIGGERS.get(gamepads.get(number, ""), ())
@@ -51,7 +51,7 @@ def find_controls(hal_data: HalData, gamepads: Mapping[int, str]) -> Iterator[In
 
 # -- sensors ---------------------------------------------------------------------------------------------------------
 
-#: By room of `hal_data`: the values that its devices read.
+#: The values that devices measure, by their key in `hal_data`.
 _DEVICES: dict[str, tuple[tuple[str, Kind], ...]] = {
     "dio": (("value", "switch"),),
     "analog_in": (("voltage", "volts"),),
@@ -65,7 +65,7 @@ _MODULES: dict[str, tuple[tuple[str, Kind], ...]] = {
     "pdp": (("voltage", "battery"), *((f"current[{channel}]", "amperes") for channel in range(24))),
 }
 
-#: Values of SimDevices with numbers, by their names; the first that fits.
+#: Patterns for the names of a SimDevice's numeric values; the first match counts.
 _NAMED: tuple[tuple[str, Kind], ...] = (
     (r"rate|velocity", "turning"),
     (r"yaw|pitch|roll", "half turns"),
@@ -79,7 +79,7 @@ _NAMED: tuple[tuple[str, Kind], ...] = (
 
 
 def find_sensors(hal_data: HalData) -> Iterator[Input]:
-    """What the robot's sensors measure; of a SimDevice what is not an output of the robot's."""
+    """Return what the robot's sensors measure; outputs of SimDevices are left out."""
     yield Input("power.vin_voltage", "battery", "power")
     yield Input("fpga_button", "switch", "fpga_button")
     if hal_data["accelerometer"]["active"]:
@@ -100,7 +100,7 @@ def find_sensors(hal_data: HalData) -> Iterator[Input]:
 
 
 def _wired(hal_data: HalData) -> set[tuple[str, int | None]]:
-    """Channels that nobody reads by themselves: encoders and gyros are wired to them."""
+    """Return the channels that encoders and gyros use; they are not sensors of their own."""
     encoders = [encoder["config"] for encoder in hal_data["encoder"] if encoder["initialized"]]
     gyros = [number for number, gyro in enumerate(hal_data["analog_gyro"]) if gyro["initialized"]]
     return {("dio", wire) for channels in encoders for wire in channels.values()} | {

@@ -1,7 +1,7 @@
-"""Mashes the controls as hands do: a pose of several at once, held for a while, then another.
+"""Generate joystick inputs: a pose of several controls, held for a while, then another.
 
-Bugs need chords: two buttons with a stick at its end is one pose in a few hundred, but one moment in millions if
-each control changed by itself.
+Bugs need chords. Two buttons with a stick at its end are one pose in a few hundred; if each control changed
+independently, they would be one moment in millions.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .values import NOT_PRESSED, Kind, draw
 #: Packets come 50 times a second, and hands move no faster.
 _STEP_US = 2 * PACKET_US
 
-#: How often a port is mashed when the robot's joysticks could not be found: teams count from 0.
+#: How often each port is used when the robot's joysticks are not found: teams count from 0.
 _UNKNOWN = (40, 15, 3, 1, 1, 1)
-#: When they could, how often those and the others.
+#: How often the ports with and without a joystick of the robot are used when they are found.
 _KNOWN, _OTHERS = 100, 1
 
-#: How many buttons, and how many axes a pose has.
+#: The number of buttons and axes in a pose, drawn from these.
 _BUTTONS = (0, 0, 1, 1, 2, 2, 2, 3, 3, 4)
 _AXES = (0, 0, 1, 1, 1, 2, 2, 2, 4)
 
@@ -32,7 +32,7 @@ _RELEASED: dict[Kind, Any] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov
 
 
 class JoystickGenerator:
-    """One match's hands."""
+    """Generates one match's joystick inputs."""
 
     def __init__(self, rng: random.Random) -> None:
         self._rng = rng
@@ -43,14 +43,14 @@ class JoystickGenerator:
         self._weights: tuple[int, ...] = _UNKNOWN
         self._pose_until_us = 0
         self._held: dict[Input, Any] = {}
-        #: Taps: when which button is pressed or let go.
+        #: Taps: the time, the button, and whether it is pressed or released.
         self._taps: list[tuple[int, Input, bool]] = []
-        #: Sticks in motion: where each started, and where it is to be at the end of the pose.
+        #: Axes in motion: the time and value at the start, and the value at the end of the pose.
         self._moving: dict[Input, tuple[int, float, float]] = {}
         self._trembling: Input | None = None
 
-    def know(self, controls: Iterable[Input], gamepads: Iterable[int]) -> None:
-        """Which controls there are, and for which ports the robot has made joysticks."""
+    def set_controls(self, controls: Iterable[Input], gamepads: Iterable[int]) -> None:
+        """Set the controls, and the ports for which the robot has created joysticks."""
         self._ports = [([], [], []) for _ in range(JOYSTICKS)]
         for control in controls:
             port = int(control.device[len("joysticks[") : -1])
@@ -60,7 +60,7 @@ class JoystickGenerator:
         self._weights = tuple(_KNOWN if port in known else _OTHERS for port in range(JOYSTICKS)) if known else _UNKNOWN
 
     def unplug(self, port: int) -> None:
-        """The joystick is gone, and with it what was pressed on it."""
+        """Unplug the joystick, and release its controls."""
         self.unplugged.add(port)
         gone = f"joysticks[{port}]"
         self._held = {control: value for control, value in self._held.items() if control.device != gone}
@@ -70,15 +70,15 @@ class JoystickGenerator:
             self._trembling = None
 
     def plug_in(self, port: int) -> None:
-        """The joystick is there again, with nothing pressed."""
+        """Plug the joystick in, with all controls released."""
         self.unplugged.discard(port)
 
     def change_pose(self, now_us: int) -> None:
-        """Take another pose at once."""
+        """Begin another pose now."""
         self._pose_until_us = self.next_us = now_us
 
     def write(self, now_us: int, found: dict[str, Any]) -> None:
-        """Add what is to be written now."""
+        """Add the writes of this time."""
         if now_us >= self._pose_until_us:
             self._pose(now_us, found)
         while self._taps and self._taps[0][0] <= now_us:
@@ -160,7 +160,7 @@ class JoystickGenerator:
 
 
 def _some(rng: random.Random, controls: Sequence[Input], count: int) -> list[Input]:
-    """So many different ones, those with low numbers more often: what gamepads have, and what robots ask for."""
+    """Return this many different controls. Low numbers are more likely: gamepads have those, and robots read them."""
     left, found = list(controls), []
     for _ in range(min(count, len(left))):
         # The first ten (axes: six) are on every gamepad.

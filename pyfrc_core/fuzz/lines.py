@@ -1,7 +1,7 @@
-"""Which of the robot's lines a match is the first to reach: what steers a campaign.
+"""Observe which of the robot's lines a match is the first to reach. This guides a campaign.
 
-Not `coverage`, which measures whole processes for reports: here the lines that no match has reached yet are of
-interest, and when; lines that are known cost nothing. Lines count that are in functions: the others run on import.
+`coverage` measures whole processes for reports. Here only lines that no match has reached yet are of interest, and when
+they were reached; known lines cost nothing. Only lines in functions count: all others run on import.
 """
 
 from __future__ import annotations
@@ -19,39 +19,41 @@ from ..project.robot_files import RobotFiles
 #: A file, relative to the project, and the number of a line.
 Line = tuple[str, int]
 
-#: One of the numbers that `sys.monitoring` leaves to whoever comes first; debuggers and coverage have theirs.
+#: One of the tool numbers that `sys.monitoring` leaves unassigned; debuggers and coverage have their own.
 _TOOL = 4
 
 
 class RobotLines:
-    """The lines of the robot's functions. Its modules are imported by then, and `gc.freeze` is yet to be called."""
+    """The lines of the robot's functions. Create it after the robot's modules were imported, and before `gc.freeze` is
+    called.
+    """
 
     def __init__(self, files: RobotFiles) -> None:
         self._by_code: dict[CodeType, dict[int, Line]] = {}
         for thing in gc.get_objects():
-            # By its type: `isinstance` asks stand-ins for their `__class__`, which has them import what they stand for.
+            # Not `isinstance`, which reads `__class__`: lazy proxies import their module when it is read.
             if type(thing) is FunctionType and files.is_robot_code(thing.__code__.co_filename):
-                self._take(thing.__code__, files)
+                self._add(thing.__code__, files)
 
-    def _take(self, code: CodeType, files: RobotFiles) -> None:
+    def _add(self, code: CodeType, files: RobotFiles) -> None:
         if code not in self._by_code:
             name = files.relative(code.co_filename)
             self._by_code[code] = {line: (name, line) for _, _, line in code.co_lines() if line}
-            # Its first line is that of `def`, which runs when it is called but holds nothing.
+            # The first line is that of `def`: it runs with every call, and holds no code.
             self._by_code[code].pop(code.co_firstlineno, None)
             for constant in code.co_consts:
                 if isinstance(constant, CodeType):
-                    self._take(constant, files)
+                    self._add(constant, files)
 
     def all(self) -> frozenset[Line]:
-        """Every one of them."""
+        """Return all lines."""
         return frozenset(line for lines in self._by_code.values() for line in lines.values())
 
     @contextmanager
     def watched(self, known: frozenset[Line], now_us: Callable[[], int]) -> Iterator[dict[Line, int]]:
-        """While this lasts, take down which lines are reached that are not known, and when they first are.
+        """Record which unknown lines are reached and when, until the context ends.
 
-        Code that another tool traces in Python before 3.12 is not watched.
+        Before Python 3.12, code that another tool traces is not observed.
         """
         wanted = {
             code: {number: line for number, line in lines.items() if line not in known}
@@ -120,5 +122,5 @@ def _traced(
 
 
 def share(reached: Iterable[Line], all_lines: frozenset[Line]) -> float:
-    """How much of the lines was reached, from 0 to 1."""
+    """Return the share of the lines that was reached, from 0 to 1."""
     return len(all_lines.intersection(reached)) / len(all_lines) if all_lines else 1.0

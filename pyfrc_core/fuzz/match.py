@@ -1,4 +1,4 @@
-"""One match in a process of its own, mashed or as a script says, and what came of it."""
+"""Run one match in its own process, with generated inputs or those of a script, and return the result."""
 
 from __future__ import annotations
 
@@ -32,17 +32,18 @@ from .seed_schedule import SeedSchedule
 if TYPE_CHECKING:
     from ..runtime.own_process import LastWords
 
-#: What the robot's own random generators start from, as in tests that say nothing else: else a script that was found
-#: here would do something else there.
+#: The seed of the robot's own random generators. It is the default seed of tests, so that a script has the same effect
+#: there.
 ROBOT_SEED = 0
 
 
 @dataclass(frozen=True)
 class FuzzTask:
-    """To be done: mash a match.
+    """Run a match with generated inputs.
 
-    :param known: the lines that are reached already
-    :param journal: a file for what is written, in case that the process ends before it can tell
+    :param schedule: the random seeds
+    :param known: the lines that were reached before
+    :param journal: a file for the inputs, in case the process ends before it can return them
     """
 
     schedule: SeedSchedule
@@ -52,9 +53,9 @@ class FuzzTask:
 
 @dataclass(frozen=True)
 class ReplayTask:
-    """To be done: run the robot as a script says.
+    """Run the robot with the inputs of a script.
 
-    :param use_oracle: whether more than exceptions is a failure
+    :param use_oracle: whether misbehavior without an exception is a failure
     """
 
     script: InputScript
@@ -66,12 +67,12 @@ Task = FuzzTask | ReplayTask
 
 @dataclass(frozen=True)
 class MatchResult:
-    """What came of a match.
+    """Result of a match.
 
-    :param failure: what went wrong, if something did
-    :param script: what was written, until then
-    :param reached: the lines it was the first to reach, and when, in microseconds
-    :param inputs: what the robot has to be mashed, by target
+    :param failure: the failure, if there was one
+    :param script: the inputs until then
+    :param reached: the lines that were reached for the first time, and when, in microseconds
+    :param inputs: the robot's inputs, by target
     """
 
     failure: FuzzFailure | None
@@ -81,9 +82,9 @@ class MatchResult:
 
 
 def play(project: Project, task: Task, words: LastWords) -> MatchResult:
-    """Do one task; the process is its own, and ends with it.
+    """Run one task in this process, which must end afterwards.
 
-    :param words: where to leave word when the robot's code cannot be stopped
+    :param words: where to write a crash report when the robot's code cannot be stopped
     """
     if isinstance(task, ReplayTask):
         return _replay(project, task, words)
@@ -92,13 +93,13 @@ def play(project: Project, task: Task, words: LastWords) -> MatchResult:
 
 @lru_cache(maxsize=1)
 def robot_lines(project: Project) -> RobotLines:
-    """The lines of the robot, which is imported when this is first asked for."""
+    """Return the lines of the robot, which the first call imports."""
     load(project)
     return RobotLines(project.files)
 
 
 def load(project: Project) -> type[Any]:
-    """Import the robot program, and its physics.
+    """Import the robot program and its physics.
 
     :raises RobotCodeError: when its code fails
     """
@@ -158,7 +159,7 @@ def _replay(project: Project, task: ReplayTask, words: LastWords) -> MatchResult
         try:
             construct(project, run, load(project))
             Player(script, run).play()
-        except ScriptError:  # what it writes to is not there, since nothing has had the robot make it
+        except ScriptError:  # a target does not exist, since the robot has not created it in this run
             pass
         except (TestEnded, TestRanTooLong):
             pass
@@ -171,7 +172,7 @@ def _replay(project: Project, task: ReplayTask, words: LastWords) -> MatchResult
 
 @contextmanager
 def _robot(project: Project, words: LastWords, seed: int, use_oracle: bool = True) -> Iterator[RobotRun]:
-    """A run, open, watched and judged. It is not ended: its process is."""
+    """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
     load(project)  # before robot time begins
     run = RobotRun()
     settings = project.settings.fuzz

@@ -1,6 +1,6 @@
-"""Where matches are played: processes forked from one that has imported everything, or new ones where fork is not safe.
+"""Run matches in worker processes: forks of a process that has imported everything, or new interpreters.
 
-What a match makes of its process matters to nobody: each has its own, and that may crash, hang and print as it likes.
+Each match has its own process, so it may crash, hang and print without harm.
 """
 
 from __future__ import annotations
@@ -33,24 +33,24 @@ from .match import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task, play, ro
 
 Answer = TypeVar("Answer")
 
-# How long to wait before looking whether somebody has ended the campaign.
-_LOOK_SECONDS = 0.1
+# Interval of the checks for an interrupt, in seconds.
+_INTERRUPT_CHECK_SECONDS = 0.1
 
 _MEANWHILE = "in the middle of the match"
 
 
 class MatchExecutor(ABC):
-    """Plays matches of one project.
+    """Runs matches of one project.
 
     :param jobs: how many at a time
-    :param directory: for files that nobody else needs
+    :param directory: a directory for temporary files
     """
 
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         self.project = project
         self.jobs = jobs
-        #: Set by whoever wants it to end: what plays then raises `KeyboardInterrupt`. (An exception out of a signal's
-        #: handler would be lost if it came while a process is being forked.)
+        #: Set to end the matches: `play` then raises `KeyboardInterrupt`. (An exception raised by a signal handler
+        #: would be lost if it came during a fork.)
         self.interrupted = False
         self._directory = directory
         self._journals = 0
@@ -58,20 +58,22 @@ class MatchExecutor(ABC):
     @property
     @abstractmethod
     def lines(self) -> frozenset[Line]:
-        """The lines of the robot's functions."""
+        """Return the lines of the robot's functions."""
 
     @abstractmethod
     def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
-        """What came of each, in their order, as soon as it is known; those that nobody asks for any more are ended."""
+        """Return the results in the order of the tasks, each as soon as it is known; closing the generator ends the
+        remaining tasks.
+        """
 
     def replay(self, script: InputScript) -> MatchResult:
-        """Run the robot as a script says."""
+        """Run the robot with the inputs of a script."""
         (played,) = self.play([ReplayTask(script)])
         return played
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:
-        """While this lasts, Ctrl-C, and what else ends a process gently, interrupts what plays."""
+        """Interrupt the matches on SIGINT (Ctrl-C) and SIGTERM, until the context ends."""
 
         def interrupt(signum: int, frame: object) -> None:
             self.interrupted = True
@@ -83,13 +85,13 @@ class MatchExecutor(ABC):
             for number, handler in before.items():
                 signal.signal(number, handler)
 
-    def _see_whether_interrupted(self) -> None:
+    def _check_interrupt(self) -> None:
         if self.interrupted:
             raise KeyboardInterrupt
 
     @contextmanager
     def _journal(self, task: Task) -> Iterator[None]:
-        """While this lasts, what it notes may be read."""
+        """Delete the task's journal when the context ends."""
         try:
             yield
         finally:
@@ -103,7 +105,7 @@ class MatchExecutor(ABC):
         return replace(task, journal=self._directory / str(self._journals))
 
     def _died(self, task: Task, text: str) -> MatchResult:
-        """A process has ended without an answer; what is known of that."""
+        """Return the result of a match whose process ended without returning one."""
         headline = text.partition("\n")[0]
         place, _, what = headline.partition(": ")
         if not what:
@@ -118,7 +120,7 @@ class MatchExecutor(ABC):
 
 @contextmanager
 def open_match_executor(project: Project, jobs: int) -> Iterator[MatchExecutor]:
-    """Where this project's matches are played.
+    """Open the executor that fits this project and platform.
 
     :raises RobotCodeError: when the robot's code cannot be imported
     """
@@ -131,7 +133,7 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[MatchExecutor]:
 
 
 class SpawnedMatchExecutor(MatchExecutor):
-    """Each match in a new interpreter."""
+    """Runs each match in a new interpreter."""
 
     @property
     def lines(self) -> frozenset[Line]:
@@ -154,9 +156,9 @@ class SpawnedMatchExecutor(MatchExecutor):
     def _result(self, task: Task, future: Future[MatchResult]) -> MatchResult:
         with self._journal(task):
             while not future.done():
-                wait([future], _LOOK_SECONDS)
-                self._see_whether_interrupted()
-            self._see_whether_interrupted()  # which may have ended that process, too
+                wait([future], _INTERRUPT_CHECK_SECONDS)
+                self._check_interrupt()
+            self._check_interrupt()  # the signal may have ended that process, too
             try:
                 return future.result()
             except RobotCodeError as ended:
@@ -172,7 +174,7 @@ def _all_lines(project: Project, words: LastWords) -> frozenset[Line]:
 
 
 class ForkedMatchExecutor(MatchExecutor):
-    """Each match in a fork of this process, which has imported the robot, unless that would leave threads behind."""
+    """Runs each match in a fork of this process, which has imported the robot, unless importing it starts threads."""
 
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
@@ -182,11 +184,11 @@ class ForkedMatchExecutor(MatchExecutor):
             lines = robot_lines(project).all()
             return bool(reasons_not_to_fork()), lines
 
-        # In a process of its own first: what importing does cannot be taken back.
+        # In a separate process first: an import cannot be undone.
         imports_late, self._lines = self._do(survey)
         if not imports_late:
             robot_lines(project)
-        gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory
+        gc.freeze()  # a garbage collection in a fork would copy the memory of all objects
 
     @property
     def lines(self) -> frozenset[Line]:
@@ -198,7 +200,7 @@ class ForkedMatchExecutor(MatchExecutor):
         try:
             more = True
             while more or waiting:
-                self._see_whether_interrupted()
+                self._check_interrupt()
                 while more and sum(not work.finished for _, work in waiting) < self.jobs:
                     task = next(left, None)
                     if task is None:
@@ -219,7 +221,7 @@ class ForkedMatchExecutor(MatchExecutor):
                 self._running.remove(work)
 
     def close(self) -> None:
-        """End what still runs."""
+        """End the matches that are still running."""
         for work in self._running:
             work.close()
 

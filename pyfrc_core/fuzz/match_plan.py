@@ -1,4 +1,4 @@
-"""How a mashed match goes: the modes and how long they last, what the field says, and what goes wrong with it."""
+"""Plan a fuzzed match: its modes and their lengths, the field's messages, and disturbances."""
 
 from __future__ import annotations
 
@@ -14,18 +14,19 @@ from ..runtime.scripts.targets import MATCH_TIME, MODE, plugged
 
 _STATIONS = ("red1", "red2", "red3", "blue1", "blue2", "blue3")
 
-#: How often each port loses its joystick: that of the driver most.
+#: How often each port's joystick is unplugged, relative to the others: the driver's most often.
 _UNPLUGGED = (20, 6, 1, 1, 1, 1)
 
-#: The mode in which a robot is about to be enabled in this one.
+#: The disabled mode that comes before each mode.
 _BEFORE = {"autonomous": "disabled autonomous", "teleop": "disabled", "test": "disabled test"}
 
 
 @dataclass(frozen=True)
 class MatchEvent:
-    """Something that happens in a match.
+    """An event of a match.
 
-    :param at_us: when; at a packet
+    :param at_us: its time, which is that of a packet
+    :param writes: what it writes, by target
     """
 
     at_us: int
@@ -41,10 +42,10 @@ class _Period:
 def plan_match(
     rng: random.Random, seconds: float, settings: MatchSettings, messages: Sequence[str] = ()
 ) -> list[MatchEvent]:
-    """All events of a match, in order.
+    """Return all events of a match, in order.
 
-    :param seconds: how long the match is; its periods are as in `settings`, or shorter
-    :param messages: those that the field may send, if that is known
+    :param seconds: the length of the match; its periods are as long as `settings` says, or shorter
+    :param messages: the messages that the field may send, if they are known
     """
     planner = _Planner(rng, tuple(messages))
     now = 0.0
@@ -58,7 +59,7 @@ def plan_match(
 
 
 def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> list[_Period]:
-    """Most often those of a match; else what happens to robots in the pit, and in matches that begin anew."""
+    """Return the periods of a match; in some cases those of a pit test, or of a match that is restarted."""
     before = min(settings.before, 0.05 * seconds)
     autonomous = min(settings.autonomous, 0.3 * seconds)
     pause = min(settings.pause, 0.05 * seconds)
@@ -70,7 +71,7 @@ def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> lis
         periods = [_Period("disabled", before)]
     elif how < 0.14:  # the pit crew tries test mode
         periods = [_Period("disabled test", before), _Period("test", 0.1 * teleop), *periods]
-    elif how < 0.24:  # the first autonomous is broken off
+    elif how < 0.24:  # the first autonomous period is aborted
         periods = [ready, _Period("autonomous", rng.uniform(0.1, 0.9) * autonomous), *periods]
     elif how < 0.29:  # the drivers practise before
         periods = [_Period("disabled", before), _Period("teleop", 0.3 * teleop), *periods]
@@ -84,14 +85,14 @@ class _Planner:
         self.events: list[MatchEvent] = []
         self._rng = rng
         self._messages = messages
-        #: When the field sends the game's message: at once, with autonomous, in teleoperated (2020), or never.
+        #: When the field sends the game message: before the match, with autonomous, with teleoperated (2020), or never.
         self._message_with = rng.choice(("at once", "autonomous", "autonomous", "autonomous", "teleop", "never"))
 
     def add(self, at: float, writes: dict[str, Any]) -> None:
         self.events.append(MatchEvent(round(at * 1_000_000 / PACKET_US) * PACKET_US, writes))
 
     def stop_for_good(self, at: float) -> None:
-        """An emergency stop: the driver station enables the robot no more."""
+        """Add an emergency stop: the driver station does not enable the robot again."""
         self.add(at, {"control.eStop": True, MODE: "disabled"})
         stopped_us = self.events[-1].at_us
         for event in self.events[:-1]:
@@ -99,7 +100,7 @@ class _Planner:
                 event.writes.pop(MODE, None)
 
     def before(self) -> None:
-        """What holds when the robot starts."""
+        """Add the state in which the robot starts."""
         rng = self._rng
         now: dict[str, Any] = {}
         station = rng.choice(_STATIONS)
@@ -116,7 +117,7 @@ class _Planner:
         self.add(0, now)
 
     def period(self, start: float, period: _Period) -> None:
-        """One period, and what goes wrong in it."""
+        """Add one period and its disturbances."""
         rng, enabled = self._rng, period.mode in _BEFORE
         now: dict[str, Any] = {MODE: period.mode, MATCH_TIME: round(period.seconds, 3) if enabled else 0.0}
         if period.mode == self._message_with:
@@ -127,14 +128,14 @@ class _Planner:
                 now["event.game_specific_message"] = self._message()
         self.add(start, now)
         if enabled and period.seconds > 1:
-            # Never two at a time: each in its own part of the period.
+            # Each disturbance has its own part of the period, so that no two overlap.
             parts = rng.choice((0, 1, 1, 2, 2, 3, 4))
             for part in range(parts):
                 length = period.seconds / parts
-                self._mishap(start + part * length, length, period.mode)
+                self._disturbance(start + part * length, length, period.mode)
 
-    def _mishap(self, start: float, length: float, mode: str) -> None:
-        """Something awkward between `start` and `length` seconds later, over before those are."""
+    def _disturbance(self, start: float, length: float, mode: str) -> None:
+        """Add a disturbance that begins after `start` and ends within `length` seconds of it."""
         rng = self._rng
         lasts = min(rng.choice((0.02, 0.04, 0.1, 0.5, 1.0, 2.0)), 0.4 * length)
         begin = start + rng.uniform(0.1, 0.5) * length
@@ -162,12 +163,14 @@ class _Planner:
 
 
 def _sides(rng: random.Random) -> str:
-    """As in 2018 a letter for each of three plates, as in 2020 a colour, as in 2024 and 2026 an alliance."""
+    """Return a message like that of 2018 (a letter for each of three plates), 2020 (a color), or 2024 and 2026 (an
+    alliance).
+    """
     if rng.random() < 0.6:
         return "".join(rng.choice("LR") for _ in range(3))
     return rng.choice("RGBY")
 
 
 def seconds_of(settings: MatchSettings) -> float:
-    """The length of a whole match, in seconds."""
+    """Return the length of a whole match, in seconds."""
     return settings.before + settings.autonomous + settings.pause + settings.teleop

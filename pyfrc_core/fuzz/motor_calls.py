@@ -1,4 +1,7 @@
-"""What robot code tells its motors: heard where it calls, since WPILib makes 0 of NaN, and 1 of more than that."""
+"""Intercept the calls with which robot code sets its motors.
+
+The calls are intercepted in Python, since WPILib passes 0 for NaN, and 1 for greater values.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ import wpilib
 import wpilib.drive
 import wpilib.interfaces
 
-#: Called with the name of what was called, its numbers, and whether they are a motor's power from -1 to 1.
+#: Called with the function's name, its numeric arguments, and whether they are powers from -1 to 1.
 OnMotorCall = Callable[[str, tuple[float, ...], bool], None]
 
 _DRIVES = (
@@ -21,7 +24,7 @@ _DRIVES = (
 
 @contextmanager
 def intercept_motor_calls(on_motor_call: OnMotorCall) -> Iterator[None]:
-    """While this lasts, `on_motor_call` is told of every call; the robot's modules are imported by then."""
+    """Report every call to `on_motor_call` until the context ends; the robot's modules must be imported."""
     before = []
     for owner, name, wrapped in list(_wrapped(on_motor_call)):
         before.append((owner, name, vars(owner)[name]))
@@ -50,8 +53,8 @@ def _with_derived(base: type[Any]) -> Iterator[type[Any]]:
         yield from _with_derived(derived)
 
 
-# The functions must have the names of what they stand for: called from one of that name, the bindings take a call for
-# one of `super()`, as it is where a robot's own class overrides the method.
+# Each wrapper must have the name of the function it wraps: WPILib's bindings take a call from a function of the same
+# name for a call of `super()`, as it is where a robot's own class overrides the method.
 
 
 def _set(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callable[..., Any]:

@@ -1,4 +1,4 @@
-"""Watches a run for what no robot should do and no exception tells; what it finds ends the run like an exception."""
+"""The oracle: detect misbehavior that raises no exception. A finding ends the run as an exception would."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
 from .motor_calls import intercept_motor_calls
 
-#: So long after it was disabled, a robot may still tell its motors to move: its loop has to come round.
+#: How long after it was disabled a robot may still command its motors: its loop has to come round.
 _STOPS_WITHIN_US = 500_000
-#: So long after the driver station has asked for another mode, a robot may still be in the one before.
+#: How long after the driver station has selected another mode a robot may still be in the previous one.
 _LEAVES_WITHIN_US = 3_000_000
-#: More than 1 by so little is how floating-point numbers are added.
+#: Rounding errors of floating-point sums may exceed 1 by this much.
 _ROUNDING = 1e-6
-#: A power that moves no motor.
-_NOTHING = 0.02
+#: Powers up to this one do not move a motor.
+_NEGLIGIBLE_POWER = 0.02
 
 
 @contextmanager
 def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings) -> Iterator[None]:
-    """Watch a run, which is open and has not started, while this lasts."""
+    """Watch a run, which is open and has not started, until the context ends."""
     with ExitStack() as closing:
         oracle = _Oracle(run, files, settings, closing.enter_context(hal_reports()) if settings.hal_errors else None)
         if settings.not_a_number or settings.out_of_range or settings.motors_while_disabled:
@@ -38,7 +38,7 @@ def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings) -> I
         if settings.slow_loops:
             run.timed_loop.after_call = oracle.after_call
         run.clock.before_packet.append(oracle.before_packet)
-        run.observe(oracle.look)
+        run.observe(oracle.after_packet)
         yield
 
 
@@ -60,33 +60,35 @@ class _Oracle:
         self._reports = reports
         self._mode = ""
         self._mode_since_us = 0
-        #: When the robot was last in the mode that it is to be in.
+        #: When the robot was last in the selected mode.
         self._agreed_us = 0
-        #: Where the robot's code was waiting when a packet came in the middle of it.
+        #: The line at which robot code was waiting when a packet came during its loop.
         self._waiting_at = ("", "")
 
     def _misbehaved(self, what: str, kind: str, place: tuple[str, str]) -> None:
         threads = self._run.threads
         if threads.failure is None and not threads.ending:
-            where = f"\n  (Switch this off with {kind} = false under [tool.pyfrc.fuzz] in pyproject.toml.)"
+            where = f"\n  (Disable this check with {kind} = false under [tool.pyfrc.fuzz] in pyproject.toml.)"
             threads.fail(MisbehaviorError(what + where, kind, *place))
 
     # -- motors ------------------------------------------------------------------------------------------------
 
     def on_motor_call(self, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
-        """Robot code calls a motor, or a drive."""
+        """Check a call of a motor controller or a drive."""
         settings = self._settings
         for number in numbers:
             if number != number:  # NaN
                 if settings.not_a_number:
-                    self._misbehaved(f"{name}() is given NaN", "not_a_number", self._caller())
+                    self._misbehaved(f"{name}() was called with NaN", "not_a_number", self._caller())
             elif is_power and abs(number) > 1 + _ROUNDING:
                 if settings.out_of_range:
-                    what = f"{name}() is given a power of {'more than 1' if number > 0 else 'less than -1'}"
+                    what = f"{name}() was called with a power of {'more than 1' if number > 0 else 'less than -1'}"
                     self._misbehaved(what, "out_of_range", self._caller())
-            elif abs(number) > _NOTHING and settings.motors_while_disabled and self._is_long_disabled():
+            elif abs(number) > _NEGLIGIBLE_POWER and settings.motors_while_disabled and self._is_long_disabled():
                 self._misbehaved(
-                    f"{name}() is to move a motor while the robot is disabled", "motors_while_disabled", self._caller()
+                    f"{name}() commands a motor to move while the robot is disabled",
+                    "motors_while_disabled",
+                    self._caller(),
                 )
 
     def _is_long_disabled(self) -> bool:
@@ -102,22 +104,22 @@ class _Oracle:
     # -- each packet --------------------------------------------------------------------------------------------
 
     def before_packet(self, now: float) -> None:
-        """Everything that a packet brings has been written."""
+        """Note the mode, after all inputs of a packet were written."""
         mode: str = modes.get_mode() if modes.is_attached() else "disabled"
         if mode != self._mode:
             self._mode, self._mode_since_us = mode, self._run.clock.now_us
 
-    def look(self, now: float) -> None:
-        """A packet has come, and the robot has done its part, or is in the middle of something longer."""
+    def after_packet(self, now: float) -> None:
+        """Check the run after a packet; robot code may be in the middle of a longer call."""
         frame = user_frame(sys._getframe(1), self._files)
         if frame is not None:
             self._waiting_at = place_of(frame, self._files)
         if self._reports is not None and (report := self._reports.error()) is not None:
             self._misbehaved(f"the HAL reports an error: {report}", "hal_errors", ("", ""))
         if self._settings.stuck_modes:
-            self._look_for_stuck_mode(frame)
+            self._check_mode(frame)
 
-    def _look_for_stuck_mode(self, frame: FrameType | None) -> None:
+    def _check_mode(self, frame: FrameType | None) -> None:
         run = self._run
         if run.started and not run.alive:
             self._misbehaved("the robot program has ended by itself", "stuck_modes", ("", ""))
@@ -127,7 +129,7 @@ class _Oracle:
             self._agreed_us = run.clock.now_us
         elif run.clock.now_us - self._agreed_us > _LEAVES_WITHIN_US:
             place = place_of(frame, self._files) if frame is not None else self._place_of_own_loop()
-            what = f"the robot is still in {state} mode, {_LEAVES_WITHIN_US / 1e6:g} s after that was over"
+            what = f"the robot is still in {state} mode, {_LEAVES_WITHIN_US / 1e6:g} s after that mode ended"
             self._misbehaved(what, "stuck_modes", place)
 
     def _place_of_own_loop(self) -> tuple[str, str]:
@@ -138,8 +140,8 @@ class _Oracle:
     # -- loops --------------------------------------------------------------------------------------------------
 
     def after_call(self, callback: Periodic) -> None:
-        """A callback of a `TimedRobot` has returned."""
+        """Check how long a callback of a `TimedRobot` took."""
         took_us = self._run.clock.now_us - self._run.timed_loop.loop_start_us
         if took_us > callback.period_us:
-            what = f"a loop of {callback.period_us / 1e6:g} s waits here, for longer than that"
+            what = f"a loop with a period of {callback.period_us / 1e6:g} s waits here for longer than its period"
             self._misbehaved(what, "slow_loops", self._waiting_at)

@@ -1,4 +1,4 @@
-"""What a campaign's matches are made of: the seed, their number, and the lines that those before have reached."""
+"""The random seeds of a campaign's matches, derived from its seed, a match's number and the lines reached before."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ from dataclasses import dataclass
 from ..runtime.clock import PACKET_US
 from .lines import Line
 
-#: How many matches go on from one that has been, when there are any worth it.
+#: The share of matches that continue an earlier one, when there are any worth continuing.
 _CONTINUED = 0.5
-#: How long after a line was first reached a match still goes the same way, at most.
-_GOES_ON_US = 1_000_000
-#: So many matches worth going on from are kept: the latest, which have reached what is hardest to reach.
-_MOST_KEPT = 64
+#: A match that continues another equals it for at most this long after that one first reached a line.
+_SAME_FOR_US = 1_000_000
+#: How many matches worth continuing are remembered: the latest, which have reached the lines that are hardest to reach.
+_MOST_REMEMBERED = 64
 
 
 @dataclass(frozen=True)
 class SeedSchedule:
-    """How to mash one match.
+    """The random seeds of one match.
 
-    :param turns: where its chance comes from: by the microsecond from which that holds, the first at 0
+    :param seeds: pairs of a time in microseconds and the seed that holds from then on; the first time is 0
     """
 
     seeds: tuple[tuple[int, str], ...]
 
     def rng(self) -> random.Random:
-        """The generator at the beginning; see `turn`."""
+        """Return the random number generator for the start of the match; `reseed` keeps it up to date."""
         return random.Random(self.seeds[0][1])
 
     def reseed(self, rng: random.Random, before_us: int, now_us: int) -> None:
-        """Begin anew what is to begin anew now.
+        """Reseed the generator when a new seed holds from between these two times.
 
-        The robot, told the same, does the same: so a match goes as another did until then, without anything being kept
-        of that but where its chance came from.
+        A robot with the same inputs behaves in the same way. So a match with the first seeds of another one equals it
+        up to the first different seed, and only the seeds need to be stored.
         """
         for at_us, seed in self.seeds[1:]:
             if before_us < at_us <= now_us:
@@ -47,28 +47,30 @@ class _Worthwhile:
 
 
 class SeedScheduler:
-    """The schedules of one campaign: the same for the same seed and the same lines, told in the same order."""
+    """Chooses the seeds of a campaign's matches: the same choices for the same seed and the same lines, reported in the
+    same order.
+    """
 
     def __init__(self, seed: int) -> None:
         self._seed = seed
         self._worthwhile: list[_Worthwhile] = []
 
     def schedule(self, number: int) -> SeedSchedule:
-        """How to mash the match of this number."""
+        """Return the seeds of the match with this number."""
         own = f"fuzz {self._seed} {number}"
         rng = random.Random(f"recipe {own}")
         if not self._worthwhile or rng.random() >= _CONTINUED:
             return SeedSchedule(((0, own),))
         base = rng.choice(self._worthwhile)
-        from_us = rng.choice(base.reached_us) + rng.randrange(0, _GOES_ON_US, PACKET_US)
+        from_us = rng.choice(base.reached_us) + rng.randrange(0, _SAME_FOR_US, PACKET_US)
         before = tuple(turn for turn in base.schedule.seeds if turn[0] < from_us)
         return SeedSchedule((*before, (from_us, own)))
 
     def learn(self, schedule: SeedSchedule, reached: dict[Line, int]) -> None:
-        """A match has been the first to reach these lines.
+        """Note the lines that a match was the first to reach.
 
-        :param reached: when it reached each, in microseconds
+        :param reached: when it reached each line, in microseconds
         """
         if reached:
             moments = tuple(sorted(set(reached.values())))
-            self._worthwhile = [*self._worthwhile, _Worthwhile(schedule, moments)][-_MOST_KEPT:]
+            self._worthwhile = [*self._worthwhile, _Worthwhile(schedule, moments)][-_MOST_REMEMBERED:]

@@ -1,4 +1,4 @@
-"""Mashes what sensors measure: jumps, slow ways from one value to another, wheels that turn and stand still."""
+"""Generate sensor values: jumps, gradual changes, wheels that turn and stand still."""
 
 from __future__ import annotations
 
@@ -12,41 +12,41 @@ from ..runtime.clock import PACKET_US
 from .inputs import Input
 from .values import SPANS, can_be, draw, nearest
 
-#: While something moves, it is measured anew this often.
+#: Interval of the updates while a value changes gradually.
 _STEP_US = 3 * PACKET_US
 
 #: Seconds from one sensor's change to the next one's, on average, and at least.
 _PAUSE, _SHORTEST_PAUSE = 1.0, 0.1
 
-#: How often a battery's voltage, a button on the roboRIO and the currents change, against other devices.
+#: Devices that change a quarter as often as the others.
 _SELDOM = ("power", "fpga_button", "pdp")
 
-#: What to write next, and when; None when it is over.
-_Going = Callable[[int, dict[str, Any]], "int | None"]
+#: Adds the next writes; returns when to call it again, or None when it is finished.
+_Change = Callable[[int, dict[str, Any]], "int | None"]
 
 
 class SensorGenerator:
-    """One match's measurements."""
+    """Generates one match's sensor values."""
 
     def __init__(self, rng: random.Random, hal_data: HalData) -> None:
         self._rng = rng
         self._hal_data = hal_data
         self.next_us = 0
-        #: Devices that are not to be touched yet, or any more.
-        self.left_alone: set[str] = set()
-        self.waits = False
-        #: What each was when it was last written or looked at, by target.
+        #: Devices that are not written.
+        self.excluded: set[str] = set()
+        self.paused = False
+        #: The value of each input when it was last written or read, by target.
         self._known: dict[str, Any] = {}
         self._inputs: list[Input] = []
         self._devices: dict[str, list[Input]] = {}
         self._names: list[str] = []
         self._weights: list[float] = []
         self._change_us = 0
-        #: By device, what is under way with it.
-        self._going: dict[str, tuple[int, _Going]] = {}
+        #: The gradual change of each device, and when it continues.
+        self._going: dict[str, tuple[int, _Change]] = {}
 
-    def know(self, inputs: list[Input]) -> None:
-        """Which inputs there are."""
+    def set_inputs(self, inputs: list[Input]) -> None:
+        """Set the inputs to generate values for."""
         self._inputs, self._devices = inputs, {}
         for each in inputs:
             self._devices.setdefault(each.device, []).append(each)
@@ -54,10 +54,10 @@ class SensorGenerator:
         self._weights = [0.25 if name.startswith(_SELDOM) else 1.0 for name in self._names]
 
     def write(self, now_us: int, found: dict[str, Any]) -> None:
-        """Add what is to be written now."""
+        """Add the writes of this time."""
         now: dict[str, Any] = {}
         for device, (due_us, go) in list(self._going.items()):
-            if device in self.left_alone:
+            if device in self.excluded:
                 del self._going[device]
             elif due_us <= now_us:
                 again_us = go(now_us, now)
@@ -73,15 +73,15 @@ class SensorGenerator:
         self._known |= now
         found |= now
 
-    def look(self) -> Iterator[Input]:
-        """Those that have changed without being mashed: the project's physics drives them, or code of the robot's own.
+    def find_driven(self) -> Iterator[Input]:
+        """Return the inputs that have changed without a write: the project's physics or the robot's code drives them.
 
-        Robots reset encoders and gyros: what has become 0 says nothing.
+        A value that became 0 does not count: robots reset encoders and gyros.
         """
         known = self._known
         for each in self._inputs:
             # Rates follow from other values.
-            if each.kind == "rate" or each.device in self.left_alone:
+            if each.kind == "rate" or each.device in self.excluded:
                 continue
             now = self._hal_data.read(each.target)
             if now and known.get(each.target, now) != now:
@@ -90,10 +90,10 @@ class SensorGenerator:
 
     def _change(self, now_us: int, found: dict[str, Any]) -> None:
         rng = self._rng
-        if not self._names or self.waits:
+        if not self._names or self.paused:
             return
         (device,) = rng.choices(self._names, self._weights)
-        if device in self.left_alone:
+        if device in self.excluded:
             return
         inputs = self._devices[device]
         self._going.pop(device, None)
@@ -104,7 +104,7 @@ class SensorGenerator:
         if begun is not None:
             self._going[device] = begun
 
-    def _measure(self, each: Input, now_us: int, found: dict[str, Any]) -> tuple[int, _Going] | None:
+    def _measure(self, each: Input, now_us: int, found: dict[str, Any]) -> tuple[int, _Change] | None:
         rng = self._rng
         before = self._hal_data.read(each.target)
         if each.kind in ("connected", "battery"):  # a loose contact, a heavy load: soon over
@@ -130,12 +130,12 @@ class SensorGenerator:
 
         return now_us + _STEP_US, go
 
-    def _turn_wheel(self, device: str, now_us: int, found: dict[str, Any]) -> tuple[int, _Going] | None:
-        """An encoder: its count goes on from where it is, since robots reset it."""
+    def _turn_wheel(self, device: str, now_us: int, found: dict[str, Any]) -> tuple[int, _Change] | None:
+        """Turn an encoder. Its count continues from the current value, since robots reset it."""
         rng, hal_data = self._rng, self._hal_data
         target, rate_target = f"{device}.count", f"{device}.rate"
         how = rng.random()
-        if how < 0.25:  # somebody has turned it, or it has slipped
+        if how < 0.25:  # turned by hand, or the belt has slipped
             jump = rng.choice((-1, 1)) * rng.choice((1, 10, 500, 20_000))
             found[target] = nearest("count", hal_data.read(target) + jump)
             return None
@@ -153,7 +153,7 @@ class SensorGenerator:
         return now_us + _STEP_US, go
 
 
-def _back(each: Input, value: Any) -> _Going:
+def _back(each: Input, value: Any) -> _Change:
     def go(at_us: int, found: dict[str, Any]) -> None:
         found[each.target] = value
 

@@ -1,11 +1,13 @@
-"""The shortest way to a failure: the fewest writes, as early and as plain as can be, found by playing shorter scripts.
+"""Find the shortest script of a failure: few writes, early and with simple values, by running shorter scripts.
 
-By delta debugging (A. Zeller and R. Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", IEEE Transactions
-on Software Engineering 28(2), 2002), and then the gaps between what is left, and its values. Not by hypothesis'
-shrinker: that makes shorter the sequence of choices which a generator drew, and runs the generator again on what is
-left. Here the generator looks at the robot while it draws, and each of a thousand writes depends on those before: one
-choice less makes all that follows another match. And the robots run in processes of their own, several at a time, where
-hypothesis calls a function; a recorded script would have no choices to shrink at all.
+The algorithm is delta debugging (A. Zeller and R. Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", IEEE
+Transactions on Software Engineering 28(2), 2002); then the gaps between the remaining writes and their values are
+reduced.
+
+hypothesis' shrinker does not fit. It shortens the sequence of choices that a generator drew, and runs the generator
+again on the rest. Here the generator reads the robot's state while it draws, so each of a thousand writes depends on
+those before it: without one choice, all that follows is a different match. Besides, robots run in separate processes,
+several at a time, while hypothesis calls a function; and a recorded script has no choices at all.
 """
 
 from __future__ import annotations
@@ -25,12 +27,12 @@ from .match import ReplayTask
 from .match_executor import MatchExecutor
 from .values import simpler
 
-#: How many robots are run at most.
+#: The maximum number of runs.
 MOST_RUNS = 2_000
-#: Of one that hangs, since each run of it takes `hang_seconds`.
+#: The maximum number of runs for a robot that hangs, since each takes `hang_seconds`.
 _MOST_HANGING_RUNS = 100
 
-#: Gaps between two moments that are tried, in packets.
+#: Gaps to try between two moments, in packets.
 _GAPS = (0, 1, 2, 5, 10, 25, 50, 100, 250, 500)
 
 
@@ -39,18 +41,20 @@ class _Write:
     at_us: int
     target: str
     value: Any
-    #: Tells it from all others of the script, whatever becomes of its time and value.
+    #: Identifies the write in the script, whatever its time and value become.
     number: int
 
 
 class Shrinker:
-    """Makes one script shorter, for as long as it fails in the same way.
+    """Shortens one script for as long as it fails in the same way.
 
-    :param script: one that has failed
-    :param inputs: what sort of values its targets have, as far as that is known
-    :param most_runs: how many robots to run
-    :param use_oracle: whether more than exceptions is a failure
-    :param tell: called with how many that were, as it goes
+    :param executor: runs the shorter scripts
+    :param script: a script that has failed
+    :param failure: the failure
+    :param inputs: the kinds of its targets' values, as far as they are known
+    :param most_runs: the maximum number of runs
+    :param use_oracle: whether misbehavior without an exception is a failure
+    :param on_run: called with the number of runs after each one
     """
 
     def __init__(
@@ -61,14 +65,14 @@ class Shrinker:
         inputs: Mapping[str, Input],
         most_runs: int = MOST_RUNS,
         use_oracle: bool = True,
-        tell: Callable[[int], None] = lambda runs: None,
+        on_run: Callable[[int], None] = lambda runs: None,
     ) -> None:
         self.failure = failure
         self.runs = 0
-        #: Whether what is the shortest so far has failed when it was played.
+        #: Whether the shortest script so far has failed when it was run.
         self.repeats = False
         self._use_oracle = use_oracle
-        self._tell = tell
+        self._on_run = on_run
         self._executor = executor
         self._inputs = inputs
         self._most_runs = min(most_runs, _MOST_HANGING_RUNS) if failure.kind == HANGS else most_runs
@@ -79,11 +83,11 @@ class Shrinker:
 
     @property
     def script(self) -> InputScript:
-        """The shortest so far."""
+        """Return the shortest script so far."""
         return self._script(self._writes, self._end_us)
 
     def shrink(self) -> None:
-        """Play shorter scripts until there is nothing to leave out, or there were too many."""
+        """Run shorter scripts until nothing can be removed, or the maximum number of runs is reached."""
         if self._first([self._writes]) is None:
             return
         by_target: dict[str, list[_Write]] = {}
@@ -100,16 +104,16 @@ class Shrinker:
             self._shorter()
 
     def play_again(self) -> bool:
-        """Whether the shortest fails as it should, once more."""
+        """Run the shortest script once more; return whether it fails in the same way."""
         (played,) = self._executor.play([self._follow(self._writes, self._end_us)])
         return self.failure.same_as(played.failure)
 
     # -- trying ----------------------------------------------------------------------------------------------------
 
     def _first(self, candidates: Iterable[tuple[_Write, ...]]) -> int | None:
-        """Take the first of these that fails in the same way; answers which that was, if any did.
+        """Take the first candidate that fails in the same way; return its index, or None.
 
-        Several are played at a time; they count as if they were played one after the other.
+        Several run at the same time; they count as if they ran one after the other.
         """
         left = self._most_runs - self.runs
         new: list[tuple[int, tuple[_Write, ...]]] = []
@@ -121,13 +125,13 @@ class Shrinker:
         with closing(self._executor.play(tasks)) as results:
             for (index, writes), played in zip(new, results, strict=True):
                 self.runs += 1
-                self._tell(self.runs)
+                self._on_run(self.runs)
                 if played.failure is not None and self.failure.same_as(played.failure):
                     self.failure = played.failure
                     self.repeats = True
                     self._end_us = played.script.end_us
                     self._writes = tuple(write for write in writes if write.at_us < self._end_us)
-                    # Those after it do not count as played; a later pass may come to them.
+                    # Later candidates do not count as tried; another pass may try them.
                     self._tried.difference_update(each for at, each in new if at > index)
                     return index
         return None
@@ -145,7 +149,7 @@ class Shrinker:
     # -- fewer -------------------------------------------------------------------------------------------------
 
     def _fewer(self, units: list[tuple[_Write, ...]]) -> None:
-        """Leave out as many of these as can be: ddmin, by complements."""
+        """Remove as many of these units as possible: ddmin, by complements."""
         parts = min(2, len(units))
         while units and self.runs < self._most_runs:
             chunks = [units[len(units) * part // parts : len(units) * (part + 1) // parts] for part in range(parts)]
@@ -171,7 +175,7 @@ class Shrinker:
     # -- sooner ------------------------------------------------------------------------------------------------
 
     def _sooner(self) -> None:
-        """Make each gap between two moments as short as can be."""
+        """Make each gap between two moments as short as possible."""
         index = 0
         while index < len(moments := sorted({write.at_us for write in self._writes})):
             start_us = moments[index - 1] if index else 0
@@ -187,7 +191,7 @@ class Shrinker:
                     low = middle
                 else:
                     high = middle
-            # What has moved to the moment before it leaves this place to the next one.
+            # When writes have joined the previous moment, the next moment has this index.
             index += 1 if high > 0 or not index else 0
 
     def _moved(self, from_us: int, packets: int) -> tuple[_Write, ...]:
@@ -197,7 +201,7 @@ class Shrinker:
         )
 
     def _shorter(self) -> None:
-        """End it soon after what comes last: a process that has ended did not say when."""
+        """End the script soon after its last write: a process that died did not report its time."""
         last_us = self._writes[-1].at_us if self._writes else 0
         for packets in _GAPS[1:]:
             end_us = last_us + packets * PACKET_US

@@ -1,7 +1,6 @@
-"""The values that inputs have in the real world: what people, their gamepads and sensors produce, and nothing else.
+"""The values that inputs have in the real world, produced by people, gamepads and sensors.
 
-A robot that fails on a stick at 2.0 or a voltage of -3 has no bug that anybody will ever see; one that fails on
-a POV at 315 has.
+A failure on a stick at 2.0 or a voltage of -3 is not a bug that a team can meet; a failure on a POV at 315 is one.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ import random
 from dataclasses import dataclass
 from typing import Any, Literal
 
-#: What sort of values an input has. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes.
+#: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes.
 Kind = Literal[
     "axis",
     "trigger",
@@ -44,8 +43,10 @@ Kind = Literal[
 class Span:
     """The numbers of one kind.
 
-    :param typical: those at which code decides something: ends, middles, edges
-    :param whole: whether they are whole
+    :param low: the lowest number
+    :param high: the highest number
+    :param typical: numbers at which code makes decisions: ends, middles, edges
+    :param whole: whether only whole numbers are possible
     """
 
     low: float
@@ -80,17 +81,17 @@ SPANS: dict[Kind, Span] = {
 POV_ANGLES = (0, 45, 90, 135, 180, 225, 270, 315)
 NOT_PRESSED = -1
 
-#: What somebody who tries numbers in a dashboard makes of one.
+#: By what a user may multiply a number in a dashboard.
 _FACTORS = (0.5, 1.0, 2.0)
 
 _DIGITS = 3
 
 
 def draw(kind: Kind, rng: random.Random, options: tuple[Any, ...] = (), now: Any = 0) -> Any:
-    """A value that this kind of input may have.
+    """Return a random value of this kind.
 
-    :param options: of kinds that have a few values only, those
-    :param now: what the input is now
+    :param options: the possible values, for kinds with a few values only
+    :param now: the input's current value
     """
     span = SPANS.get(kind)
     if kind == "axis":
@@ -112,7 +113,7 @@ def draw(kind: Kind, rng: random.Random, options: tuple[Any, ...] = (), now: Any
 
 
 def _axis(rng: random.Random) -> float:
-    """Most often a stick that is pushed is pushed to its end, or nearly there."""
+    """Return an axis value: a stick that is pushed is mostly pushed to its end, or nearly."""
     sort = rng.random()
     if sort < 0.4:
         return rng.choice((-1.0, 1.0))
@@ -124,14 +125,14 @@ def _axis(rng: random.Random) -> float:
 
 
 def nearest(kind: Kind, value: float) -> float:
-    """The nearest value that this kind of input may have, with no more digits than a person reads."""
+    """Return the nearest possible value of this kind, rounded to a readable number of digits."""
     span = SPANS[kind]
     inside = min(max(value, span.low), span.high)
     return round(inside) if span.whole else round(float(inside), _DIGITS)
 
 
 def simpler(kind: Kind, value: Any) -> list[float]:
-    """Values of this kind that are shorter to read, the shortest first; of kinds without numbers, none."""
+    """Return values of this kind that are shorter to read, the shortest first; for kinds without numbers, none."""
     span = SPANS.get(kind)
     if span is None or isinstance(value, bool) or not isinstance(value, int | float):
         return []
@@ -142,7 +143,7 @@ def simpler(kind: Kind, value: Any) -> list[float]:
 
 
 def can_be(kind: Kind, value: Any, options: tuple[Any, ...] = ()) -> bool:
-    """Whether an input of this kind may have this value."""
+    """Return whether an input of this kind can have this value."""
     span = SPANS.get(kind)
     if kind == "pov":
         return value in (NOT_PRESSED, *POV_ANGLES)

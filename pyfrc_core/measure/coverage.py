@@ -1,4 +1,4 @@
-"""Which of the project's own lines run, also in the processes that tests are isolated in."""
+"""Measure which of the project's own lines run, also in the processes of isolated tests."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ __all__ = ["CoverageOptions", "Measured", "begin", "measuring"]
 
 @dataclass(frozen=True)
 class CoverageOptions:
-    """Which reports are wanted.
+    """The reports to write.
 
-    :param fail_under: the least percentage that counts as success
-    :param quiet: print the report, and what is wrong, but not where the others are
+    :param fail_under: the lowest percentage that counts as success
+    :param quiet: print the report and errors, but not the paths of the other reports
     """
 
     enabled: bool
@@ -41,17 +41,17 @@ class CoverageOptions:
 
 @dataclass
 class Measured:
-    """What came of it: `status` is 1 when too little was covered."""
+    """Result of a measurement: `status` is 1 when too little was covered."""
 
     status: int = 0
 
 
 def begin(settings: dict[str, Any]) -> Callable[[], None]:
-    """Begin to measure in this process; answers what keeps what was measured. A fork goes on measuring by itself."""
+    """Start measuring in this process; return a function that saves the result. A fork continues to measure."""
     from coverage import Coverage
 
     measurement = Coverage(data_suffix=True, **settings)
-    # A process that waits for others runs no line of the project, and need not complain of it.
+    # A process that only waits for others runs no line of the project: no warning is needed.
     measurement.set_option("run:disable_warnings", ["no-data-collected"])
     measurement.start()
 
@@ -64,24 +64,27 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
 
 @contextmanager
 def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
-    """Measure while this lasts, then report.
+    """Measure until the context ends, then print the reports.
 
-    Lines count wherever they run: here, in forked and spawned processes, in threads. Only the project's own robot
-    code is measured: neither its tests nor anything installed.
+    Lines count in this process, in forked and spawned processes, and in threads. Only the project's own robot code is
+    measured, without its tests and without installed packages.
     """
     result = Measured()
     if not options.enabled:
         yield result
         return
     if is_announced("coverage"):
-        raise UsageError("coverage is measured already", remedy="Leave out one of: pyfrc coverage, test --coverage.")
+        raise UsageError(
+            "coverage is already being measured", remedy="Leave out one of: pyfrc coverage, test --coverage."
+        )
     from coverage import Coverage
     from coverage.exceptions import CoverageException
 
     for file, is_taken in ((options.html, Path.is_file), (options.xml, Path.is_dir), (options.json, Path.is_dir)):
         if file is not None and is_taken(file):
-            raise UsageError(f"the report cannot be written to {file}: something else is there already")
-    # What each process measured lies here until it is combined; nothing of it is left in the project.
+            kind = "file" if file == options.html else "directory"
+            raise UsageError(f"the report cannot be written to {file}: that is a {kind}")
+    # The directory for the data of each process, until it is combined; nothing stays in the project.
     with tempfile.TemporaryDirectory(prefix="pyfrc-coverage-") as directory:
         settings: dict[str, Any] = {
             "data_file": str(Path(directory) / "data"),
@@ -101,19 +104,19 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
 
 
 def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:
-    """Tell what was measured; answers the exit code.
+    """Print and write the reports; return the exit code.
 
-    :param as_json: where coverage.py's own JSON goes, which tells what the other reports do not
+    :param as_json: where to write coverage.py's JSON, which has more details than the other reports
     """
     from coverage.exceptions import NoDataError
 
-    def say(text: str) -> None:
+    def print_path(text: str) -> None:
         if not options.quiet:
             print(text)
 
     print()
     try:
-        # A file that cannot be parsed is told and left out: it need not be one that the robot uses.
+        # A file that cannot be parsed is reported and skipped: the robot may not use it.
         total = combined.report(show_missing=True, ignore_errors=True, file=sys.stdout)
         combined.json_report(outfile=str(as_json), ignore_errors=True)
         text = as_json.read_text("utf-8")
@@ -121,17 +124,17 @@ def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:
             print(unused)
         if options.html is not None:
             combined.html_report(directory=str(options.html), ignore_errors=True)
-            say(f"coverage as web pages: {options.html / 'index.html'}")
+            print_path(f"coverage as web pages: {options.html / 'index.html'}")
         if options.xml is not None:
             combined.xml_report(outfile=str(options.xml), ignore_errors=True)
-            say(f"coverage as XML: {options.xml}")
+            print_path(f"coverage as XML: {options.xml}")
         if options.json is not None:
             write_whole(options.json, [text])
-            say(f"coverage as JSON: {options.json}")
+            print_path(f"coverage as JSON: {options.json}")
     except NoDataError:
         print("coverage: no line of the project was run", file=sys.stderr)
         return 1
     if options.fail_under is not None and total < options.fail_under:
-        print(f"coverage: {total:.1f} % is less than the {options.fail_under:g} % asked for", file=sys.stderr)
+        print(f"coverage: {total:.1f} % is less than the required {options.fail_under:g} %", file=sys.stderr)
         return 1
     return 0

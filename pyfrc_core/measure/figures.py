@@ -1,6 +1,6 @@
-"""What a profile is made of: how long each function took each time, where the period was overrun, which lines ran.
+"""The data of a profile: the times of each function's calls, overruns of the period, and the lines that ran.
 
-Each process of a run has figures of its own, which are kept in a file when it ends, and added up.
+Each process has its own figures. They are saved to a file when it ends, and added up.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from typing import NamedTuple
 class Measurand(NamedTuple):
     """A function whose calls are timed.
 
-    :param kind: what it is: ``loop``, ``periodic`` (with a rate of its own), ``robot``, ``command``, ``subsystem``,
-        ``component`` or ``callback``
-    :param name: as its code calls it, such as ``MyRobot.teleopPeriodic``
+    :param kind: ``loop``, ``periodic`` (with its own rate), ``robot``, ``command``, ``subsystem``, ``component`` or
+        ``callback``
+    :param name: its qualified name, such as ``MyRobot.teleopPeriodic``
     :param place: its file and line, such as ``robot.py:12``; empty when it is not the project's own
     """
 
@@ -28,25 +28,29 @@ class Measurand(NamedTuple):
     place: str
 
 
-class Line(NamedTuple):
-    """A line of the robot's code, and the function that it is in."""
+class CodeLine(NamedTuple):
+    """A line of the robot's code.
+
+    :param place: its file and line, such as ``robot.py:12``
+    :param function: the name of the function with this line
+    """
 
     place: str
     function: str
 
 
 class Overrun(NamedTuple):
-    """A turn of the loop that took longer than its period.
+    """An iteration of the loop that took longer than its period.
 
-    :param seconds: the robot time at which it began
+    :param seconds: the robot time at its start
     :param mode: the driver station's mode
-    :param culprit: the innermost timed function in which at least half of it was spent, else the loop itself
-    :param took_ns: how long the turn took
-    :param culprit_ns: how long the culprit took
-    :param held_up_ns: how much of that its thread neither computed nor waited in robot time: the computer did
-        something else, or the robot's code waited for the world outside
-    :param period_ns: how long it may have taken
-    :param test: the test in which it happened, if it was in one
+    :param culprit: the innermost timed function that took at least half of it, else the loop itself
+    :param took_ns: the duration of the iteration
+    :param culprit_ns: the duration of the culprit
+    :param held_up_ns: the part of it in which the thread neither computed nor waited in robot time: the computer ran
+        something else, or robot code waited for something outside the program
+    :param period_ns: the loop's period
+    :param test: the test in which it happened, if there was one
     """
 
     seconds: float
@@ -61,35 +65,36 @@ class Overrun(NamedTuple):
 
 @dataclass
 class Figures:
-    """What was measured, in one process or in all of them.
+    """The measurements of one process, or of all.
 
-    :param times: how long each call took, in nanoseconds
-    :param lines: the time that each line was the innermost one of the robot's: computing, and waiting in robot time
-        within a timed function; in nanoseconds
-    :param stacks: the time for each stack of calls, outermost first, each a function, its file and the line in it
-    :param samples: how many samples lines and stacks are from
-    :param sampling_ns: how long taking them took
+    :param times: the duration of each call, in nanoseconds
+    :param overruns: the iterations that took longer than their period
+    :param lines: for each line the time in which it was the robot's innermost one: computing, and waiting in robot time
+        within a timed function, both in nanoseconds
+    :param stacks: the time of each call stack, outermost first; each entry is a function, its file and its current line
+    :param samples: the number of samples behind `lines` and `stacks`
+    :param sampling_ns: the time that sampling took
     """
 
     times: dict[Measurand, array[int]] = field(default_factory=dict)
     overruns: list[Overrun] = field(default_factory=list)
-    lines: dict[Line, list[int]] = field(default_factory=dict)
+    lines: dict[CodeLine, list[int]] = field(default_factory=dict)
     stacks: dict[tuple[tuple[str, str, int], ...], int] = field(default_factory=dict)
     samples: int = 0
     sampling_ns: int = 0
 
     def times_of(self, what: Measurand) -> array[int]:
-        """The list that the times of its calls go to."""
+        """Return the array for the times of a function's calls."""
         return self.times.setdefault(what, array("q"))
 
-    def on_line(self, line: Line, computing_ns: int, waiting_ns: int) -> None:
-        """The robot's code was there for so long."""
+    def on_line(self, line: CodeLine, computing_ns: int, waiting_ns: int) -> None:
+        """Add time to a line."""
         spent = self.lines.setdefault(line, [0, 0])
         spent[0] += computing_ns
         spent[1] += waiting_ns
 
-    def forget(self) -> None:
-        """Begin anew; the lists of times stay the same objects."""
+    def clear(self) -> None:
+        """Delete all measurements; the arrays of times stay the same objects."""
         for times in self.times.values():
             del times[:]
         self.overruns.clear()
@@ -98,7 +103,7 @@ class Figures:
         self.samples = self.sampling_ns = 0
 
     def add(self, others: Figures) -> None:
-        """Add what was measured elsewhere."""
+        """Add the measurements of another process."""
         for what, times in others.times.items():
             self.times_of(what).extend(times)
         self.overruns += others.overruns
@@ -109,13 +114,13 @@ class Figures:
         self.samples += others.samples
         self.sampling_ns += others.sampling_ns
 
-    def keep(self, file: Path) -> None:
-        """Write them to a file."""
+    def save(self, file: Path) -> None:
+        """Write the figures to a file."""
         file.write_bytes(pickle.dumps(self))
 
 
 def added_up(files: Iterable[Path]) -> Figures:
-    """The figures of all processes, each kept in one of these files."""
+    """Return the sum of the figures in these files, one for each process."""
     total = Figures()
     for file in files:
         total.add(pickle.loads(file.read_bytes()))
@@ -124,7 +129,7 @@ def added_up(files: Iterable[Path]) -> Figures:
 
 @dataclass(frozen=True)
 class Distribution:
-    """How the times of a function's calls are distributed; in milliseconds, percentiles by the nearest rank."""
+    """The distribution of a function's times, in milliseconds; percentiles by the nearest rank."""
 
     count: int
     p50: float
@@ -135,7 +140,7 @@ class Distribution:
 
 
 def distribution(times: array[int]) -> Distribution:
-    """The distribution of times in nanoseconds, of which there is at least one."""
+    """Return the distribution of times in nanoseconds, of which there is at least one."""
     ordered = sorted(times)
 
     def percentile(share: float) -> float:

@@ -1,7 +1,7 @@
-"""The flame view: pyinstrument's web page, of the samples that were taken here.
+"""The flame graph: pyinstrument's web page, drawn from our own samples.
 
-pyinstrument draws it because a page in which one can fold, search and zoom is much work, and its is the one that people
-know. It is an optional extra, since nothing else here needs it.
+pyinstrument draws it, because a page with folding, search and zoom is much work, and its page is widely known. It is an
+optional extra, since nothing else here needs it.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from ..errors import UsageError
 from ..text_files import write_whole
 from .figures import Figures
 
-#: What joins the parts of a frame, and what stands before the number of the line, in pyinstrument's session files.
+#: The separators in pyinstrument's session files: between the parts of a frame, and before a line number.
 _PART, _LINE = "\x00", "\x01l"
 
 
-def flame_is_to_be_had() -> None:
-    """Ask before the measuring begins.
+def require_pyinstrument() -> None:
+    """Check that pyinstrument is installed, before the measurement begins.
 
-    :raises UsageError: when pyinstrument is missing
+    :raises UsageError: when it is not
     """
     if importlib.util.find_spec("pyinstrument") is None:
         raise UsageError(
-            "the flame view is drawn by pyinstrument, which is not installed",
+            "the flame graph needs pyinstrument, which is not installed",
             remedy=f'Install it with: pip install "{requirement("profile")}"',
         )
 
@@ -34,7 +34,7 @@ def flame_is_to_be_had() -> None:
 def write_flame(figures: Figures, file: Path, title: str) -> None:
     """Write the samples as a web page.
 
-    :param title: what was measured
+    :param title: the name of what was measured
     """
     from pyinstrument.renderers import HTMLRenderer
     from pyinstrument.session import Session

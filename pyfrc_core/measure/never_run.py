@@ -1,4 +1,4 @@
-"""The functions of which no line was run: what a team has not tested at all."""
+"""Functions of which no line was run: code without any test."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from ..wording import counted
 class Unused:
     """A function of which no line was run.
 
-    :param name: with its class, such as ``Arm.home``
-    :param line: where it begins
-    :param lines: how many statements it has
+    :param name: its qualified name, such as ``Arm.home``
+    :param line: its first line
+    :param lines: its number of statements
     """
 
     name: str
@@ -24,16 +24,17 @@ class Unused:
 
 
 def never_run(report: Mapping[str, Any]) -> dict[str, list[Unused]]:
-    """The functions never run, by file: the files with the most such lines first, and in each the longest first.
+    """Return the functions that were never run, by file: the files with most such lines first, in each file the longest
+    functions first.
 
-    :param report: what coverage.py writes as JSON
+    :param report: coverage.py's JSON report
     """
     found = {
         file: sorted(
             (
                 Unused(name, function.get("start_line", function["missing_lines"][0]), len(function["missing_lines"]))
                 for name, function in measured["functions"].items()
-                # Without a name are the lines outside of functions.
+                # Lines outside of functions have no name.
                 if name and function["missing_lines"] and not function["executed_lines"]
             ),
             key=lambda function: (-function.lines, function.line),
@@ -45,7 +46,7 @@ def never_run(report: Mapping[str, Any]) -> dict[str, list[Unused]]:
 
 
 def summary(unused: Mapping[str, Sequence[Unused]]) -> str:
-    """The functions never run as text, empty when there are none."""
+    """Return the functions that were never run as text; empty when there are none."""
     if not unused:
         return ""
     text = ["", "Functions never run, worst first:"]

@@ -1,4 +1,4 @@
-"""`pyfrc profile`: how long the robot's functions take, in whichever process and thread they run."""
+"""`pyfrc profile`: measure how long the robot's functions take, in every process and thread."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..project import Project
 from ..project.robot_files import RobotFiles
 from ..text_files import write_whole
 from .figures import Figures, added_up
-from .flame import flame_is_to_be_had, write_flame
+from .flame import require_pyinstrument, write_flame
 from .processes import announced, is_announced
 from .profile_report import as_json, as_text
 from .replacements import Replacements
@@ -29,13 +29,13 @@ from .stopwatch_cost import measured_cost
 
 @dataclass(frozen=True)
 class ProfileOptions:
-    """Which reports are wanted beside the one that is printed.
+    """The reports to write besides the printed one.
 
-    :param pstats: a file for Python's `pstats`, and for what reads its format
-    :param html: a web page with a flame view
-    :param json: all that was measured
+    :param pstats: a file in the format of Python's `pstats`
+    :param html: a web page with a flame graph
+    :param json: all measurements
     :param top: how many functions and lines to print
-    :param quiet: print the report, but not where the others are
+    :param quiet: print the report, but not the paths of the others
     """
 
     pstats: Path | None = None
@@ -46,14 +46,14 @@ class ProfileOptions:
 
 
 class _CallProfile:
-    """`cProfile` around the timed functions of this process, one call at a time, in whichever thread."""
+    """Runs `cProfile` around the timed functions of this process, one call at a time, in any thread."""
 
     def __init__(self) -> None:
         self._profile = cProfile.Profile()
         self._on = False
 
     def wrap(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """The function, profiled when it is called from outside of the others."""
+        """Return the function with profiling, for calls from outside the other wrapped functions."""
 
         def profiled(*args: Any, **kwargs: Any) -> Any:
             __tracebackhide__ = True
@@ -69,23 +69,23 @@ class _CallProfile:
 
         try:
             return wraps(function)(profiled)
-        except (AttributeError, TypeError):  # something callable that is no function
+        except (AttributeError, TypeError):  # a callable object that is not a function
             return profiled
 
-    def forget(self) -> None:
-        """Begin anew, in a fork."""
+    def clear(self) -> None:
+        """Delete all measurements, in a fork."""
         self._profile = cProfile.Profile()
         self._on = False
 
-    def keep(self, file: Path) -> None:
-        """Write what was called, if anything was."""
+    def save(self, file: Path) -> None:
+        """Write the calls to a file, if there were any."""
         self._profile.create_stats()
         if self._profile.stats:
             self._profile.dump_stats(file)
 
 
 def begin(settings: dict[str, Any]) -> Callable[[], None]:
-    """Begin to measure in this process; answers what keeps what was measured. A fork goes on measuring by itself."""
+    """Start measuring in this process; return a function that saves the result. A fork continues to measure."""
     from .sampler import Sampler
     from .stopwatch import Stopwatch
     from .user_functions import UserFunctions
@@ -95,15 +95,17 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
     sampler = Sampler(figures, files, settings["stacks"])
     calls = _CallProfile() if settings["calls"] else None
     replacements, numbers = Replacements(), count()
-    UserFunctions(stopwatch, files, calls.wrap if calls is not None else lambda function: function).find(replacements)
+    UserFunctions(stopwatch, files, calls.wrap if calls is not None else lambda function: function).install(
+        replacements
+    )
     sampler.sample_runs(replacements)
 
     def in_fork() -> None:
-        figures.forget()
-        stopwatch.forget()
-        sampler.forget()
+        figures.clear()
+        stopwatch.clear()
+        sampler.clear()
         if calls is not None:
-            calls.forget()
+            calls.clear()
 
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(after_in_child=in_fork)
@@ -111,11 +113,11 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
     def save() -> None:
         sampler.stop()
         name = f"{os.getpid()}-{next(numbers)}"
-        figures.keep(Path(settings["directory"], f"{name}.figures"))
-        figures.forget()
+        figures.save(Path(settings["directory"], f"{name}.figures"))
+        figures.clear()
         if calls is not None:
-            calls.keep(Path(settings["directory"], f"{name}.pstats"))
-            calls.forget()
+            calls.save(Path(settings["directory"], f"{name}.pstats"))
+            calls.clear()
         replacements.undo()
 
     return save
@@ -123,18 +125,18 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
 
 @contextmanager
 def profiling(project: Project, options: ProfileOptions, command: str) -> Iterator[None]:
-    """Measure while this lasts, then report, whatever came of it.
+    """Measure until the context ends, then write the reports, also after an error.
 
-    :param command: what is measured, as it is to be called in the reports
+    :param command: the title of the reports
     """
     if is_announced("profile"):
-        raise UsageError("a profile is being measured already")
+        raise UsageError("a profile is already being measured")
     for file in (options.pstats, options.html, options.json):
         if file is not None and file.is_dir():
             raise UsageError(f"the profile cannot be written to {file}: that is a directory")
     if options.html is not None:
-        flame_is_to_be_had()
-    # What each process measured lies here until it is added up.
+        require_pyinstrument()
+    # The directory for the figures of each process, until they are added up.
     with tempfile.TemporaryDirectory(prefix="pyfrc-profile-") as directory:
         settings = {
             "root": str(project.root),
@@ -154,24 +156,24 @@ def _report(directory: Path, options: ProfileOptions, command: str) -> None:
     profiled_calls = _add_up_calls(sorted(directory.glob("*.pstats")), options.pstats)
     cost = measured_cost(figures, profiled_calls)
 
-    def say(text: str) -> None:
+    def print_path(text: str) -> None:
         if not options.quiet:
             print(text)
 
     print()
     print(as_text(figures, cost, options.top))
     if options.pstats is not None and profiled_calls:
-        say(f"profile for pstats: {options.pstats}")
+        print_path(f"profile for pstats: {options.pstats}")
     if options.html is not None:
         write_flame(figures, options.html, command)
-        say(f"profile as a web page: {options.html}")
+        print_path(f"profile as a web page: {options.html}")
     if options.json is not None:
         write_whole(options.json, [json.dumps(as_json(figures, cost, command), indent=1), "\n"])
-        say(f"profile as JSON: {options.json}")
+        print_path(f"profile as JSON: {options.json}")
 
 
 def _add_up_calls(files: list[Path], wanted: Path | None) -> int:
-    """Write the `pstats` of all processes to one file; answers how many calls they are of."""
+    """Write the `pstats` of all processes to one file; return the number of calls in it."""
     if wanted is None or not files:
         return 0
     total = pstats.Stats(*map(str, files))

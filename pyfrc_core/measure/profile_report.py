@@ -1,4 +1,4 @@
-"""What a profile says: as text for people, as JSON for programs."""
+"""The report of a profile: text for people, JSON for programs."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from itertools import groupby
 from typing import Any
 
 from ..wording import counted, table
-from .figures import Figures, Line, Measurand, Overrun, distribution
+from .figures import CodeLine, Figures, Measurand, Overrun, distribution
 from .stopwatch import WHOLE_LOOP
 from .stopwatch_cost import Cost
 
-#: So many of the robot times at which a function made the loop overrun are printed.
+#: How many of the robot times at which a function caused overruns are printed.
 _TIMES = 4
 
 
 def as_text(figures: Figures, cost: Cost, top: int) -> str:
-    """The report to print.
+    """Return the report to print.
 
     :param top: how many functions, and lines, to show
     """
@@ -35,7 +35,7 @@ def as_text(figures: Figures, cost: Cost, top: int) -> str:
 
 
 def as_json(figures: Figures, cost: Cost, command: str) -> dict[str, Any]:
-    """All that was measured; the names tell the units."""
+    """Return all measurements; the names contain the units."""
     return {
         "command": command,
         "functions": [
@@ -73,7 +73,7 @@ def as_json(figures: Figures, cost: Cost, command: str) -> dict[str, Any]:
 
 
 def _by_total(figures: Figures) -> dict[Measurand, Any]:
-    """What was called, the loop first, then by the time that all calls took together."""
+    """Return the functions that were called: the loop first, then by the total time of all calls."""
     called = {what: times for what, times in figures.times.items() if len(times)}
     order = sorted(called, key=lambda what: (what != WHOLE_LOOP, -sum(called[what]), what))
     return {what: called[what] for what in order}
@@ -116,11 +116,11 @@ def _overruns(figures: Figures) -> Iterator[str]:
         )
     yield from table(rows, left=3, left_at_end=1)
     if any(overrun.held_up_ns > overrun.took_ns / 2 for overrun in figures.overruns):
-        yield "  Held up: this computer did something else then, or the robot's code waited for the world outside."
+        yield "  Held up: the computer ran another program then, or the robot's code waited for something outside."
 
 
 def _grouped(overruns: Iterable[Overrun]) -> list[list[Overrun]]:
-    """Those of the same function in the same mode, the most frequent first."""
+    """Group the overruns by function and mode, the most frequent first."""
 
     def same(overrun: Overrun) -> tuple[Measurand, str, int]:
         return overrun.culprit, overrun.mode, overrun.period_ns
@@ -149,7 +149,7 @@ def _lines(figures: Figures, top: int) -> Iterator[str]:
     yield from table(rows, left=2)
 
 
-def _slowest_lines(figures: Figures) -> list[tuple[Line, list[int]]]:
+def _slowest_lines(figures: Figures) -> list[tuple[CodeLine, list[int]]]:
     return sorted(figures.lines.items(), key=lambda item: (-sum(item[1]), item[0]))
 
 
@@ -158,10 +158,9 @@ def _cost(cost: Cost, samples: int) -> Iterator[str]:
     parts = [f"{cost.timing_ns / 1e6:.1f} ms for timing ({cost.call_ns / 1e3:.2f} µs a call)"]
     parts.append(f"{cost.sampling_ns / 1e6:.1f} ms for {counted(samples, 'sample')}")
     if cost.calls_ns:
-        parts.append(f"{cost.calls_ns / 1e6:.1f} ms for cProfile, which is in the figures above")
-    text = f"What measuring has cost: {', '.join(parts)}"
+        parts.append(f"{cost.calls_ns / 1e6:.1f} ms for cProfile, which the times above include")
+    text = f"Cost of measuring: {', '.join(parts)}"
     if cost.share is not None:
-        text += (
-            f"; {cost.share:.0%} of the {(cost.robot_ns / 1e6) / (1 + cost.share):.1f} ms that the robot took by itself"
-        )
+        robot_ms = (cost.robot_ns / 1e6) / (1 + cost.share)
+        text += f"; {cost.share:.0%} of the {robot_ms:.1f} ms that the robot took without it"
     yield text + "."

@@ -1,4 +1,4 @@
-"""What measuring puts in the place of something else, until it is over. Without it, nothing of it costs anything."""
+"""Attributes that measuring replaces until it is over. Without measuring, nothing is replaced or slower."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from typing import Any
 
 
 class Replacements:
-    """Attributes of classes and modules that are replaced for a while."""
+    """Attributes of classes and modules that are replaced temporarily."""
 
     def __init__(self) -> None:
         self._originals: dict[tuple[Any, str], Any] = {}
 
     def replace(self, owner: Any, name: str, replacement: Any) -> None:
-        """Put `replacement` there; doing it again changes nothing of what `undo` brings back."""
+        """Replace an attribute. A second replacement does not change what `undo` restores."""
         self._originals.setdefault((owner, name), vars(owner).get(name))
         setattr(owner, name, replacement)
 
@@ -20,7 +20,7 @@ class Replacements:
         return place in self._originals
 
     def undo(self) -> None:
-        """Bring everything back as it was."""
+        """Restore all original attributes."""
         while self._originals:
             (owner, name), original = self._originals.popitem()
             if original is None:

@@ -1,7 +1,7 @@
-"""Looks, some hundred times a second, which line the robot's code is at.
+"""Sample the current line of the robot's code, some hundred times a second.
 
-Hand-written since it must sample whichever thread of the robot has its turn, in forks too, and nothing of what runs the
-robot: pyinstrument samples the thread that has started it. It draws the flame view of what is found here.
+Hand-written because it must sample the robot's thread that is running, also in forks, and none of the code that runs
+the robot. pyinstrument samples the thread that started it; it only draws the flame graph.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .replacements import Replacements
 from .stopwatch import innermost_line, is_waiting
 
 _SECONDS = 0.0025
-#: A process that was held up by others did not spend that time on the line that it is found at.
+#: Longer intervals are cut to this: a process that was suspended did not spend that time on its current line.
 _LONGEST_NS = 20_000_000
 
 
@@ -37,7 +37,7 @@ class Sampler:
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Begin, in this process."""
+        """Start sampling in this process."""
         if self._thread is not None:
             return
         self._over = real_allocate_lock()
@@ -46,7 +46,7 @@ class Sampler:
         real_thread_start(self._thread)
 
     def stop(self) -> None:
-        """End, and have what was found in the figures."""
+        """Stop sampling; the figures are then complete."""
         thread, self._thread = self._thread, None
         if thread is not None:
             self._over.release()
@@ -67,21 +67,21 @@ class Sampler:
         replacements.replace(RobotRun, "open", open_run)
         replacements.replace(RobotRun, "close", close_run)
 
-    def forget(self) -> None:
-        """The thread is not in this fork."""
+    def clear(self) -> None:
+        """Forget the thread, which does not exist in a fork."""
         self._thread = None
 
     def _sample(self) -> None:
-        # Python's switch interval stays as it is: a shorter one makes the robot's threads take their turns more slowly.
+        # Python's switch interval is not changed: a shorter one would slow down switches between the robot's threads.
         figures, last = self._figures, perf_counter_ns()
         while not self._over.acquire(timeout=_SECONDS):
             now = perf_counter_ns()
-            self._look(min(now - last, _LONGEST_NS))
+            self._take_sample(min(now - last, _LONGEST_NS))
             last = now
             figures.samples += 1
             figures.sampling_ns += perf_counter_ns() - now
 
-    def _look(self, spent_ns: int) -> None:
+    def _take_sample(self, spent_ns: int) -> None:
         run = patches.run
         if run is None or not run.in_motion:
             return
@@ -97,7 +97,7 @@ class Sampler:
             self._figures.stacks[stack] = self._figures.stacks.get(stack, 0) + spent_ns
 
     def _stack(self, frame: FrameType | None) -> tuple[tuple[str, str, int], ...]:
-        """The calls from the robot's outermost function on, but for pyfrc's own."""
+        """Return the call stack from the robot's outermost function on, without pyfrc's own functions."""
         calls, outermost = [], 0
         while frame is not None:
             code = frame.f_code

@@ -1,7 +1,7 @@
-"""Times functions, and tells which of them made the robot's loop overrun its period.
+"""Time functions, and find the functions that made the robot's loop overrun its period.
 
-How long a function takes is what it would take on a robot: the wall time of its own computing, and the robot time that
-passes while it waits (`wpilib.wait`, `time.sleep`, a lock), which in a test is no wall time at all.
+A function's time is the time that it would take on a robot: the wall time of its own computing, and the robot time that
+passes while it waits (`wpilib.wait`, `time.sleep`, a lock). In a test, waiting takes almost no wall time.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from ..hal import modes
 from ..project.robot_files import RobotFiles
 from ..runtime.patches import patches
 from ..runtime.threads import RobotThread, RobotThreads
-from .figures import Figures, Line, Measurand, Overrun
+from .figures import CodeLine, Figures, Measurand, Overrun
 
-#: Calls that take longer are remembered until the turn of the loop is over, for it may overrun because of them.
+#: Calls that take longer are stored until the loop's iteration is over, since they may be the cause of an overrun.
 _LONG_NS = 5_000_000
-#: The names of what the functions below are replaced by.
+#: The names of the wrappers below.
 _TIMED = ("timed", "timed_method", "timed_loop")
-#: How often to look how long the loop's thread has computed: for each turn it would cost too much.
-_LOOK_NS = 2_000_000
+#: How often to read the CPU time of the loop's thread: once per iteration would cost too much.
+_READ_CPU_TIME_NS = 2_000_000
 
-#: Robots have one; the functions that it calls are timed one by one.
+#: The loop of a robot; the functions that it calls are timed separately.
 WHOLE_LOOP = Measurand("loop", "the whole loop", "")
 
 
 class _Call(NamedTuple):
-    """A call that took long, and the thread that made it."""
+    """A long call, and its thread."""
 
     what: Measurand
     begin_ns: int
@@ -46,10 +46,10 @@ class _Call(NamedTuple):
 
 
 class _Wait(NamedTuple):
-    """A time for which a thread waited: how much less of it was robot time than wall time."""
+    """A wait of a thread, and how much longer it took in wall time than in robot time."""
 
     begin_ns: int
-    unlike_ns: int
+    excess_ns: int
     robot_ns: int
 
 
@@ -59,42 +59,42 @@ class Stopwatch:
     def __init__(self, figures: Figures, files: RobotFiles) -> None:
         self._figures = figures
         self._files = files
-        #: Changes whenever a thread has waited.
+        #: Counts the waits of all threads.
         self.waits = 0
-        #: How many calls are going on, in whatever threads.
+        #: The number of calls in progress, in all threads.
         self.calls = 0
         self._waited: dict[int, deque[_Wait]] = {}
         self._long: deque[_Call] = deque(maxlen=64)
-        self._take_down_turn = figures.times_of(WHOLE_LOOP).append
-        #: Where a robot with a loop of its own came out of its last wait: when, after which wait.
+        self._record_turn = figures.times_of(WHOLE_LOOP).append
+        #: For a robot with its own loop: the end of its last wait, and the value of `waits` then.
         self._turn: tuple[int, int] | None = None
         self._own_loop: RobotThread | None = None
         self._has_turns = False
-        #: When was last looked how long the loop's thread has computed, and how long that was.
-        self.looked_ns = self._computed_ns = 0
+        #: When the CPU time of the loop's thread was last read, and its value.
+        self.cpu_time_read_ns = self._computed_ns = 0
 
-    def forget(self) -> None:
-        """Begin anew, in a fork."""
-        self.looked_ns = self.calls = 0
+    def clear(self) -> None:
+        """Delete all measurements, in a fork."""
+        self.cpu_time_read_ns = self.calls = 0
         self._waited.clear()
         self._long.clear()
         self._turn = None
 
-    def look_at_computing(self) -> int:
-        """Take down how long the calling thread has computed until now; answers when that is."""
+    def read_cpu_time(self) -> int:
+        """Read the CPU time of the calling thread; return the current wall time."""
         self._computed_ns = thread_time_ns()
-        self.looked_ns = perf_counter_ns()
-        return self.looked_ns
+        self.cpu_time_read_ns = perf_counter_ns()
+        return self.cpu_time_read_ns
 
     # -- functions ------------------------------------------------------------------------------------------------
 
     def timed(self, function: Callable[..., Any], what: Measurand, period_ns: int | None = None) -> Callable[..., Any]:
-        """The function, with each of its calls timed.
+        """Return the function with timing for each of its calls.
 
-        :param period_ns: how long it may take, when it is a loop
+        :param period_ns: the period, if it is a loop
         """
         now, unusual, watch = perf_counter_ns, self._unusual, self
-        take_down = self._figures.times_of(what).append
+        record = self._figures.times_of(what).append
         long_ns = min(_LONG_NS, period_ns or _LONG_NS)
 
         def timed_loop() -> Any:
@@ -102,18 +102,18 @@ class Stopwatch:
             waits = watch.waits
             watch.calls += 1
             begin = now()
-            if begin - watch.looked_ns > _LOOK_NS:
-                begin = watch.look_at_computing()
+            if begin - watch.cpu_time_read_ns > _READ_CPU_TIME_NS:
+                begin = watch.read_cpu_time()
             try:
                 return function()
             finally:
                 took = now() - begin
                 watch.calls -= 1
                 if took > long_ns or watch.waits != waits:
-                    took = watch._turn_is_over(what, begin, took, period_ns or 0)
-                take_down(took)
+                    took = watch._iteration_ended(what, begin, took, period_ns or 0)
+                record(took)
 
-        # These are called most often, so they are as short as can be; the second saves Python packing arguments.
+        # These two are called most often, so they are as short as possible; the second avoids packing arguments.
         def timed(*args: Any, **kwargs: Any) -> Any:
             __tracebackhide__ = True
             waits = watch.waits
@@ -126,7 +126,7 @@ class Stopwatch:
                 watch.calls -= 1
                 if took > long_ns or watch.waits != waits:
                     took = unusual(what, begin, took)
-                take_down(took)
+                record(took)
 
         def timed_method(self: Any) -> Any:
             __tracebackhide__ = True
@@ -140,25 +140,25 @@ class Stopwatch:
                 watch.calls -= 1
                 if took > long_ns or watch.waits != waits:
                     took = unusual(what, begin, took)
-                take_down(took)
+                record(took)
 
         wrapper: Callable[..., Any] = timed_method if _takes_one_argument(function) else timed
         if period_ns is not None:
             wrapper = timed_loop
         try:
             return wraps(function)(wrapper)
-        except (AttributeError, TypeError):  # something callable that is no function
+        except (AttributeError, TypeError):  # a callable object that is not a function
             return wrapper
 
     def _unusual(self, what: Measurand, begin: int, took: int) -> int:
-        """A call took long, or waited; answers how long it took."""
+        """Handle a call that took long, or waited; return how long it took."""
         took -= self._waited_since(begin)[0]
         if took > _LONG_NS:
             self._long.append(_Call(what, begin, took, get_ident()))
         return took
 
-    def _turn_is_over(self, what: Measurand, begin: int, took: int, period_ns: int) -> int:
-        """The same of a turn of a loop."""
+    def _iteration_ended(self, what: Measurand, begin: int, took: int, period_ns: int) -> int:
+        """Handle an iteration of a loop in the same way, and record an overrun."""
         _, robot_ns = self._waited_since(begin)
         took = self._unusual(what, begin, took)
         held_up_ns = max(0, took - robot_ns - (thread_time_ns() - self._computed_ns))
@@ -166,7 +166,7 @@ class Stopwatch:
         if what is WHOLE_LOOP:
             self._long.clear()
         if took > period_ns and patches.run is not None:
-            # The innermost function is over first.
+            # The innermost function ends first.
             culprit = next((call for call in within if call.took_ns >= took / 2), _Call(what, begin, took, 0))
             began = patches.run.clock.now - robot_ns / 1e9
             test = environ.get("PYTEST_CURRENT_TEST", "").rpartition(" (")[0]
@@ -176,23 +176,23 @@ class Stopwatch:
         return took
 
     def _waited_since(self, begin: int) -> tuple[int, int]:
-        """How much less of the calling thread's waits was robot time than wall time, and how much was robot time."""
-        unlike_ns = robot_ns = 0
+        """Return the excess of wall time over robot time in the calling thread's waits, and their robot time."""
+        excess_ns = robot_ns = 0
         for wait in reversed(self._waited.get(get_ident(), ())):
             if wait.begin_ns < begin:
                 break
-            unlike_ns += wait.unlike_ns
+            excess_ns += wait.excess_ns
             robot_ns += wait.robot_ns
-        return unlike_ns, robot_ns
+        return excess_ns, robot_ns
 
     # -- waits ----------------------------------------------------------------------------------------------------
 
     def waiting(self, original: Callable[..., Any]) -> Callable[..., Any]:
-        """A method of `RobotThreads` in which the calling thread waits."""
+        """Wrap a method of `RobotThreads` in which the calling thread waits."""
 
         def wait(threads: RobotThreads, *args: Any) -> Any:
             __tracebackhide__ = True
-            # Asked first because it is quick: a notifier, or a loop between two turns, waits often.
+            # The quick check comes first: a notifier, or a loop between two iterations, waits often.
             if self.calls and _in_timed_call(sys._getframe(1)):
                 return self._call_waits(sys._getframe(1), threads, partial(original, threads, *args))
             if self._is_own_loop():
@@ -220,42 +220,42 @@ class Stopwatch:
         own_loop = run.own_loop if run is not None else None
         if run is None or own_loop is None or own_loop.ident != get_ident():
             return False
-        if own_loop is not self._own_loop:  # of a `TimedRobot` it is a function that is timed
+        if own_loop is not self._own_loop:  # the loop of a `TimedRobot` is a timed function
             self._own_loop, self._has_turns = own_loop, not isinstance(run.robot, TimedRobot)
         return self._has_turns
 
     def _own_loop_waits(self, original: Callable[[], Any]) -> Any:
-        """The turn of a robot with a loop of its own is over: that is when it waits, whatever for."""
+        """Record an iteration of a robot with its own loop: it ends with the loop's first wait."""
         __tracebackhide__ = True
         if self._turn is not None:
             begin, waits = self._turn
             took = perf_counter_ns() - begin
             if took > _LONG_NS or waits != self.waits:
                 seconds = getattr(patches.run and patches.run.robot, "control_loop_wait_time", 0.02)
-                took = self._turn_is_over(WHOLE_LOOP, begin, took, round(seconds * 1e9))
-            self._take_down_turn(took)
+                took = self._iteration_ended(WHOLE_LOOP, begin, took, round(seconds * 1e9))
+            self._record_turn(took)
         try:
             return original()
         finally:
             begin = perf_counter_ns()
-            if begin - self.looked_ns > _LOOK_NS:
-                begin = self.look_at_computing()
+            if begin - self.cpu_time_read_ns > _READ_CPU_TIME_NS:
+                begin = self.read_cpu_time()
             self._turn = begin, self.waits
 
 
-def innermost_line(frame: FrameType | None, files: RobotFiles) -> Line | None:
-    """The line of the robot's code that is nearest to what is being done, if it takes part."""
+def innermost_line(frame: FrameType | None, files: RobotFiles) -> CodeLine | None:
+    """Return the innermost line of the robot's code in this stack, or None."""
     while frame is not None:
         code = frame.f_code
         if files.is_robot_code(code.co_filename):
             name = getattr(code, "co_qualname", code.co_name)  # since Python 3.11
-            return Line(f"{files.relative(code.co_filename)}:{frame.f_lineno}", name)
+            return CodeLine(f"{files.relative(code.co_filename)}:{frame.f_lineno}", name)
         frame = frame.f_back
     return None
 
 
 def is_waiting(frame: FrameType | None, files: RobotFiles) -> bool:
-    """Whether the robot's code waits, at its innermost line: what is done meanwhile is done by others."""
+    """Return whether the robot's innermost line waits: then other threads run."""
     while frame is not None and not files.is_robot_code(frame.f_code.co_filename):
         if frame.f_code.co_filename == __file__ and frame.f_code.co_name == "wait":
             return True
@@ -273,7 +273,7 @@ def _in_timed_call(frame: FrameType | None) -> bool:
 
 
 def _takes_one_argument(function: Callable[..., Any]) -> bool:
-    """Whether it is a method without arguments, as most of a robot's are."""
+    """Return whether the function is a method without arguments, as most of a robot's are."""
     if not isinstance(function, FunctionType):
         return False
     code = function.__code__

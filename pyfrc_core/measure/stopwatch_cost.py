@@ -1,4 +1,4 @@
-"""What measuring costs, measured on this machine: what of a profile's figures is not the robot's own."""
+"""The cost of measuring, determined on this machine: the part of a profile's times that is not the robot's own."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _CALLS, _ROUNDS = 2000, 7
 
 @dataclass(frozen=True)
 class Cost:
-    """What measuring has cost, in nanoseconds.
+    """The cost of measuring, in nanoseconds.
 
     :param call_ns: the cost of timing one call
-    :param timing_ns: that of all calls
-    :param sampling_ns: that of all samples
-    :param calls_ns: that of `cProfile`, if it was wanted
-    :param robot_ns: how long `robotInit` and all turns of the loop took together, with what measuring cost within
+    :param timing_ns: the cost of timing all calls
+    :param sampling_ns: the cost of all samples
+    :param calls_ns: the cost of `cProfile`, if it was used
+    :param robot_ns: the time of `robotInit` and all iterations of the loop, with the cost of measuring
     """
 
     call_ns: float
@@ -34,7 +34,7 @@ class Cost:
 
     @property
     def share(self) -> float | None:
-        """How much longer they took, by what was measured of it: 0.1 is a tenth. None when there were none."""
+        """The cost relative to the time without it: 0.1 is a tenth. None when there was no iteration."""
         total = self.timing_ns + self.sampling_ns + self.calls_ns
         alone = self.robot_ns - total
         return total / alone if self.robot_ns and alone > 0 else None
@@ -46,13 +46,13 @@ def _is_outermost(what: Measurand) -> bool:
 
 class _Robot:
     def periodic(self) -> None:
-        """What is timed to find out what timing costs."""
+        """Do nothing: this is timed to determine the cost of timing."""
 
 
 def measured_cost(figures: Figures, profiled_calls: int) -> Cost:
-    """What it has cost to measure these figures.
+    """Return the cost of measuring these figures.
 
-    :param profiled_calls: how many calls `cProfile` has seen
+    :param profiled_calls: how many calls `cProfile` has recorded
     """
     robot = _Robot()
     bare = _seconds(lambda: _Robot.periodic(robot))
@@ -69,7 +69,7 @@ def measured_cost(figures: Figures, profiled_calls: int) -> Cost:
 
 
 def _seconds(call: Callable[[], object]) -> float:
-    """How long a call takes: the least of several rounds, since whatever else the machine does only adds to it."""
+    """Return the duration of a call: the minimum of several rounds, since other programs can only add to it."""
     return min(repeat(call, number=_CALLS, repeat=_ROUNDS)) / _CALLS
 
 
@@ -77,7 +77,7 @@ def _profiled_seconds(robot: _Robot) -> float:
     profile = cProfile.Profile()
     profile.enable()
     try:
-        # Two calls each: of the lambda, and of the method.
+        # Each run makes two calls: of the lambda, and of the method.
         return _seconds(lambda: _Robot.periodic(robot)) / 2
     finally:
         profile.disable()

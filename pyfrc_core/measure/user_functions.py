@@ -1,6 +1,6 @@
-"""Which functions of a robot are timed: those that WPILib, commands2 and magicbot call each loop, or when they choose.
+"""Find the robot's functions to time: those that WPILib, commands2 and magicbot call in each loop or on events.
 
-They are found when their classes are made, and when they are handed over as callbacks: so the robot's modules must not
+They are found when their classes are created, and when they are passed as callbacks. So the robot's modules must not
 have been imported yet.
 """
 
@@ -28,13 +28,13 @@ from .replacements import Replacements
 from .stopwatch import WHOLE_LOOP, Stopwatch
 
 _MODES = ("robot", "disabled", "autonomous", "teleop", "test", "simulation", "_simulation")
-#: What is called of a robot. Not its constructor, which runs before there is a loop.
+#: The methods of a robot that are called; not its constructor, which runs before there is a loop.
 _OF_A_ROBOT = {f"{mode}{when}" for mode in _MODES for when in ("Init", "Periodic", "Exit")}
 _NOT_OF_A_LOOP = {"startCompetition", "endCompetition"}
 _OF_A_COMMAND = {"initialize", "execute", "end", "isFinished"}
 _OF_A_SUBSYSTEM = {"periodic", "simulationPeriodic"}
 _OF_A_COMPONENT = {"execute", "on_enable", "on_disable"}
-#: Where commands and triggers are given functions: the class, its method, the arguments by number and by name.
+#: Where commands and triggers take functions: the class, its method, and the arguments by index and by name.
 _GIVEN_TO_COMMANDS = (
     ("FunctionalCommand", "__init__", (1, 2, 3, 4), ("onInit", "onExecute", "onEnd", "isFinished")),
     ("ConditionalCommand", "__init__", (3,), ("condition",)),
@@ -49,7 +49,7 @@ _GIVEN_TO_COMMANDS = (
 
 
 class UserFunctions:
-    """Has the functions of a robot timed."""
+    """Times the functions of a robot."""
 
     def __init__(self, stopwatch: Stopwatch, files: RobotFiles, wrap: Callable[[Callable[..., Any]], Any]) -> None:
         self._stopwatch = stopwatch
@@ -57,8 +57,8 @@ class UserFunctions:
         self._wrap = wrap
         self._done: set[type] = set()
 
-    def find(self, replacements: Replacements) -> None:
-        """From now on, until the replacements are undone."""
+    def install(self, replacements: Replacements) -> None:
+        """Time the functions that are created from now on, until the replacements are undone."""
         for base in (wpilib.RobotBase, wpiutil.Sendable):
             replacements.replace(base, "__init_subclass__", classmethod(self._when_derived_from(base)))
         replacements.replace(TimedLoop, "add", self._adding(TimedLoop.add))
@@ -76,7 +76,7 @@ class UserFunctions:
         replacements.replace(RobotRun, "open", open_run)
 
     def timed(self, function: Callable[..., Any], kind: str, name: str = "", period_ns: int | None = None) -> Any:
-        """The function, timed."""
+        """Return the function with timing."""
         name, place = name or _name_of(function), _place_of(function, self._files)
         return self._stopwatch.timed(self._wrap(function), Measurand(kind, name, place), period_ns)
 
@@ -90,7 +90,7 @@ class UserFunctions:
     # -- classes --------------------------------------------------------------------------------------------------
 
     def _on_class(self, cls: type) -> None:
-        """A class has been made that derives from WPILib's, perhaps a library's."""
+        """Time the methods of a new class that derives from WPILib's, perhaps through a library's."""
         if issubclass(cls, wpilib.RobotBase):
             self._time_robot(cls)
         elif _derives_from(cls, "commands2.command", "Command"):
@@ -105,12 +105,12 @@ class UserFunctions:
             self._time_methods(cls, _OF_A_ROBOT, "robot")
             for component in _components(cls):
                 self._time_component(component)
-        else:  # with a loop of its own, whose parts only it knows
+        else:  # a robot with its own loop: any method may be a part of it
             methods = {name for name, value in vars(cls).items() if isinstance(value, FunctionType)}
             self._time_methods(cls, {name for name in methods if name[:2] != "__"} - _NOT_OF_A_LOOP, "robot")
 
     def _time_component(self, cls: type) -> None:
-        """A class of `MagicRobot`'s, of which also what it inherits from a library is of interest: a state machine."""
+        """Time a component of a `MagicRobot`, with methods that it inherits from a library, as a state machine does."""
         if cls in self._done or cls.__module__.partition(".")[0] in ("magicbot", "wpilib"):
             return
         self._done.add(cls)
@@ -118,7 +118,7 @@ class UserFunctions:
         inherited = getattr(cls, "execute", None)
         if "execute" not in vars(cls) and isinstance(inherited, FunctionType):
             if self._files.is_robot_code(inherited.__code__.co_filename):
-                return  # timed where it is
+                return  # timed in its own class
             cls.execute = self.timed(inherited, "component", f"{cls.__qualname__}.execute")  # type: ignore[attr-defined]
 
     def _time_methods(self, cls: type, names: Iterable[str], kind: str) -> None:
@@ -130,7 +130,7 @@ class UserFunctions:
     # -- callbacks ------------------------------------------------------------------------------------------------
 
     def _adding(self, real: Callable[..., None]) -> Callable[..., None]:
-        """`TimedLoop.add`, for the loop itself and for callbacks with their own rate."""
+        """Wrap `TimedLoop.add`, for the loop itself and for callbacks with their own rate."""
 
         def add(loop: TimedLoop, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
             period_ns = to_us(period) * 1000
@@ -143,7 +143,7 @@ class UserFunctions:
         return add
 
     def _time_callbacks_of_commands(self, replacements: Replacements) -> None:
-        """What commands and triggers are made of; commands2 is there by now, if the robot uses it."""
+        """Time the functions that commands and triggers take; if the robot uses commands2, it is imported by now."""
         if "commands2" not in sys.modules:
             return
         import commands2.button
@@ -155,7 +155,7 @@ class UserFunctions:
     def _time_arguments(
         self, replacements: Replacements, owner: type, name: str, positions: Iterable[int], names: Iterable[str]
     ) -> None:
-        """Time the callbacks that a method is given, if they are the robot's own functions."""
+        """Time the callbacks that a method takes, if they are the robot's own functions."""
         if (owner, name) in replacements:
             return
         real = getattr(owner, name)
@@ -181,10 +181,10 @@ class UserFunctions:
 
 
 def _components(cls: type) -> Iterator[type]:
-    """The classes of which `MagicRobot` makes its components, as far as they can be told by now."""
+    """Return the classes of a `MagicRobot`'s components, as far as they are known before it runs."""
     try:
         hints = typing.get_type_hints(cls)
-    except Exception:  # magicbot tells what is wrong with them
+    except Exception:  # magicbot reports wrong annotations itself
         return
     for hint in hints.values():
         if isinstance(hint, type) and not issubclass(hint, (wpiutil.Sendable, int, float, str)):
@@ -192,7 +192,7 @@ def _components(cls: type) -> Iterator[type]:
 
 
 def _derives_from(cls: type, module: str, name: str) -> bool:
-    """Whether a class is a library's or derives from it, without importing that."""
+    """Return whether a class is or derives from a library's class, without importing the library."""
     return any(base.__module__ == module and base.__name__ == name for base in cls.__mro__)
 
 

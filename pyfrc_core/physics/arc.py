@@ -1,12 +1,12 @@
-"""The way of a robot whose sides approach their steady speeds, to a ten-millionth of it.
+"""The path of a robot whose sides approach their steady speeds, accurate to a ten-millionth of its length.
 
-Within a step, each side's speed is ``steady + lag * exp(-t / tau)`` exactly, and the heading follows from how far the
-sides have come. What is left, the integral of velocity in the direction of the heading, has no closed form.
+Within a step, each side's speed is ``steady + lag * exp(-t / tau)`` exactly, and the heading follows from the distances
+of both sides. The remaining integral, that of the velocity in the direction of the heading, has no closed form.
 
-In a step with little variation, such as 20 ms, both sides nearly keep their speeds, and the way is nearly the chord of
-a circle. How far a side is ahead of where it would be at its mean speed rises and falls over the step as a bow: about
-``6 p (1 - p)`` times its mean, with p from 0 to 1. `TankModel` adds to the chord what the bows change, as a series
-that begins with their means (`bow`); it is written out there, since it takes most of the time of a simulated drive.
+In a step with little variation, such as 20 ms, both sides nearly keep their speeds, and the path is nearly the chord of
+a circle. How far a side is ahead of its position at mean speed rises and falls during the step like a bow: about ``6 p
+(1 - p)`` times its mean, with p from 0 to 1. `TankModel` adds the effect of the bows to the chord, as a series that
+begins with their means (`bow`); the series is written out there, since it takes most of the time of a simulated drive.
 
 In any other step, Gauss-Legendre quadrature (Abramowitz and Stegun, 25.4.30) is used: the integrand is smooth.
 """
@@ -17,12 +17,12 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-#: The series is used for steps that turn by less than this, in radians; in which the heading is ahead of that of a
-#: circle by less than this, in their mean; and that are at most this many time constants long. Within these limits, it
-#: is 1.2e-7 of the way off at most: the worst of 126,000 random drivetrains and steps, compared with the quadrature.
+#: The series is used for steps that turn by less than this, in radians; in which the heading is ahead of a circle's by
+#: less than this, on average; and that last at most this many time constants. Within these limits, its error is at most
+#: 1.2e-7 of the path: the worst of 126,000 random drivetrains and steps, compared with the quadrature.
 MOST_TURN, MOST_BEND, MOST_TIME_CONSTANTS = 0.4, 0.0055, 0.25
 
-#: Position within a panel of length 1, and weight: from the roots of the Legendre polynomial of degree 8.
+#: Positions in a panel of length 1, and weights: from the roots of the Legendre polynomial of degree 8.
 _EIGHT = (
     (0.1834346424956498, 0.3626837833783620),
     (0.5255324099163290, 0.3137066458778873),
@@ -31,12 +31,12 @@ _EIGHT = (
 )
 EIGHT_NODES = tuple((0.5 + side * root / 2, weight / 2) for root, weight in _EIGHT for side in (-1, 1))
 
-#: How much variation (radians turned, plus time constants passed) eight nodes are enough for.
+#: The variation (radians turned, plus time constants passed) for which eight nodes are enough.
 EIGHT_NODES_SPAN = 3.0
 
 
-class Side(NamedTuple):
-    """What one side of the robot does in a step: ``steady + lag * exp(-t / tau)`` ft/s after t seconds."""
+class SideMotion(NamedTuple):
+    """The motion of one side of the robot in a step: ``steady + lag * exp(-t / tau)`` ft/s after t seconds."""
 
     tau: float
     steady: float
@@ -44,15 +44,15 @@ class Side(NamedTuple):
 
 
 def bow(tm_diff: float, tau: float, reach: float) -> float:
-    """The mean, over the step, of how far a lag of 1 ft/s has a side ahead of its mean speed, in ft.
+    """Return how far a lag of 1 ft/s has a side ahead of its position at mean speed, averaged over the step, in ft.
 
-    :param reach: how far that lag brings the side in the whole step
+    :param reach: the distance that this lag adds in the whole step
     """
     return tau - reach * (tau / tm_diff + 0.5) if tm_diff else 0.0
 
 
-def along(tm_diff: float, turning: float, left: Side, right: Side) -> tuple[float, float]:
-    """Where the robot's centre comes to in a step of any length: feet forward and to the right of where it was.
+def along(tm_diff: float, turning: float, left: SideMotion, right: SideMotion) -> tuple[float, float]:
+    """Return how far the robot's centre moves in a step of any length: feet forward and to the right.
 
     :param turning: radians clockwise that the robot turns for each foot that its left side is ahead of its right
     """
@@ -75,7 +75,7 @@ def along(tm_diff: float, turning: float, left: Side, right: Side) -> tuple[floa
 
 
 def _nodes(tm_diff: float, panels: int) -> Iterator[tuple[float, float]]:
-    """Weight, and time since the step began."""
+    """Return the weights, and the times since the start of the step."""
     length = tm_diff / panels
     for panel in range(panels):
         for position, weight in EIGHT_NODES:

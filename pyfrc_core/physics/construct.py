@@ -1,4 +1,4 @@
-"""A robot with the physics of its project; a project without any never imports them."""
+"""Construct a robot with its project's physics. A project without physics.py never imports the physics package."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..runtime.robot import RobotRun
 
 
 def construct(project: Project, run: RobotRun, robot_class: type[Any]) -> None:
-    """Make the robot, with the project's physics, in a run that is open."""
+    """Construct the robot and its physics in an open run."""
     if project.physics_file.is_file():
         from .engine import load_physics
 

@@ -1,4 +1,4 @@
-"""What a robot project's ``physics.py`` is given to move the robot with, and what it has to be."""
+"""The interface of a project's ``physics.py``: the class it must contain, and the object that moves the robot."""
 
 from __future__ import annotations
 
@@ -26,42 +26,42 @@ if TYPE_CHECKING:
 __all__ = ["PhysicsEngine", "PhysicsInitException", "PhysicsInterface"]
 
 _NO_MOVE = Transform2d()
-#: What WPILib takes for equal when it compares poses: metres, radians.
+#: Poses that differ by less than this are equal to WPILib, in metres and radians.
 _LEAST_MOVE = 1e-9
 
 
 class PhysicsInitException(RobotCodeError):
-    """The project's ``physics.py`` is not what it must be: a class `PhysicsEngine` with a method `update_sim`."""
+    """The project's ``physics.py`` has no valid class `PhysicsEngine` with a method `update_sim`."""
 
 
 class PhysicsEngine:
-    """What your ``physics.py`` must contain: a class of this name with these methods.
+    """The class that your ``physics.py`` must contain, with this name and these methods.
 
-    You can inherit from this one, but need not. It is made before the robot is, so that `initialize` can set what the
-    robot finds; when its constructor also takes the robot, or its `update_sim` is today's ``(now, tm_diff)``, it is
-    made when the robot's `robotInit` is over.
+    You may inherit from this class. The engine is created before the robot, so that `initialize` can set the robot's
+    inputs. If its constructor also takes the robot, or its `update_sim` takes ``(now, tm_diff)`` as in current pyfrc,
+    it is created after the robot's `robotInit`.
 
-    :param physics_controller: what you move the robot with
+    :param physics_controller: moves the robot on the field
     """
 
     def __init__(self, physics_controller: PhysicsInterface) -> None:
         self.physics_controller = physics_controller
 
     def initialize(self, hal_data: HalData) -> None:
-        """Called before the robot has started running; optional.
+        """Called before the robot starts; optional.
 
-        A device that the robot makes afterwards may begin with values of its own: a digital input reads True.
+        A device that the robot creates afterwards may have its own initial values: a digital input reads True.
 
         :param hal_data: the robot's inputs and outputs
         """
 
     def update_sim(self, hal_data: HalData, now: float, tm_diff: float) -> None:
-        """Called every 20 ms of robot time, when the robot's loop has run (every 10 ms for robots with faster loops).
+        """Called every 20 ms of robot time, after the robot's loop (every 10 ms for robots with faster loops).
 
         While the robot is disabled, outputs read as off, whatever its code sets.
 
         :param hal_data: the robot's inputs and outputs
-        :param now: the robot's time, in seconds
+        :param now: the robot time, in seconds
         :param tm_diff: the time since the last call, in seconds
         """
         raise NotImplementedError("your PhysicsEngine has no update_sim")
@@ -70,14 +70,14 @@ class PhysicsEngine:
 class PhysicsInterface:
     """Moves the robot on the field, and turns its gyros with it.
 
-    There is one pose with two views. `get_position` is the documentation's: feet, clockwise, x to the right and y
+    There is one pose with two views. `get_position` is pyfrc's: feet, clockwise, x to the right and y
     downwards from the field's top left corner. `get_pose` is WPILib's: metres, counter-clockwise, x to the right and y
     upwards from the bottom left corner.
 
     :param robot_path: the directory of the robot's code
-    :param fake_time: the robot's time, for physics that want to ask it
-    :param config_obj: what ``sim/config.json`` holds: the parsed file as a dict, or its values in effect
-    :param hal_data: the robot's inputs and outputs, where the gyros are; None leaves gyros alone
+    :param fake_time: control over robot time, for physics that read it
+    :param config_obj: the contents of ``sim/config.json``: the parsed file as a dict, or its resolved values
+    :param hal_data: the robot's inputs and outputs, with its gyros; None leaves gyros unchanged
     """
 
     def __init__(
@@ -89,9 +89,9 @@ class PhysicsInterface:
     ) -> None:
         self.robot_path = str(robot_path)
         self.fake_time = fake_time
-        #: The field as dashboards show it; `setRobotPose` puts the robot elsewhere.
+        #: The field as dashboards show it; `setRobotPose` moves the robot.
         self.field = wpilib.Field2d()
-        #: The targets that a `VisionSim` looks for, and those that it sees now.
+        #: The targets of a `VisionSim`, and those that it sees now.
         self.vision_targets: tuple[VisionSimTarget, ...] = ()
         self.vision_targets_in_view: tuple[VisionSimTarget, ...] = ()
         config = config_obj if isinstance(config_obj, SimConfig) else resolve_document(config_obj)
@@ -124,18 +124,19 @@ class PhysicsInterface:
         rotation_speed: float | None = None,
         tm_diff: float | None = None,
     ) -> Pose2d:
-        """Move the robot with constant velocities; also while it is disabled, as a robot that rolls on does.
+        """Move the robot with constant velocities. This also works while it is disabled, since a robot keeps rolling.
 
-        Also ``drive(answer, tm_diff)`` with what the drivetrain functions for mecanum and swerve answer. And
-        ``drive(ChassisSpeeds, tm_diff)``, as since 2020: in metres and counter-clockwise; gyros are left to you.
+        There are two more forms: ``drive(vector, tm_diff)`` with the result of the drivetrain functions for mecanum and
+        swerve; and ``drive(ChassisSpeeds, tm_diff)``, as since 2020, in metres and counter-clockwise, which does not
+        turn gyros.
 
         :param speed: the robot's speed forward, in ft/s
         :param rotation_speed: clockwise, in radians/s
-        :param tm_diff: for how long, in seconds: what `update_sim` was given
-        :returns: where the robot is then
+        :param tm_diff: the duration in seconds, as passed to `update_sim`
+        :returns: the robot's new pose
         """
         if isinstance(speed, (ChassisSpeeds, DriveVector)):
-            time = rotation_speed if tm_diff is None else tm_diff  # the second of two
+            time = rotation_speed if tm_diff is None else tm_diff  # the second positional argument
             if time is None or (rotation_speed is not None and tm_diff is not None):
                 raise TypeError(f"drive({type(speed).__name__}, tm_diff) takes a time, in seconds, and nothing else")
             if isinstance(speed, DriveVector):
@@ -146,28 +147,28 @@ class PhysicsInterface:
         if rotation_speed is None or tm_diff is None:
             raise TypeError(
                 "drive(speed, rotation_speed, tm_diff) takes three numbers, and drive(speeds, tm_diff) ChassisSpeeds "
-                f"and a time; this was given a {type(speed).__name__}"
+                f"and a time, not a {type(speed).__name__}"
             )
         return self._drive(speed, 0.0, rotation_speed, tm_diff)
 
     def vector_drive(self, vx: float, vy: float, vw: float, tm_diff: float) -> None:
-        """Move the robot with a constant velocity vector relative to it.
+        """Move the robot with a constant velocity relative to itself.
 
         :param vx: speed to the robot's right, in ft/s
         :param vy: speed forward, in ft/s
         :param vw: clockwise, in radians/s
-        :param tm_diff: for how long, in seconds
+        :param tm_diff: the duration, in seconds
         """
         self._drive(vy, vx, vw, tm_diff)
 
     def distance_drive(self, x: float, y: float, angle: float) -> None:
-        """Move the robot some distance, as seen from where it is, then turn it.
+        """Move the robot by a distance relative to its pose, then turn it.
+
+        As with `move_robot`, moves of less than a nanometre and a billionth of a radian are ignored.
 
         :param x: feet forward
         :param y: feet to the right
         :param angle: radians, clockwise
-
-        As with `move_robot`, less than a nanometre and a billionth of a radian is no move.
         """
         _check(x, y, angle)
         if max(abs(x) * METRES_PER_FOOT, abs(y) * METRES_PER_FOOT, abs(angle)) < _LEAST_MOVE:
@@ -176,14 +177,14 @@ class PhysicsInterface:
         self._turn_analog_gyros(angle)
 
     def get_position(self) -> tuple[float, float, float]:
-        """Where the robot is: (x, y, angle) in feet and radians; the angle goes on counting beyond a full turn."""
+        """Return the robot's position (x, y, angle) in feet and radians; the angle is not limited to one turn."""
         pose = self._current()
         return pose.x, pose.y, pose.angle
 
     def get_offset(self, x: float, y: float) -> tuple[float, float]:
-        """How far away a coordinate is, in feet, and at what angle.
+        """Return the distance to a position in feet, and its direction.
 
-        :returns: the distance, and degrees clockwise from the direction in which the robot faces, from -180 to 180
+        :returns: the distance, and degrees clockwise from the direction that the robot faces, from -180 to 180
         """
         pose = self._current()
         dx, dy = x - pose.x, y - pose.y
@@ -193,7 +194,7 @@ class PhysicsInterface:
     # -- gyros ---------------------------------------------------------------------------------------------------
 
     def add_device_gyro_channel(self, angle_key: str) -> None:
-        """Have a gyro turn with the robot, however it moves.
+        """Turn a gyro with the robot, for every kind of move.
 
         :param angle_key: the name of its angle in ``hal_data['robot']``, in degrees clockwise, such as
             ``'navx_spi_4_angle'``
@@ -202,22 +203,22 @@ class PhysicsInterface:
             self._device_gyros.append(angle_key)
 
     def add_analog_gyro_channel(self, ch: int) -> None:
-        """No longer needed: analog gyros turn with the robot."""
+        """Do nothing; no longer needed, since analog gyros turn with the robot."""
 
     def add_gyro_channel(self, ch: int) -> None:
-        """No longer needed: analog gyros turn with the robot."""
+        """Do nothing; no longer needed, since analog gyros turn with the robot."""
 
     # -- metres, counter-clockwise -------------------------------------------------------------------------------
 
     def move_robot(self, transform: Transform2d) -> Pose2d:
-        """Move the robot, as seen from where it is; also while it is disabled, as a robot that rolls on does.
+        """Move the robot relative to its pose. This also works while it is disabled, since a robot keeps rolling.
 
-        Analog gyros are left to you. Less than a nanometre, and a billionth of a radian, is no move.
+        Analog gyros are not turned. Moves of less than a nanometre and a billionth of a radian are ignored.
 
-        :param transform: in metres, counter-clockwise, as `TankModel.calculate` answers it
-        :returns: where the robot is then
+        :param transform: in metres, counter-clockwise, such as the result of `TankModel.calculate`
+        :returns: the robot's new pose
         """
-        if transform == _NO_MOVE:  # as WPILib compares them, to a nanometre; most robots rest most of the time
+        if transform == _NO_MOVE:  # WPILib compares to a nanometre; most robots rest most of the time
             return self._move(0.0, 0.0, 0.0)
         if not isinstance(transform, Transform2d):
             raise TypeError(f"move_robot(transform) takes a Transform2d, not a {type(transform).__name__}")
@@ -225,13 +226,13 @@ class PhysicsInterface:
         return self._move(transform.x / METRES_PER_FOOT, -transform.y / METRES_PER_FOOT, -turn)
 
     def get_pose(self) -> Pose2d:
-        """Where the robot is, in metres."""
+        """Return the robot's pose, in metres."""
         return self.field.getRobotPose()
 
     # -- drawing -------------------------------------------------------------------------------------------------
 
     def draw_vision_targets(self, targets: Sequence[VisionSimTarget], in_view: Sequence[VisionSimTarget]) -> None:
-        """Show a camera's targets on the field; those in view also as an object of their own."""
+        """Show a camera's targets on the field, and those in view as a second object."""
         self.vision_targets, self.vision_targets_in_view = tuple(targets), tuple(in_view)
         for name, shown in (("vision targets", targets), ("vision targets in view", in_view)):
             self.field.getObject(name).setPoses([self._seen_in_metres(Pose(t.x, t.y, 0.0)) for t in shown])
@@ -245,7 +246,7 @@ class PhysicsInterface:
         return pose
 
     def _move_along(self, forward: float, right: float, turn: float) -> Pose2d:
-        """Move with constant velocities that would, without the turn, bring the robot so far forward and right."""
+        """Move with constant velocities; without the turn, they would move the robot this far forward and right."""
         _check(forward, right, turn)
         return self._move(*along_arc(forward, right, turn), turn)
 
@@ -256,7 +257,7 @@ class PhysicsInterface:
             for key in self._device_gyros:
                 angles[key] = angles.get(key, 0.0) + math.degrees(turn)
         pose = self._current()
-        if not (forward or right or turn):  # at rest, dashboards need not be told
+        if not (forward or right or turn):  # at rest, no update for dashboards is needed
             return self._shown
         return self._place(pose.moved(forward, right, turn))
 
@@ -267,7 +268,7 @@ class PhysicsInterface:
                 gyro["angle"] += math.degrees(turn)
 
     def update_rates(self, tm_diff: float) -> None:
-        """Called when `update_sim` is over: analog gyros read the rate at which it has turned them, in degrees/s."""
+        """Set the analog gyros' rates after `update_sim`, in degrees/s, from the angle that it has turned them by."""
         rate, self._turned = self._turned / tm_diff, 0.0
         if rate != self._rate and self._hal_data is not None:
             self._rate = rate
@@ -275,7 +276,7 @@ class PhysicsInterface:
                 gyro["rate"] = rate
 
     def _current(self) -> Pose:
-        """The pose, unless somebody has put the robot elsewhere on the `field`."""
+        """Return the pose, with changes that were made on the `field`."""
         shown = self.field.getRobotPose()
         if shown == self._shown:
             return self._pose
@@ -296,6 +297,6 @@ class PhysicsInterface:
 
 
 def _check(forward: float, right: float, turn: float) -> None:
-    """Numbers that are none would carry on into the robot's pose and never leave it."""
+    """Raise `ParameterError` unless all numbers are finite: NaN would remain in the robot's pose forever."""
     if not math.isfinite(forward + right + turn):
         raise ParameterError(f"the robot cannot move by {forward:g} ft forward, {right:g} ft right, {turn:g} rad")

@@ -1,4 +1,4 @@
-"""What a motor makes of what it is set to."""
+"""Dead zones: a motor's output as a function of its input."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from collections.abc import Callable
 
 from .parameters import ParameterError, finite, within_full_power
 
-#: What a motor gives, between -1 and 1, for what it is set to.
+#: Returns a motor's output for its input, both between -1 and 1.
 DeadzoneCallable = Callable[[float], float]
 
 
 def linear_deadzone(deadzone: float) -> DeadzoneCallable:
-    """For a motor that needs some input to move at all: none up to `deadzone`, then growing linearly to full power.
+    """Return a dead zone: no output up to an input of `deadzone`, then a linear increase to full power.
 
-    With 0.2, an input of 0.3 gives 0.125. The same backwards.
+    With 0.2, an input of 0.3 gives 0.125. Negative inputs are treated in the same way.
 
-    :param deadzone: the least input that moves the motor, from 0 to below 1
-    :raises ParameterError: for any other
+    :param deadzone: the largest input that does not move the motor, from 0 to below 1
+    :raises ParameterError: when `deadzone` is outside that range
     """
     deadzone = finite(deadzone, "deadzone")
     if not 0 <= deadzone < 1:
@@ -36,15 +36,15 @@ def linear_deadzone(deadzone: float) -> DeadzoneCallable:
 
 
 def motor_output(motor_value: float, parameter: str, deadzone: DeadzoneCallable | None) -> float:
-    """What the motor gives for what it is set to, between -1 and 1."""
+    """Return a motor's output for its input, between -1 and 1."""
     motor_value = within_full_power(motor_value, parameter)
     return motor_value if deadzone is None else deadzone(motor_value)
 
 
 def deadzone_function(deadzone: DeadzoneCallable | None) -> DeadzoneCallable | None:
-    """`deadzone` as given to a drivetrain, if it can be called.
+    """Check the `deadzone` parameter of a drivetrain, and return it.
 
-    :raises ParameterError: if not; many a user gives the number
+    :raises ParameterError: when it is not a function, for example a number
     """
     if deadzone is None or callable(deadzone):
         return deadzone

@@ -1,4 +1,4 @@
-"""The functions that the drivetrain classes replaced in 2018."""
+"""Functions that were replaced by drivetrain classes in 2018."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def two_motor_drivetrain(
     speed: float | Quantity[Any] = 5,
     deadzone: DeadzoneCallable | None = None,
 ) -> tuple[float, float]:
-    """Deprecated since 2018.2.0: use :class:`TwoMotorDrivetrain`, whose `get_vector` this is."""
+    """Return the result of :class:`TwoMotorDrivetrain`'s `get_vector`. Deprecated since 2018.2.0: use that class."""
     _deprecated("two_motor_drivetrain", "TwoMotorDrivetrain")
     return TwoMotorDrivetrain(x_wheelbase, speed, deadzone).get_vector(l_motor, r_motor)
 
@@ -33,7 +33,7 @@ def four_motor_drivetrain(
     speed: float | Quantity[Any] = 5,
     deadzone: DeadzoneCallable | None = None,
 ) -> tuple[float, float]:
-    """Deprecated since 2018.2.0: use :class:`FourMotorDrivetrain`, whose `get_vector` this is."""
+    """Return the result of :class:`FourMotorDrivetrain`'s `get_vector`. Deprecated since 2018.2.0: use that class."""
     _deprecated("four_motor_drivetrain", "FourMotorDrivetrain")
     return FourMotorDrivetrain(x_wheelbase, speed, deadzone).get_vector(lr_motor, rr_motor, lf_motor, rf_motor)
 
@@ -48,12 +48,12 @@ def mecanum_drivetrain(
     speed: float | Quantity[Any] = 5,
     deadzone: DeadzoneCallable | None = None,
 ) -> DriveVector:
-    """Deprecated since 2018.2.0: use :class:`MecanumDrivetrain`, whose `get_vector` this is."""
+    """Return the result of :class:`MecanumDrivetrain`'s `get_vector`. Deprecated since 2018.2.0: use that class."""
     _deprecated("mecanum_drivetrain", "MecanumDrivetrain")
     drivetrain = MecanumDrivetrain(x_wheelbase, y_wheelbase, speed, deadzone)
     return drivetrain.get_vector(lr_motor, rr_motor, lf_motor, rf_motor)
 
 
 def _deprecated(function: str, replacement: str) -> None:
-    message = f"{function} is deprecated: make a {replacement} once, and call its get_vector"
+    message = f"{function} is deprecated: create a {replacement} once, and call its get_vector"
     warnings.warn(message, DeprecationWarning, stacklevel=3)

@@ -1,6 +1,6 @@
-"""Simple drivetrains: from what the motors are set to, to how the robot moves. Wheels follow their motors at once.
+"""Simple drivetrains: compute the robot's motion from its motors' values. Wheels follow their motors at once.
 
-Two generations of callers use the same classes: `get_vector` speaks feet and clockwise radians, `calculate` and
+Two generations of callers use the same classes: `get_vector` uses feet and clockwise radians, `calculate` and
 `wheelSpeeds` WPILib's metres and counter-clockwise radians. Motor values beyond -1 and 1 count as full power.
 """
 
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from pint import Quantity
 
 
-# Converts to metres in the same call that makes the object, which is most of the time that `calculate` takes.
+# Converts to metres in the call that creates the object, which takes most of the time of `calculate`.
 _chassis_speeds = ChassisSpeeds.fromFeet
 
 
 class DriveVector(NamedTuple):
-    """How the robot moves, seen from the robot: the tuple (to the right, forward, clockwise) in ft/s and rad/s."""
+    """The robot's motion relative to itself: the tuple (to the right, forward, clockwise) in ft/s and rad/s."""
 
     vx_fps: float
     vy_fps: float
@@ -41,18 +41,18 @@ class DriveVector(NamedTuple):
 
     @property
     def omega(self) -> float:
-        """The rotation counter-clockwise, as WPILib counts it, in rad/s."""
+        """The counter-clockwise rotation, as in WPILib, in rad/s."""
         return 0.0 - self.vw
 
 
 class _TankDrivetrain:
     """Two sides whose wheels cannot slip: forward = (L+R)/2, clockwise = (L-R)/W.
 
-    Signs are changed by `0.0 - x`, since `-x` shows a robot at rest as moving at -0.0.
+    Signs are changed by `0.0 - x`, since `-x` would give a robot at rest a speed of -0.0.
     """
 
-    #: Speed of each side in ft/s after the last calculation, forward positive: multiplied by the time, it is what
-    #: that side's encoder went on by.
+    #: Speed of each side in ft/s after the last calculation, forward positive. Multiplied by the time, it is the
+    #: distance of that side's encoder.
     l_speed: float = 0.0
     r_speed: float = 0.0
 
@@ -65,8 +65,8 @@ class _TankDrivetrain:
         """
         :param x_wheelbase: distance between left and right wheels, in feet or as a quantity
         :param speed: the robot's speed at full power, in ft/s or as a quantity
-        :param deadzone: what a motor makes of its input, such as what :func:`linear_deadzone` answers
-        :raises ParameterError: for a measure that is not above zero, a deadzone that is not a function
+        :param deadzone: a motor's output as a function of its input, such as the result of :func:`linear_deadzone`
+        :raises ParameterError: for a length or speed that is not above zero, or a deadzone that is not a function
         """
         self._x_wheelbase = _feet(x_wheelbase, "x_wheelbase")
         self._speed = _feet_per_second(speed)
@@ -74,7 +74,7 @@ class _TankDrivetrain:
 
     @cached_property
     def kinematics(self) -> DifferentialDriveKinematics:
-        """WPILib's own, for a robot of this width."""
+        """WPILib's kinematics for a robot of this width."""
         return DifferentialDriveKinematics(self._x_wheelbase * METRES_PER_FOOT)
 
     @property
@@ -83,7 +83,11 @@ class _TankDrivetrain:
         return DifferentialDriveWheelSpeeds.fromFeet(self.l_speed, self.r_speed)
 
     def _vector(self, left: float, right: float) -> tuple[float, float]:
-        """Forward in ft/s and clockwise in rad/s, for the share of full speed of each side, forward positive."""
+        """Return the speed forward in ft/s and clockwise in rad/s.
+
+        :param left: the left side's share of full speed, forward positive
+        :param right: the right side's share of full speed, forward positive
+        """
         self.l_speed = left = left * self._speed
         self.r_speed = right = right * self._speed
         return (left + right) * 0.5, (left - right) / self._x_wheelbase
@@ -118,7 +122,7 @@ class TwoMotorDrivetrain(_TankDrivetrain):
 
 
 class FourMotorDrivetrain(_TankDrivetrain):
-    """Two motors on each side, chained together: a side moves at their mean. Else as :class:`TwoMotorDrivetrain`."""
+    """Two coupled motors on each side: a side moves at their mean. Otherwise like :class:`TwoMotorDrivetrain`."""
 
     def get_vector(self, lr_motor: float, rr_motor: float, lf_motor: float, rf_motor: float) -> tuple[float, float]:
         """
@@ -152,7 +156,7 @@ class FourMotorDrivetrain(_TankDrivetrain):
 
 
 class MecanumDrivetrain:
-    """Four mecanum wheels with rollers at 45°, a motor each.
+    """Four mecanum wheels with rollers at 45°, with a motor each.
 
     To move to the right and forward in ft/s while turning clockwise in rad/s, the wheels turn at::
 
@@ -161,9 +165,9 @@ class MecanumDrivetrain:
         right front = forward - right - k * clockwise
         right rear  = forward + right - k * clockwise
 
-    with k = (x_wheelbase + y_wheelbase) / 2. (Source: Ether, "Kinematic Analysis of Four-Wheel Mecanum Vehicle";
-    the same as WPILib's `MecanumDriveKinematics`.) Wheels that do not agree slip: four equations for three unknowns.
-    The columns are orthogonal, so the least-squares solution is each column's product with the wheels, over the
+    with k = (x_wheelbase + y_wheelbase) / 2. (Source: Ether, "Kinematic Analysis of Four-Wheel Mecanum Vehicle"; the
+    same as WPILib's `MecanumDriveKinematics`.) Inconsistent wheels slip: there are four equations for three unknowns.
+    The columns are orthogonal, so the least-squares solution is each column's product with the wheels, divided by the
     column's square.
     """
 
@@ -178,8 +182,8 @@ class MecanumDrivetrain:
         :param x_wheelbase: distance between left and right wheels, in feet or as a quantity
         :param y_wheelbase: distance between front and rear wheels, in feet or as a quantity
         :param speed: the robot's speed at full power, in ft/s or as a quantity
-        :param deadzone: what a motor makes of its input, such as what :func:`linear_deadzone` answers
-        :raises ParameterError: for a measure that is not above zero, a deadzone that is not a function
+        :param deadzone: a motor's output as a function of its input, such as the result of :func:`linear_deadzone`
+        :raises ParameterError: for a length or speed that is not above zero, or a deadzone that is not a function
         """
         self._x_wheelbase = _feet(x_wheelbase, "x_wheelbase")
         self._y_wheelbase = _feet(y_wheelbase, "y_wheelbase")
@@ -187,8 +191,9 @@ class MecanumDrivetrain:
         self.deadzone = deadzone_function(deadzone)
         self._linear = self._speed / 4
         self._angular = self._speed / (2 * (self._x_wheelbase + self._y_wheelbase))
-        # What the motors gave last: left front, left rear, right front, right rear; and what is forward for the right.
-        self._given = (0.0, 0.0, 0.0, 0.0)
+        # The motors' last outputs: left front, left rear, right front, right rear; and the sign of forward on the
+        # right.
+        self._last_outputs = (0.0, 0.0, 0.0, 0.0)
         self._right_forward = 1.0
 
     def get_vector(self, lr_motor: float, rr_motor: float, lf_motor: float, rf_motor: float) -> DriveVector:
@@ -200,7 +205,7 @@ class MecanumDrivetrain:
         :returns: speed of the robot to the right and forward in ft/s, its clockwise rotation in rad/s
         :raises ParameterError: for NaN
         """
-        lf, lr, rf, rr = self._given = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor)
+        lf, lr, rf, rr = self._last_outputs = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor)
         self._right_forward = 1.0
         linear = self._linear
         right, forward = (lf - lr - rf + rr) * linear, (lf + lr + rf + rr) * linear
@@ -215,7 +220,7 @@ class MecanumDrivetrain:
         :returns: speed of the robot in m/s and rad/s, counter-clockwise
         :raises ParameterError: for NaN
         """
-        lf, lr, rf, rr = self._given = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor)
+        lf, lr, rf, rr = self._last_outputs = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor)
         self._right_forward = -1.0
         rising = lf - rr
         falling = lr - rf
@@ -224,7 +229,7 @@ class MecanumDrivetrain:
         return _chassis_speeds(forward, left, (0.0 - lf - lr - rf - rr) * self._angular)
 
     def _outputs(self, lf: float, lr: float, rf: float, rr: float) -> tuple[float, float, float, float]:
-        # Compared here, since four calls that find nothing to do would cost as much as all the rest.
+        # Compared here, since four function calls would cost as much as all the rest.
         if not -1.0 <= lf <= 1.0 or not -1.0 <= lr <= 1.0 or not -1.0 <= rf <= 1.0 or not -1.0 <= rr <= 1.0:
             lf, lr = within_full_power(lf, "lf_motor"), within_full_power(lr, "lr_motor")
             rf, rr = within_full_power(rf, "rf_motor"), within_full_power(rr, "rr_motor")
@@ -235,8 +240,8 @@ class MecanumDrivetrain:
 
     @property
     def lf_speed(self) -> float:
-        """Speed of the left front wheel in ft/s after the last calculation, forward positive: use it for encoders."""
-        return self._given[0] * self._speed
+        """Speed of the left front wheel in ft/s after the last calculation, forward positive, for encoders."""
+        return self._last_outputs[0] * self._speed
 
     @lf_speed.setter
     def lf_speed(self, speed: float) -> None:
@@ -244,8 +249,8 @@ class MecanumDrivetrain:
 
     @property
     def lr_speed(self) -> float:
-        """Of the left rear wheel, as `lf_speed`."""
-        return self._given[1] * self._speed
+        """Speed of the left rear wheel, like `lf_speed`."""
+        return self._last_outputs[1] * self._speed
 
     @lr_speed.setter
     def lr_speed(self, speed: float) -> None:
@@ -253,8 +258,8 @@ class MecanumDrivetrain:
 
     @property
     def rf_speed(self) -> float:
-        """Of the right front wheel, as `lf_speed`."""
-        return self._given[2] * self._speed * self._right_forward
+        """Speed of the right front wheel, like `lf_speed`."""
+        return self._last_outputs[2] * self._speed * self._right_forward
 
     @rf_speed.setter
     def rf_speed(self, speed: float) -> None:
@@ -262,17 +267,17 @@ class MecanumDrivetrain:
 
     @property
     def rr_speed(self) -> float:
-        """Of the right rear wheel, as `lf_speed`."""
-        return self._given[3] * self._speed * self._right_forward
+        """Speed of the right rear wheel, like `lf_speed`."""
+        return self._last_outputs[3] * self._speed * self._right_forward
 
     @rr_speed.setter
     def rr_speed(self, speed: float) -> None:
         self._set_speed(3, speed * self._right_forward)
 
     def _set_speed(self, wheel: int, speed: float) -> None:
-        given = list(self._given)
+        given = list(self._last_outputs)
         given[wheel] = finite(speed, "speed") / self._speed
-        self._given = given[0], given[1], given[2], given[3]
+        self._last_outputs = given[0], given[1], given[2], given[3]
 
     @property
     def wheelSpeeds(self) -> MecanumDriveWheelSpeeds:
@@ -281,7 +286,7 @@ class MecanumDrivetrain:
 
     @cached_property
     def kinematics(self) -> MecanumDriveKinematics:
-        """WPILib's own, for a robot of these measures."""
+        """WPILib's kinematics for a robot of these dimensions."""
         x = self._y_wheelbase / 2 * METRES_PER_FOOT
         y = self._x_wheelbase / 2 * METRES_PER_FOOT
         return MecanumDriveKinematics(
@@ -303,24 +308,24 @@ def four_motor_swerve_drivetrain(
     speed: float | Quantity[Any] = 5,
     deadzone: DeadzoneCallable | None = None,
 ) -> DriveVector:
-    """Four motors that each can be turned in any direction.
+    """Return the motion of a robot with four motors, each of which can be turned in any direction.
 
     A wheel at (x to the right, y forward) of the centre of a robot that moves and turns clockwise moves at::
 
         right + clockwise * y, forward - clockwise * x
 
-    (rigid body motion, the same as WPILib's `SwerveDriveKinematics`). That makes eight equations for three unknowns;
-    since the wheels are placed symmetrically, their columns are orthogonal, and the least-squares solution is each
-    column's product with the wheels, over the column's square.
+    (rigid body motion, the same as WPILib's `SwerveDriveKinematics`). That makes eight equations for three unknowns.
+    The wheels are placed symmetrically, so the columns are orthogonal, and the least-squares solution is each column's
+    product with the wheels, divided by the column's square.
 
     :param lr_motor: left rear motor, -1 to 1; 1 is forward. `rr_motor`, `lf_motor`, `rf_motor` likewise
     :param lr_angle: left rear wheel, in degrees clockwise from forward. `rr_angle`, `lf_angle`, `rf_angle` likewise
     :param x_wheelbase: distance between left and right wheels, in feet or as a quantity
     :param y_wheelbase: distance between front and rear wheels, in feet or as a quantity
     :param speed: the robot's speed at full power, in ft/s or as a quantity
-    :param deadzone: what a motor makes of its input, such as what :func:`linear_deadzone` answers
+    :param deadzone: a motor's output as a function of its input, such as the result of :func:`linear_deadzone`
     :returns: speed of the robot to the right and forward in ft/s, its clockwise rotation in rad/s
-    :raises ParameterError: for a measure that is not above zero, a deadzone that is not a function, NaN
+    :raises ParameterError: for a length or speed that is not above zero, a deadzone that is not a function, NaN
     """
     half_x = _feet(x_wheelbase, "x_wheelbase") / 2
     half_y = _feet(y_wheelbase, "y_wheelbase") / 2
@@ -342,7 +347,7 @@ def four_motor_swerve_drivetrain(
     return DriveVector(right / 4, forward / 4, moment / (4 * (half_x**2 + half_y**2)))
 
 
-#: As the documentation spells it in one place.
+#: The documentation uses this spelling in one place.
 four_motor_serve_drivetrain = four_motor_swerve_drivetrain
 
 

@@ -1,4 +1,4 @@
-"""A project's ``physics.py``: found beside its robot.py, told which generation it is, and kept going with a run."""
+"""Load a project's ``physics.py``, detect its generation by its signatures, and call it during a run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..runtime.loading import import_file
 from ..runtime.robot import RobotRun
 from .core import PhysicsEngine, PhysicsInitException, PhysicsInterface
 
-#: However fast the robot's loop is, `update_sim` is called no more often than this (100 Hz).
+#: The shortest period of `update_sim`, for robots with faster loops (100 Hz).
 _SHORTEST_PERIOD_US = 10_000
 
 _WHAT_IT_MUST_HAVE = (
@@ -29,20 +29,20 @@ _WHAT_IT_MUST_HAVE = (
 
 
 def load_physics(project: Project) -> PhysicsModule:
-    """The project's ``physics.py``, imported. The robot's own modules are to be imported before.
+    """Import the project's ``physics.py``. The robot's modules must be imported before.
 
-    :raises RobotCodeError: when it fails, naming the user's line
+    :raises RobotCodeError: when it fails, with the user's line
     """
     return PhysicsModule(import_file(project, project.physics_file), project)
 
 
 class PhysicsModule:
-    """A ``physics.py``, and which generation it is of: told by its signatures.
+    """A project's ``physics.py``. Its generation is detected by its signatures.
 
-    The documentation's `update_sim` takes ``(hal_data, now, tm_diff)``, today's ``(now, tm_diff)``; the constructor may
-    ask for the robot in either.
+    The documented `update_sim` takes ``(hal_data, now, tm_diff)``, the current one ``(now, tm_diff)``; in both
+    generations the constructor may also take the robot.
 
-    :raises PhysicsInitException: naming the line of what cannot be called
+    :raises PhysicsInitException: with the line of a method that cannot be called
     """
 
     def __init__(self, module: ModuleType, project: Project) -> None:
@@ -55,16 +55,16 @@ class PhysicsModule:
             raise _wrong_signature(self.engine_class, "initialize")
 
     def attach(self, run: RobotRun, fake_time: object = None) -> Physics:
-        """The physics of one run; to be called before its robot is constructed.
+        """Create the physics of one run; call it before the robot is constructed.
 
-        :param fake_time: what engines find as `physics_controller.fake_time`
+        :param fake_time: the value of `physics_controller.fake_time`
         """
         loaded = self._project.loaded_sim_config
         config = loaded.config
         controller = PhysicsInterface(self._project.root, fake_time, config, run.hal_data)
         controller.config_obj = document_of(config, loaded.text.value if loaded.text is not None else None)
         if not self.takes_hal_data and not config.says_start:
-            controller.field.setRobotPose(Pose2d())  # where today's robots start
+            controller.field.setRobotPose(Pose2d())  # where robots of the current generation start
         return Physics(self, controller, run)
 
     def _takes_robot(self) -> bool:
@@ -76,7 +76,7 @@ class PhysicsModule:
                 raise _wrong_signature(self.engine_class, "__init__")
             if not with_robot or not _accepts(constructor, "self", "physics_controller"):
                 return with_robot
-            # A second parameter with a default: since 2020 it gets the robot; in 2019 it was somebody's own.
+            # A second parameter with a default: since 2020 it receives the robot; in 2019 it was the user's own.
             return names[1] == "robot" or not self.takes_hal_data
         raise _wrong_signature(self.engine_class, "__init__")
 
@@ -90,18 +90,18 @@ class PhysicsModule:
         bound = ["self"] if inspect.isfunction(inspect.getattr_static(engine, "update_sim")) else []
         names = list(inspect.signature(update).parameters)[len(bound) :]
         documented = _accepts(update, *bound, "hal_data", "now", "tm_diff")
-        todays = _accepts(update, *bound, "now", "tm_diff") and names[:2] != ["tm_diff", "now"]
+        current = _accepts(update, *bound, "now", "tm_diff") and names[:2] != ["tm_diff", "now"]
         if names[:1] == ["hal_data"]:
-            todays = False  # one of the others is missing
-        if documented == todays and not documented:
+            current = False  # another parameter is missing
+        if documented == current and not documented:
             raise _wrong_signature(engine, "update_sim")
-        return documented and not todays
+        return documented and not current
 
 
 class Physics:
-    """One run's physics: its engine, made and called when it should be.
+    """The physics of one run, which creates and calls the engine at the right times.
 
-    :param controller: what the engine moves the robot with
+    :param controller: the engine moves the robot with it
     """
 
     def __init__(self, module: PhysicsModule, controller: PhysicsInterface, run: RobotRun) -> None:
@@ -114,13 +114,13 @@ class Physics:
         self._last_us = 0
         run.physics = self
         if module.takes_hal_data and not module.takes_robot:
-            run.do(self._make_engine)  # as documented: what `initialize` sets is there when the robot is made
+            run.do(self._make_engine)  # as documented: `initialize` sets inputs before the robot is created
         else:
             run.when_initialized.append(self._make_engine)
         run.when_constructed.append(self._begin)
 
     def _begin(self) -> None:
-        # Robots with WPILib's iterative loop say how fast it is.
+        # Robots with WPILib's iterative loop have a method for its period.
         period = getattr(self._run.robot, "getPeriod", None)
         if period is not None:
             self._period_us = min(PACKET_US, max(_SHORTEST_PERIOD_US, to_us(period())))
@@ -131,7 +131,7 @@ class Physics:
         module, run = self._module, self._run
         field, pose = self.controller.field, self.controller.get_pose()
         wpilib.SmartDashboard.putData("Field", field)
-        field.setRobotPose(pose)  # else, without isolation, the dashboard's from the run before would be taken over
+        field.setRobotPose(pose)  # otherwise, without isolation, the dashboard's pose of the last run would be used
         self.engine = module.engine_class(self.controller, *([run.robot] if module.takes_robot else []))
         initialize = getattr(self.engine, "initialize", None)
         if initialize is not None:
@@ -141,7 +141,7 @@ class Physics:
         __tracebackhide__ = True
         run = self._run
         now_us, last_us = run.clock.now_us, self._last_us
-        if self._updating:  # an update that waits, in robot time, is not interrupted by the next
+        if self._updating:  # an update that waits in robot time is not interrupted by the next one
             return
         self._last_us = now_us
         if not run.started:
@@ -173,11 +173,11 @@ def _engine_class(module: ModuleType) -> type[Any]:
     classes = [
         value for value in vars(module).values() if isinstance(value, type) and value.__module__ == module.__name__
     ]
-    nearly = next((each for each in classes if hasattr(each, "update_sim")), None)
+    similar = next((each for each in classes if hasattr(each, "update_sim")), None)
     raise PhysicsInitException(
         "there is no class PhysicsEngine in this file"
-        + (f", but a class {nearly.__name__}: rename it" if nearly else ""),
-        where=Path(str(module.__file__)).name if nearly is None else _place(nearly),
+        + (f", but a class {similar.__name__}: rename it" if similar else ""),
+        where=Path(str(module.__file__)).name if similar is None else _place(similar),
         remedy=_WHAT_IT_MUST_HAVE,
     )
 
@@ -194,9 +194,9 @@ def _wrong_signature(engine: type[Any], name: str) -> PhysicsInitException:
     method = getattr(engine, name)
     if method is object.__init__:
         message = "PhysicsEngine has no constructor"
-        nearly = next((each for each in vars(engine) if each != name and each.strip("_") == "init"), None)
+        similar = next((each for each in vars(engine) if each != name and each.strip("_") == "init"), None)
         return PhysicsInitException(
-            message + (f", but a method {nearly}: two underscores stand on either side" if nearly else ""),
+            message + (f", but a method {similar}: it needs two underscores on both sides" if similar else ""),
             where=_place(engine),
             remedy=_WHAT_IT_MUST_HAVE,
         )
@@ -207,6 +207,6 @@ def _wrong_signature(engine: type[Any], name: str) -> PhysicsInitException:
 
 
 def _place(thing: Any) -> str:
-    """``physics.py:12``, where a class or a function begins."""
+    """Return the start of a class or function, such as ``physics.py:12``."""
     file, (_, line) = inspect.getsourcefile(thing) or "physics.py", inspect.getsourcelines(thing)
     return f"{Path(file).name}:{line}"

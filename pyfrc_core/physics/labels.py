@@ -1,4 +1,4 @@
-"""Labels: values that helpers show in the simulator, under `hal_data['custom']`."""
+"""Labels: values shown in the simulator, stored in `hal_data['custom']`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,6 @@ from ..runtime.patches import patches
 
 
 def show_label(label: str, value: object) -> None:
-    """Show `value` as text in a box with this label; does nothing while no robot runs."""
+    """Show `value` as text in a box with this label. Does nothing while no robot runs."""
     if patches.run is not None:
         patches.run.hal_data["custom"][label] = value

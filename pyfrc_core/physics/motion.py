@@ -1,4 +1,4 @@
-"""Mechanisms that move along a line: from what the motor is set to, to what the encoder counts."""
+"""Mechanisms that move along a line: from a motor's value to an encoder's count."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from .parameters import ParameterError, finite, not_negative, within_full_power
 
 
 class LinearMotion:
-    """A mechanism such as an elevator, with an encoder directly coupled to its motor, which follows its input at once.
+    """A mechanism such as an elevator, with an encoder coupled directly to its motor. It reacts to its motor at once.
 
-    Its position is shown in the simulator, in feet, under its name. It starts at 0, or at the limit nearest to that.
+    Its position is shown in the simulator, in feet, under its name. It starts at 0, or at the nearest limit.
     """
 
     #: Position in feet.
     position_ft: float = 0.0
-    #: Position in encoder ticks, counted from 0 ft; a tick counts when it is complete.
+    #: Position in whole encoder ticks, from 0 ft.
     position_ticks: int = 0
 
     def __init__(
@@ -27,11 +27,11 @@ class LinearMotion:
     ) -> None:
         """
         :param name: the label in the simulator
-        :param motor_ft_per_sec: speed at full power, in ft/s; negative if the motor is mounted the other way round
-        :param ticks_per_feet: what the encoder counts in a foot; negative if it counts the other way
-        :param max_position: where the mechanism ends, in feet; None if it does not
-        :param min_position: where it begins, in feet; None if it does not
-        :raises ParameterError: for what is not a number, or limits that leave no room
+        :param motor_ft_per_sec: speed at full power, in ft/s; negative if the motor is mounted in reverse
+        :param ticks_per_feet: encoder ticks per foot; negative if the encoder counts in reverse
+        :param max_position: the upper limit, in feet; None for no limit
+        :param min_position: the lower limit, in feet; None for no limit
+        :raises ParameterError: when a value is not a number, or the limits are in the wrong order
         """
         self._name = name
         self._speed = finite(motor_ft_per_sec, "motor_ft_per_sec")
@@ -47,11 +47,11 @@ class LinearMotion:
         self._move(0.0)
 
     def compute(self, motor_val: float, tm_diff: float | None = None) -> int:
-        """Move on, and answer the new position in ticks.
+        """Move the mechanism, and return the new position in ticks.
 
-        :param motor_val: what the motor was set to, -1 to 1; values beyond count as full power
-        :param tm_diff: for how many seconds. If left out, the robot time since the previous call; the first
-            call then moves nothing
+        :param motor_val: the motor's value, -1 to 1; values beyond count as full power
+        :param tm_diff: the duration in seconds. The default is the robot time since the previous call; then the first
+            call moves nothing
         :raises ParameterError: for NaN, or a time below zero
         """
         motor_val = within_full_power(motor_val, "motor_val")
@@ -61,7 +61,7 @@ class LinearMotion:
 
     def _move(self, feet: float) -> None:
         self.position_ft = min(max(self.position_ft + feet, self._min), self._max)
-        # Rounded before it is cut off: many small steps add up to a little less than the whole.
+        # Rounded before it is truncated: many small steps add up to slightly less than the whole.
         self.position_ticks = int(round(self.position_ft * self._ticks_per_feet, 6))
         show_label(self._name, f"{round(self.position_ft, 2) + 0.0:.2f}")
 
@@ -70,5 +70,5 @@ class LinearMotion:
 
         now, last = wpilib.Timer.getFPGATimestamp(), self._last_call
         self._last_call = now
-        # Below zero when the motion has outlived one robot and meets the next, whose time begins anew.
+        # Negative when the object is used with a second robot, whose time starts at zero again.
         return 0.0 if last is None else max(0.0, now - last)

@@ -1,6 +1,6 @@
-"""What motors can do, from their makers' data sheets, at 12 V.
+"""Motor data at 12 V, from the makers' data sheets.
 
-Most figures are those of WPILib's `DCMotor` too (``wpimath/system/plant/DCMotor.java``), which cites the same sources.
+Most figures are also those of WPILib's `DCMotor` (``wpimath/system/plant/DCMotor.java``), which cites the same sources.
 """
 
 from __future__ import annotations
@@ -12,16 +12,16 @@ from .units import units
 if TYPE_CHECKING:
     from .units import Quantity
 
-#: What all figures here were measured at.
+#: The voltage at which all figures here were measured.
 NOMINAL_VOLTAGE = 12 * units.volt
 
 
 class MotorModelConfig(NamedTuple):
-    """What a motor can do; its data sheet says. All but the name are quantities of pint.
+    """A motor's data, from its data sheet. All but the name are quantities of pint.
 
     :param name: descriptive name of the motor
-    :param nominalVoltage: the voltage that the other figures are for
-    :param freeSpeed: speed without load, 1 / [time]: give it in `units.cpm`, not in pint's `rpm`
+    :param nominalVoltage: the voltage of the other figures
+    :param freeSpeed: speed without load, 1 / [time], in `units.cpm`, not in pint's `rpm`
     :param freeCurrent: current without load
     :param stallTorque: torque at standstill, [length]**2 * [mass] / [time]**2
     :param stallCurrent: current at standstill

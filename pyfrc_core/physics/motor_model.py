@@ -1,9 +1,9 @@
-"""How fast one side of a tank drive gets, from the voltage of its motors.
+"""Compute the speed of one side of a tank drive from the voltage of its motors.
 
 The equation is that of Noah Gleason's and Eli Barnett's motor characterization whitepaper (as in WPILib's drivetrain
-characterization): ``V = kv * velocity + ka * acceleration + vintercept``, with the friction's `vintercept` against the
-voltage. While the voltage stays the same, its solution is one exponential, which is what is computed here: a step of
-any length is exact.
+characterization): ``V = kv * velocity + ka * acceleration + vintercept``, where the friction's `vintercept` opposes the
+voltage. While the voltage is constant, its solution is one exponential, which is computed here: a step of any length is
+exact.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ if TYPE_CHECKING:
 
 
 class MotorModel:
-    """Motor model used by the `TankModel`, which makes its own.
+    """Motor model of the `TankModel`, which creates its own.
 
-    `position`, `velocity`, `kv`, `ka` and `vintercept` may be set at any time: the next step goes on from there. So may
-    `acceleration`, which the next step computes anew.
+    `position`, `velocity`, `kv`, `ka` and `vintercept` may be set at any time: the next step continues from there. So
+    may `acceleration`, which the next step computes again.
 
     :param motor_config: the specification of the motor
-    :param kv: voltage for a speed (`units.tm_kv`), computed or measured for the robot
-    :param ka: voltage for an acceleration (`units.tm_ka`)
-    :param vintercept: the least voltage that overcomes steady friction (`units.volt`)
-    :raises WrongDimension: for a parameter in a unit that it cannot be in
-    :raises ParameterError: for a value that cannot be, such as a negative `ka`
+    :param kv: voltage per speed (`units.tm_kv`), computed or measured for the robot
+    :param ka: voltage per acceleration (`units.tm_ka`)
+    :param vintercept: the lowest voltage that overcomes steady friction (`units.volt`)
+    :raises WrongDimension: for a parameter with a unit of another dimension
+    :raises ParameterError: for an impossible value, such as a negative `ka`
     """
 
-    # With a dict, so that a test may set any attribute, or replace a method.
+    # `__dict__` allows tests to set any attribute, or replace a method.
     __slots__ = (
         "__dict__",
         "__weakref__",
@@ -57,17 +57,17 @@ class MotorModel:
 
     #: Current computed position (in ft)
     position: float
-    #: The speed that the motor value comes to (in ft/s)
+    #: The steady speed for the motor value (in ft/s)
     steady: float
-    #: How much faster than that it is (in ft/s)
+    #: The current speed minus the steady speed (in ft/s)
     lag: float
-    #: Seconds in which all but 1/e of what is missing from the steady speed is gained
+    #: The time in which the difference to the steady speed falls to 1/e (in s)
     time_constant: float
-    #: What a step of the prepared length leaves of the lag, as a part of it
+    #: The part of the lag that remains after a step of the prepared length
     kept: float
-    #: How far a lag of 1 ft/s brings the wheel meanwhile (in ft)
+    #: The distance that a lag of 1 ft/s adds in such a step (in ft)
     reach: float
-    #: Called when an attribute was set, from which others were computed
+    #: Called after a change of an attribute from which others were computed
     on_change: Callable[[], None] | None
 
     def __init__(self, motor_config: MotorModelConfig, kv: Quantity, ka: Quantity, vintercept: Quantity) -> None:
@@ -80,7 +80,7 @@ class MotorModel:
         self._compute_constants()
 
     def _compute_constants(self) -> None:
-        # Speeds instead of voltages: what each would come to. And the time in which they do.
+        # Speeds instead of voltages: the steady speed of each, and the time constant.
         self._full_speed = self._volts / self._volts_per_speed
         self._friction_speed = self._volts_of_friction / self._volts_per_speed
         self.time_constant = self._volts_per_acceleration / self._volts_per_speed
@@ -90,7 +90,7 @@ class MotorModel:
 
     @property
     def kv(self) -> Quantity:
-        """Voltage for a speed (`units.tm_kv`)."""
+        """Voltage per speed (`units.tm_kv`)."""
         volts: Quantity = self._volts_per_speed * units.tm_kv
         return volts
 
@@ -101,7 +101,7 @@ class MotorModel:
 
     @property
     def ka(self) -> Quantity:
-        """Voltage for an acceleration (`units.tm_ka`)."""
+        """Voltage per acceleration (`units.tm_ka`)."""
         volts: Quantity = self._volts_per_acceleration * units.tm_ka
         return volts
 
@@ -112,7 +112,7 @@ class MotorModel:
 
     @property
     def vintercept(self) -> Quantity:
-        """The least voltage that overcomes steady friction (`units.volt`)."""
+        """The lowest voltage that overcomes steady friction (`units.volt`)."""
         volts: Quantity = self._volts_of_friction * units.volt
         return volts
 
@@ -144,11 +144,11 @@ class MotorModel:
             self.on_change()
 
     def compute(self, motor_pct: float, tm_diff: float) -> float:
-        """Go on for `tm_diff` seconds with this motor value.
+        """Advance by `tm_diff` seconds with this motor value.
 
-        :param motor_pct: power of the motor, -1 to 1, forward positive; what is beyond counts as full power
-        :param tm_diff: seconds since this was last called
-        :returns: the velocity then, in ft/s
+        :param motor_pct: power of the motor, -1 to 1, forward positive; values beyond count as full power
+        :param tm_diff: seconds since the last call
+        :returns: the new velocity, in ft/s
         :raises ParameterError: for NaN, or a negative time
         """
         self.apply(motor_pct, "motor_pct")
@@ -159,7 +159,7 @@ class MotorModel:
         return self.velocity
 
     def apply(self, motor_pct: float, parameter: str) -> None:
-        """Have the following steps be with this motor value; `parameter` is its name in errors."""
+        """Set the motor value of the following steps; `parameter` is its name in errors."""
         steady = self._full_speed * within_full_power(motor_pct, parameter)
         friction = self._friction_speed
         if steady > friction:
@@ -172,7 +172,7 @@ class MotorModel:
         self.steady = steady
 
     def prepare(self, tm_diff: float) -> None:
-        """Have the following steps be `tm_diff` seconds long."""
+        """Set the length of the following steps, in seconds."""
         tm_diff = not_negative(tm_diff, "tm_diff")
         self._tm_diff = tm_diff
         gained = -math.expm1(-tm_diff / self.time_constant)
@@ -193,13 +193,13 @@ def _volts_of_friction(vintercept: Quantity) -> float:
 
 
 def nominal_volts(motor_config: MotorModelConfig) -> float:
-    """The voltage that a motor value of 1 stands for.
+    """Return the voltage of a motor value of 1.
 
-    :raises ParameterError: if this is no motor configuration
+    :raises ParameterError: when the argument is not a motor configuration
     """
     if not isinstance(motor_config, MotorModelConfig):
         raise ParameterError(
-            f"motor_config = {motor_config!r}: is not a motor's configuration",
-            remedy="take one of pyfrc.physics.motor_cfgs, such as MOTOR_CFG_CIM, or make a MotorModelConfig",
+            f"motor_config = {motor_config!r}: must be a motor configuration",
+            remedy="use one of pyfrc.physics.motor_cfgs, such as MOTOR_CFG_CIM, or create a MotorModelConfig",
         )
     return positive(magnitude(motor_config.nominalVoltage, "volt", "nominalVoltage"), "nominalVoltage")

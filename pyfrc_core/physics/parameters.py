@@ -1,4 +1,4 @@
-"""What the helpers' parameters may be: checked once, where they come in, with errors that name the parameter."""
+"""Checks of the physics helpers' parameters, with errors that name the parameter."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from ..errors import PyfrcError
 
 
 class ParameterError(PyfrcError, ValueError):
-    """A parameter of a physics helper has a value that it cannot have."""
+    """A parameter of a physics helper has an impossible value."""
 
 
 def finite(value: object, parameter: str) -> float:
-    """`value` as a float, if it is a finite number.
+    """Return `value` as a float if it is a finite number.
 
-    :raises ParameterError: naming the parameter and what was given
+    :raises ParameterError: otherwise, with the parameter and the value
     """
     if isinstance(value, numbers.Real) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
@@ -25,9 +25,9 @@ def finite(value: object, parameter: str) -> float:
 
 
 def positive(value: object, parameter: str) -> float:
-    """`value` as a float, if it is a finite number above zero.
+    """Return `value` as a float if it is a finite number above zero.
 
-    :raises ParameterError: naming the parameter and what was given
+    :raises ParameterError: otherwise, with the parameter and the value
     """
     number = finite(value, parameter)
     if number > 0:
@@ -36,9 +36,9 @@ def positive(value: object, parameter: str) -> float:
 
 
 def not_negative(value: object, parameter: str) -> float:
-    """`value` as a float, if it is zero or a finite number above it.
+    """Return `value` as a float if it is zero or a finite number above zero.
 
-    :raises ParameterError: naming the parameter and what was given
+    :raises ParameterError: otherwise, with the parameter and the value
     """
     number = finite(value, parameter)
     if number >= 0:
@@ -47,10 +47,9 @@ def not_negative(value: object, parameter: str) -> float:
 
 
 def within_full_power(motor_value: float, parameter: str) -> float:
-    """`motor_value` between -1 and 1: what is beyond counts as full power, since no motor can give more.
+    """Limit `motor_value` to the range from -1 to 1, since no motor can give more than full power.
 
-    :raises ParameterError: for what is no number, and for NaN, which would carry on into the robot's position and
-        never leave it
+    :raises ParameterError: when it is not a number, or NaN, which would remain in the robot's position forever
     """
     try:
         if -1.0 <= motor_value <= 1.0:

@@ -1,6 +1,6 @@
-"""Where the robot is on the field, and how it gets from there along an arc.
+"""The robot's pose on the field, and moves along an arc.
 
-The one pose underneath both of `PhysicsInterface`'s views: feet and clockwise radians, as in ``sim/config.json``.
+Both views of `PhysicsInterface` are based on this pose: feet and clockwise radians, as in ``sim/config.json``.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ METRES_PER_FOOT = 0.3048
 
 
 class Pose(NamedTuple):
-    """A place on the field: x to the right and y downwards, in feet; clockwise radians from the direction of x."""
+    """A pose on the field: x to the right and y downwards, in feet; the angle in radians clockwise from the x axis."""
 
     x: float
     y: float
     angle: float
 
     def moved(self, forward: float, right: float, turn: float) -> Pose:
-        """The pose after a move as seen from this one: so many feet forward and to the right, then so far clockwise."""
+        """Return the pose after a relative move: this far forward and to the right, then a clockwise turn."""
         cos, sin = math.cos(self.angle), math.sin(self.angle)
         return Pose(
             self.x + forward * cos - right * sin,
@@ -29,14 +29,14 @@ class Pose(NamedTuple):
 
 
 def along_arc(forward: float, right: float, turn: float) -> tuple[float, float]:
-    """Where a robot ends that moves with constant velocities, relative to where it began.
+    """Return the displacement of a robot that moves with constant velocities, relative to its start.
 
-    :param forward: how far its velocity forward would have brought it without turning; likewise `right`
-    :param turn: the angle it has turned meanwhile, in radians
-    :returns: how far it has come forward and to the right, in the unit of these two
+    The exponential map of SE(2): Lynch and Park, *Modern Robotics*, section 3.2. Written with the half angle, which is
+    accurate for small turns.
 
-    The exponential map of SE(2): Lynch and Park, *Modern Robotics*, section 3.2. Written with the half angle, which
-    loses no digits when the turn is small.
+    :param forward: the distance that its forward velocity would give without turning; likewise `right`
+    :param turn: the angle of the turn, in radians
+    :returns: the displacement forward and to the right, in the unit of these two
     """
     half = 0.5 * turn
     if half == 0.0:

@@ -1,7 +1,7 @@
-"""Physical quantities at the edge: what a user gives, with or without a unit, as the number we calculate with.
+"""Convert physical quantities of users, with or without a unit, to the plain numbers of our calculations.
 
-Calculating with pint's quantities would cost a hundred times as much; so each is converted once, where it comes in.
-pint is imported only when somebody gives a quantity.
+Calculating with pint's quantities would take a hundred times as long, so each is converted once. pint is imported only
+when the user passes a quantity.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .units import units
 if TYPE_CHECKING:
     from .units import Quantity
 
-#: What errors call a dimension, a unit that has it, and an example of how to give it.
+#: The name of each dimension in errors, a unit of that dimension, and an example.
 KINDS = (
     ("a length", "foot", "2 * units.feet"),
     ("a mass", "pound", "90 * units.lbs"),
@@ -36,22 +36,22 @@ KINDS = (
 
 
 class WrongDimension(PyfrcError, ValueError):
-    """A parameter was given in a unit that it cannot be in, such as a mass in feet, or without one that it needs."""
+    """A parameter has a unit of another dimension, such as a mass in feet, or lacks a required unit."""
 
 
 def magnitude(value: float | Quantity | Any, unit: str, parameter: str, *, plain: bool = False) -> float:
-    """`value` as a number of `unit`. A quantity may be of any of pint's registries, and is converted by its own.
+    """Return `value` as a number of `unit`. A quantity may belong to any pint registry, which converts it.
 
-    :param unit: what we calculate in, such as ``"foot"``, as pint itself spells it, without units of ours
+    :param unit: the unit of the result, such as ``"foot"``, as pint spells it; not one of pyfrc's own units
     :param parameter: the parameter's name, for the error
-    :param plain: whether a number without a unit may be given, and then is in `unit` already
-    :raises WrongDimension: saying which parameter, what was given, and what was expected
-    :raises ParameterError: if it is no finite number
+    :param plain: whether a number without a unit is allowed; it is then in `unit` already
+    :raises WrongDimension: with the parameter, its value, and an example
+    :raises ParameterError: when it is not a finite number
     """
     is_number = isinstance(value, numbers.Real) and not isinstance(value, bool)
     if plain and is_number:
         return finite(value, parameter)
-    pint = sys.modules.get("pint")  # who has a quantity has imported it
+    pint = sys.modules.get("pint")  # a quantity exists only after its import
     if pint is not None and isinstance(value, pint.Quantity):
         try:
             converted = value.to(unit).magnitude
@@ -73,6 +73,6 @@ def _wrong(given: str, unit: str, parameter: str) -> WrongDimension:
 
 
 def _kind(dimensionality: Any) -> str:
-    """``a length``, or pint's own words for what has no name here."""
+    """Return the name of a dimension, such as ``a length``, or pint's own description."""
     names = (name for name, unit, _ in KINDS if units.parse_units(unit).dimensionality == dimensionality)
     return next(names, f"of dimension {dimensionality}")

@@ -1,6 +1,6 @@
-"""Builds the unit registry, with pint's definitions kept on disk: parsing them anew takes as long as importing pint.
+"""Build the unit registry from pint's definitions, cached on disk: parsing them takes as long as importing pint.
 
-The registry is built where this module is imported: Python's own import lock sees to it that there is one.
+The registry is built on import: Python's import lock ensures that there is only one.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def _collector_paused() -> Iterator[None]:
-    """No garbage collection inside: it would look through thousands of new definitions, and find them all in use."""
+    """Pause garbage collection: it would scan thousands of new definitions, and free none of them."""
     was_enabled = gc.isenabled()
     gc.disable()
     try:
@@ -35,50 +35,50 @@ with _collector_paused():
     import platformdirs
 
 DEFINITIONS = [
-    # pint's own rpm has an angle in it, which makes it 2 pi times as much.
+    # pint's own rpm includes an angle, which makes it 2 pi times as large.
     "counts_per_minute = count / minute = cpm",
     "N_m = newton * meter",
-    # What a motor needs at a speed, and for an acceleration, in the units of the drivetrain characterization paper.
+    # The voltage per speed and per acceleration, in the units of the drivetrain characterization paper.
     "tm_kv = volt / (foot / second)",
     "tm_ka = volt / (foot / second ** 2)",
 ]
 
 
 def cache_folder() -> Path | None:
-    """Where parsed definitions are kept; None when this user has no such place, as in a container without a home.
+    """Return the folder of the parsed definitions; None when the user has no cache directory, as in some containers.
 
-    One folder for each version of Python and of pint, since neither reads what the other has pickled.
+    Each version of Python and of pint has its own folder, since they cannot read each other's pickles.
     """
     try:
         cache = platformdirs.user_cache_path("pyfrc", appauthor=False)
-    except Exception:  # no home directory to be found; what is raised then depends on the platform
+    except Exception:  # no home directory; the exception depends on the platform
         return None
     version = f"pint-{pint.__version__}-{sys.implementation.cache_tag}-{'.'.join(map(str, sys.version_info[:3]))}"
     return cache / version if cache.is_absolute() else None
 
 
 def build(folder: Path | None) -> UnitRegistry:
-    """A registry with our units, from the definitions in `folder`, where they are put if they cannot be had.
+    """Return a registry with our units, from the definitions in `folder`; write them there if they are missing.
 
-    Works without a cache as with one: a folder that cannot be written, or holds something else, only costs time.
+    Without a usable folder the registry is built from the source definitions, which only takes longer.
     """
     registry: UnitRegistry | None = None
     if folder is not None:
         if folder.is_dir():
-            # Whatever a damaged pickle raises, which may be anything.
+            # A damaged pickle may raise any exception.
             with suppress(Exception):
                 registry = pint.UnitRegistry(cache_folder=folder)
         if registry is None:
             with suppress(OSError):
-                registry = _build_and_keep(folder)
+                registry = _build_and_cache(folder)
     if registry is None:
         registry = pint.UnitRegistry()
     registry.load_definitions(DEFINITIONS)
     return registry
 
 
-def _build_and_keep(folder: Path) -> UnitRegistry:
-    """Parse the definitions beside `folder`, then move them there: another process never sees half of them."""
+def _build_and_cache(folder: Path) -> UnitRegistry:
+    """Parse the definitions in a directory beside `folder`, then rename it: `folder` is written atomically."""
     import shutil
     import tempfile
 

@@ -1,4 +1,4 @@
-"""A model of a tank drive: from the values of its motors to how far the robot moves and turns."""
+"""A model of a tank drive: compute the robot's motion from its motors' values."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from wpimath.geometry import Transform2d
 
-from .arc import MOST_BEND, MOST_TIME_CONSTANTS, MOST_TURN, Side, along, bow
+from .arc import MOST_BEND, MOST_TIME_CONSTANTS, MOST_TURN, SideMotion, along, bow
 from .motor_cfgs import MotorModelConfig
 from .motor_model import MotorModel, nominal_volts
 from .parameters import ParameterError, finite, positive
@@ -23,24 +23,24 @@ __all__ = ["MotorModel", "TankModel"]
 
 logger = logging.getLogger("pyfrc.physics")
 
-#: From feet and radians in one call: takes a third of the time of making a `Rotation2d`, and a `Transform2d` of it.
+#: Converts feet and radians in one call, in a third of the time of a `Rotation2d` and a `Transform2d`.
 _transform = Transform2d.fromFeet
 
 MOST_TURN_SQUARED, MOST_BEND_SQUARED = MOST_TURN**2, MOST_BEND**2
 
 
 class TankModel:
-    """A tank drive whose sides accelerate as their motors make them; wheels do not slip along the ground.
+    """A tank drive whose sides accelerate according to their motors; wheels do not slip along the ground.
 
     Use the constructor if you have measured kv, ka and vintercept, and `theory` if you have not. All parameters are
-    pint quantities, in whatever unit; positions come out in feet, velocities in ft/s. A step of any length is exact.
+    pint quantities in any unit; positions are in feet, velocities in ft/s. A step of any length is exact.
 
     The heading comes from the moment of inertia: the sides' difference in acceleration, at the lever of half a
-    wheelbase, turns the whole mass, so it is not tied to how far the wheels have rolled. With
-    ``model.inertia = mass * x_wheelbase**2 / 2`` the heading agrees exactly with wheels that do not slip at all:
-    ``(l_position - r_position) / x_wheelbase`` radians clockwise.
+    wheelbase, turns the whole mass, so it does not depend on the wheels' distances alone. With ``model.inertia = mass *
+    x_wheelbase**2 / 2`` the heading agrees exactly with wheels that do not slip at all: ``(l_position - r_position) /
+    x_wheelbase`` radians clockwise.
 
-    `inertia`, `bm`, and the positions and velocities of both sides may be set at any time: the next step goes on from
+    `inertia`, `bm`, and the positions and velocities of both sides may be set at any time: the next step continues from
     there.
 
     :param motor_config: specification of the motors
@@ -48,18 +48,18 @@ class TankModel:
     :param x_wheelbase: distance between the left and the right wheels
     :param robot_width: with bumpers; with the length it gives the moment of inertia
     :param robot_length: with bumpers
-    :param l_kv: left side: voltage for a speed (`units.tm_kv`)
-    :param l_ka: left side: voltage for an acceleration (`units.tm_ka`)
-    :param l_vi: left side: the least voltage that overcomes steady friction
-    :param r_kv: right side, as `l_kv`
-    :param r_ka: right side, as `l_ka`
-    :param r_vi: right side, as `l_vi`
-    :param timestep: a time, for models written when this was computed in small steps; the exact solution has none
-    :raises WrongDimension: for a parameter in a unit that it cannot be in, such as a mass in feet
-    :raises ParameterError: for a value that cannot be, such as a negative mass
+    :param l_kv: left side: voltage per speed (`units.tm_kv`)
+    :param l_ka: left side: voltage per acceleration (`units.tm_ka`)
+    :param l_vi: left side: the lowest voltage that overcomes steady friction
+    :param r_kv: right side, like `l_kv`
+    :param r_ka: right side, like `l_ka`
+    :param r_vi: right side, like `l_vi`
+    :param timestep: ignored; accepted for models from when the motion was computed in small steps
+    :raises WrongDimension: for a parameter with a unit of another dimension, such as a mass in feet
+    :raises ParameterError: for an impossible value, such as a negative mass
     """
 
-    # With a dict, so that a test may set any attribute, or replace a method.
+    # `__dict__` allows tests to set any attribute, or replace a method.
     __slots__ = (
         "__dict__",
         "__weakref__",
@@ -99,11 +99,11 @@ class TankModel:
 
         self._lmotor = MotorModel(motor_config, l_kv, l_ka, l_vi)
         self._rmotor = MotorModel(motor_config, r_kv, r_ka, r_vi)
-        self._lmotor.on_change = self._rmotor.on_change = self._start_anew
+        self._lmotor.on_change = self._rmotor.on_change = self._reset_step
         self._l_motor = self._r_motor = self._tm_diff = 0.0
 
         self._pull = 0.5 * wheelbase * mass
-        self._set_inertia(mass * (width**2 + length**2) / 12)  # of a homogeneous plate
+        self._set_inertia(mass * (width**2 + length**2) / 12)  # a homogeneous plate
 
     @classmethod
     def theory(
@@ -119,7 +119,7 @@ class TankModel:
         vintercept: Quantity = 1.3 * units.volt,
         timestep: Quantity = 5 * units.millisecond,
     ) -> TankModel:
-        """The model of a robot whose kv and ka have not been measured, from the motors' data sheet::
+        """Return the model of a robot whose kv and ka have not been measured, from the motors' data sheet::
 
             velocity_max = freeSpeed * pi * wheel_diameter / gearing
             acceleration_max = 2 * nmotors * stallTorque * gearing / (wheel_diameter * robot_mass)
@@ -135,10 +135,10 @@ class TankModel:
         :param robot_width: with bumpers
         :param robot_length: with bumpers
         :param wheel_diameter: diameter of the wheels
-        :param vintercept: the least voltage that overcomes steady friction
-        :param timestep: as in the constructor
-        :raises WrongDimension: for a parameter in a unit that it cannot be in
-        :raises ParameterError: for a value that cannot be, such as a gearing of zero
+        :param vintercept: the lowest voltage that overcomes steady friction
+        :param timestep: ignored, as in the constructor
+        :raises WrongDimension: for a parameter with a unit of another dimension
+        :raises ParameterError: for an impossible value, such as a gearing of zero
         """
         volts = nominal_volts(motor_config)
         free = positive(magnitude(motor_config.freeSpeed, "1 / second", "freeSpeed"), "freeSpeed")
@@ -167,7 +167,7 @@ class TankModel:
 
     @property
     def inertia(self) -> Quantity:
-        """Moment of inertia, [mass] * [length]**2: of a plate of the robot's mass, width and length, or what you set.
+        """Moment of inertia, [mass] * [length]**2: that of a plate with the robot's mass and size, unless you set it.
 
         :raises WrongDimension: when set in another unit
         """
@@ -184,7 +184,7 @@ class TankModel:
 
     @property
     def bm(self) -> Quantity:
-        """Half the wheelbase times the mass, [length] * [mass]: the lever of the sides' forces. Set it for another one.
+        """Half the wheelbase times the mass, [length] * [mass]: the lever of the sides' forces.
 
         :raises WrongDimension: when set in another unit
         """
@@ -196,8 +196,8 @@ class TankModel:
         self._pull = positive(magnitude(lever, "foot * pound", "bm"), "bm")
         self._prepare(self._tm_diff)
 
-    def _start_anew(self) -> None:
-        """Have the next step look at the motors' values and constants again."""
+    def _reset_step(self) -> None:
+        """Make the next step read the motors' values and constants again."""
         self._l_motor = self._r_motor = math.nan  # unlike any value
         self._prepare(self._tm_diff)
 
@@ -238,19 +238,19 @@ class TankModel:
         self._rmotor.velocity = finite(velocity, "r_velocity")
 
     def get_distance(self, l_motor: float, r_motor: float, tm_diff: float) -> tuple[float, float, float]:
-        """How far the robot has moved, for `PhysicsInterface.distance_drive`.
+        """Return how far the robot has moved, for `PhysicsInterface.distance_drive`.
 
-        With more than one motor on a side, give the value of one of them.
+        With more than one motor on a side, pass the value of one of them.
 
         :param l_motor: left motor value (-1 to 1); -1 is forward
         :param r_motor: right motor value (-1 to 1); 1 is forward
-        :param tm_diff: seconds since this was last called
-        :returns: feet forward, feet to the right, both as seen from where the robot was, and radians clockwise
+        :param tm_diff: seconds since the last call
+        :returns: feet forward, feet to the right, both relative to the robot's previous pose, and radians clockwise
         :raises ParameterError: for NaN, or a negative time
         """
-        # What physics spends its time in. Written out in one piece, because every call and every attribute costs as
-        # much as several operations. A motor's value and the length of a step are mostly those of the step before:
-        # what follows from them is kept, and only a change is looked at. NaN is one, too.
+        # Physics spends most of its time here. The function is not split, because every call and every attribute costs
+        # as much as several operations. A motor's value and the length of a step are mostly the same as in the previous
+        # step: values that depend on them are stored, and computed again only after a change. NaN counts as a change.
         if l_motor != self._l_motor:
             self._lmotor.apply(-l_motor, "l_motor")
             self._l_motor = l_motor
@@ -263,7 +263,7 @@ class TankModel:
             self._step
         )
 
-        # Both sides go on, as in `MotorModel.compute`.
+        # Both sides advance, as in `MotorModel.compute`.
         l_lag, r_lag = left.lag, right.lag
         left.lag = l_lag * l_kept
         right.lag = r_lag * r_kept
@@ -272,7 +272,7 @@ class TankModel:
         left.position += l_moved
         right.position += r_moved
 
-        # What that makes of the heading: how far it turns, and how far each side's bow (see arc.py) bends the way.
+        # The heading: how far it turns, and how far each side's bow (see arc.py) bends the path.
         middle = 0.5 * (l_moved + r_moved)
         angle = turning * (l_moved - r_moved)
         l_bow *= l_lag
@@ -283,13 +283,14 @@ class TankModel:
             return middle, 0.0, 0.0
         angle_squared = angle * angle
         if half == 0.0 or angle_squared > MOST_TURN_SQUARED or bend * bend > most_bend_squared:
-            l_side = Side(left.time_constant, left.steady, l_lag)
-            r_side = Side(right.time_constant, right.steady, r_lag)
+            l_side = SideMotion(left.time_constant, left.steady, l_lag)
+            r_side = SideMotion(right.time_constant, right.steady, r_lag)
             return *along(tm_diff, turning, l_side, r_side), angle
 
-        # The chord of a circle, and the bows' series, in the direction of the chord. `sway` is what a bow adds to the
-        # side: on the heading, and, integrated by parts, on the speed. 0.6 is half the mean square of a bow's form,
-        # 0.025 half its second moment, and `lean` its first. Two forms that are `unlike` make something of each other.
+        # The chord of a circle, and the bows' series, in the direction of the chord. `sway` is the sideways part of a
+        # bow: from the heading, and, integrated by parts, from the speed. 0.6 is half the mean square of a bow's form,
+        # 0.025 half its second moment, and `lean` its first. The last two terms are for sides with different time
+        # constants (`unlike`).
         sin_half = sin(half)
         cos_half = cos(half)
         l_sway = l_bow * r_moved
@@ -303,13 +304,13 @@ class TankModel:
         return ahead * cos_half - aside * sin_half, ahead * sin_half + aside * cos_half, angle
 
     def calculate(self, l_motor: float, r_motor: float, tm_diff: float) -> Transform2d:
-        """How far the robot has moved, for `PhysicsInterface.move_robot`.
+        """Return how far the robot has moved, for `PhysicsInterface.move_robot`.
 
-        With more than one motor on a side, give the value of one of them.
+        With more than one motor on a side, pass the value of one of them.
 
         :param l_motor: left motor value (-1 to 1); 1 is forward
         :param r_motor: right motor value (-1 to 1); -1 is forward
-        :param tm_diff: seconds since this was last called
+        :param tm_diff: seconds since the last call
         :returns: metres forward and to the left, and the turn counter-clockwise
         :raises ParameterError: for NaN, or a negative time
         """
@@ -317,12 +318,12 @@ class TankModel:
         return _transform(x, 0.0 - y, 0.0 - angle)
 
     def _prepare(self, tm_diff: float) -> None:
-        """Keep what depends on the length of the steps only: most are as long as the one before."""
+        """Store the values that depend on the length of the steps only: most steps are as long as the last one."""
         left, right = self._lmotor, self._rmotor
         left.prepare(tm_diff)
         right.prepare(tm_diff)
-        # From d(omega)/dt = lever * mass * (l_acceleration - r_acceleration) / inertia, begun at rest: both sides of it
-        # integrated once give the rate of turn from the speeds, and twice the angle from the positions.
+        # From d(omega)/dt = lever * mass * (l_acceleration - r_acceleration) / inertia, starting at rest: integrated
+        # once, both sides give the rate of turn from the speeds; integrated twice, the angle from the positions.
         turning = self._pull / self._inertia
         l_tau, r_tau = left.time_constant, right.time_constant
         l_passed, r_passed = tm_diff / l_tau, tm_diff / r_tau

@@ -1,6 +1,6 @@
 """The units of the physics helpers: ``5 * units.feet``.
 
-pint is imported when `units` is first used, not when it is imported: who gives plain feet never waits for it.
+pint is imported on the first use of `units`, not when `units` is imported: code with plain feet never waits for it.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def _registry() -> UnitRegistry:
 
 
 class _RegistryWhenUsed:
-    """Stands for the registry, for `isinstance` and pint too; nothing of it is its own."""
+    """A proxy for the registry, also for `isinstance` and pint. It has no attributes of its own."""
 
     def __getattribute__(self, name: str) -> Any:
         return getattr(_registry(), name)
@@ -36,7 +36,7 @@ class _RegistryWhenUsed:
     def __delattr__(self, name: str) -> None:
         delattr(_registry(), name)
 
-    # Python looks these up in the class, past __getattribute__.
+    # Python looks these methods up in the class, and not with __getattribute__.
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         return _registry()(*args, **kwargs)
 
@@ -56,7 +56,7 @@ class _RegistryWhenUsed:
         return repr(_registry())
 
 
-#: All units that pyfrc uses: those of pint, and `counts_per_minute` (`cpm`), `N_m`, `tm_kv` and `tm_ka`. A unit
-#: registry of pint's; https://pint.readthedocs.io says what it can do. It is not made the application's, since there
-#: can be only one of these, and that is the user's to choose: ``pint.set_application_registry(units)``.
+#: All units that pyfrc uses: those of pint, and `counts_per_minute` (`cpm`), `N_m`, `tm_kv` and `tm_ka`. This is a unit
+#: registry of pint; see https://pint.readthedocs.io. It is not set as the application registry, since there can be only
+#: one, and the user may choose it: ``pint.set_application_registry(units)``.
 units = cast("UnitRegistry", _RegistryWhenUsed())

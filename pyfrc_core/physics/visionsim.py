@@ -1,6 +1,6 @@
-"""What a camera that looks for targets would see, and when the robot would hear of it.
+"""Simulate a camera that detects targets: what it sees, and when the robot receives the data.
 
-Positions are in feet, x to the right and y down, as `physics_controller.get_position` answers them; angles are
+Positions are in feet, x to the right and y down, as returned by `physics_controller.get_position`; angles are
 clockwise, from 0 = east.
 """
 
@@ -13,27 +13,28 @@ from typing import Protocol
 
 from .parameters import ParameterError, finite, not_negative, positive
 
-#: One target in one frame: (1, capture time in s, degrees clockwise from the camera's axis, feet); or, if a frame
-#: shows none, (0, capture time, inf, 0).
+#: One target in one frame: (1, capture time in s, degrees clockwise from the camera's axis, feet); for a frame without
+#: targets (0, capture time, inf, 0).
 Sighting = tuple[int, float, float, float]
 
-# Robot time is counted in microseconds: what is due within this many seconds is due.
+# Robot time is counted in microseconds: an event within this many seconds is due.
 _TICK = 1e-6
 
 
 class VisionSimTarget:
-    """Something on the field that a camera can see from one side.
+    """A target on the field that a camera can see from one side.
 
-    Seen from 90 to 270 degrees means that the robot is to the west of it, from south through west to north.
+    If it can be seen from 90 to 270 degrees, the robot must be to the west of it, from south through west to north.
     """
 
     def __init__(self, x: float, y: float, view_angle_start: float, view_angle_end: float) -> None:
         """
         :param x: position on the field, in feet
-        :param y: position on the field, in feet, growing downwards
-        :param view_angle_start: where the robot must be, as seen from the target: degrees, 0 = east, clockwise
-        :param view_angle_end: clockwise from the start; 0 to 360 is all around
-        :raises ParameterError: for what is not a number
+        :param y: position on the field, in feet, increasing downwards
+        :param view_angle_start: start of the directions from the target to the robot in which it is visible: degrees, 0
+            = east, clockwise
+        :param view_angle_end: end of these directions, clockwise from the start; 0 to 360 is all around
+        :raises ParameterError: when a value is not a number
         """
         self.x = finite(x, "x")
         self.y = finite(y, "y")
@@ -44,15 +45,15 @@ class VisionSimTarget:
         return f"VisionSimTarget({self.x}, {self.y}, {self.view_angle_start}, {self.view_angle_end})"
 
     def compute(self, now: float, x: float, y: float, angle: float) -> Sighting | None:
-        """See this target from the robot, with a camera that looks everywhere and infinitely far.
+        """Return what a camera with unlimited view on the robot sees of this target.
 
         `VisionSim` calls this for each of its targets: a subclass may move a target, or hide it.
 
         :param now: robot time, in seconds
-        :param x: of the robot, in feet
-        :param y: of the robot, in feet, growing downwards
-        :param angle: of the robot, in radians, clockwise from east
-        :returns: (1, `now`, offset in degrees, distance in feet), offsets to the right positive; None from where the
+        :param x: the robot's position, in feet
+        :param y: the robot's position, in feet, increasing downwards
+        :param angle: the robot's angle, in radians, clockwise from east
+        :returns: (1, `now`, offset in degrees, distance in feet), with offsets to the right positive; None where the
             target cannot be seen
         """
         if not self.faces(x, y):
@@ -62,7 +63,7 @@ class VisionSimTarget:
         return 1, now, offset, math.hypot(dx, dy)
 
     def faces(self, x: float, y: float) -> bool:
-        """Whether (x, y) is where the target can be seen from, however far away."""
+        """Return whether the target can be seen from (x, y), at any distance."""
         span = self.view_angle_end - self.view_angle_start
         span = 360 if abs(span) >= 360 else span % 360
         bearing = math.degrees(math.atan2(y - self.y, x - self.x))
@@ -70,18 +71,18 @@ class VisionSimTarget:
 
 
 class DrawsVisionTargets(Protocol):
-    """What is asked of a physics controller."""
+    """The part of a physics controller that `VisionSim` uses."""
 
     def draw_vision_targets(self, targets: Sequence[VisionSimTarget], seen: Sequence[VisionSimTarget], /) -> None:
-        """Show where the targets are, and which of them are in view."""
+        """Show the targets, and which of them are in view."""
 
 
 class VisionSim:
-    """A camera in the robot's centre, looking forward, and what processes its images.
+    """A camera in the robot's centre, looking forward, with its image processing.
 
-    It takes frames at a constant frequency, beginning with the first call of :meth:`compute`; each frame shows what
-    is in view at the first call when it is due or past, and is answered by the first call when `data_lag` has gone
-    by since. If several have arrived by then, the newest is answered, as from a table that holds the latest value.
+    It takes frames at a constant frequency, starting with the first call of :meth:`compute`. Each frame shows what is
+    in view at the first call after it is due. Its data are returned by the first call after `data_lag` has passed. If
+    several frames have arrived by then, the newest is returned, as from a table with the latest value.
     """
 
     Target = VisionSimTarget
@@ -97,14 +98,14 @@ class VisionSim:
         physics_controller: DrawsVisionTargets | None = None,
     ) -> None:
         """
-        :param targets: what there is to see
-        :param camera_fov: the camera's field of view, in degrees, half of it to each side
-        :param view_dst_start: nearer than this, in feet, targets cannot be seen
-        :param view_dst_end: farther than this, in feet, targets cannot be seen
+        :param targets: the targets
+        :param camera_fov: the camera's field of view, in degrees, half of it on each side
+        :param view_dst_start: the shortest distance at which targets are visible, in feet
+        :param view_dst_end: the longest distance at which targets are visible, in feet
         :param data_frequency: frames per second
-        :param data_lag: seconds from the taking of a frame until the robot has its data
+        :param data_lag: seconds between the capture of a frame and its arrival at the robot
         :param physics_controller: if given, shows the targets on the field
-        :raises ParameterError: for measures that cannot be
+        :raises ParameterError: for impossible values
         """
         self._targets = tuple(targets)
         for target in self._targets:
@@ -132,12 +133,12 @@ class VisionSim:
         """Call this in each `update_sim` while vision processing is enabled.
 
         :param now: robot time, in seconds
-        :param x: of the robot, in feet
-        :param y: of the robot, in feet, growing downwards
-        :param angle: of the robot, in radians, clockwise from east
-        :returns: None while there is nothing new; else a frame: for each target in view (1, capture time, offset in
-            degrees, distance in feet), the least offset first, where offsets to the right are positive; or, if it
-            shows none, a list of one (0, capture time, inf, 0)
+        :param x: the robot's position, in feet
+        :param y: the robot's position, in feet, increasing downwards
+        :param angle: the robot's angle, in radians, clockwise from east
+        :returns: None when no frame has arrived; else the frame: (1, capture time, offset in degrees, distance in feet)
+            for each target in view, with offsets to the right positive, the smallest offset first; for a frame without
+            targets a list of one (0, capture time, inf, 0)
         :raises ParameterError: for a position that is not finite
         """
         if not math.isfinite(x + y + angle):
@@ -147,7 +148,7 @@ class VisionSim:
         in_view.sort(key=lambda sight: abs(sight[0][2]))
         self._immediate_distance = in_view[0][0][3] if in_view else None
         if self._first_frame is not None and now < self._first_frame:
-            self.dont_compute()  # another run has begun
+            self.dont_compute()  # a new run has started
         if self._frame_is_due(now):
             frame = [sighting for sighting, _ in in_view]
             self._in_flight.append(frame or [(0, now, math.inf, 0)])
@@ -157,20 +158,20 @@ class VisionSim:
         return arrived
 
     def dont_compute(self) -> None:
-        """Call this instead while vision processing is disabled: what was under way is lost."""
+        """Call this instead while vision processing is disabled: frames that have not arrived are lost."""
         self._in_flight.clear()
         self._first_frame = None
         self._show(())
 
     def get_immediate_distance(self) -> float | None:
-        """How far away the target straight ahead was at the last :meth:`compute`, in feet, without any lag.
+        """Return the distance of the most central target at the last :meth:`compute`, in feet, without lag.
 
-        For sensors such as an ultrasonic one. Straightest, if there are several; None if none was in view.
+        For sensors such as an ultrasonic one. None if no target was in view.
         """
         return self._immediate_distance
 
     def _in_view(self, now: float, x: float, y: float, angle: float) -> list[tuple[Sighting, VisionSimTarget]]:
-        """Each target in view, with what is seen of it."""
+        """Return the targets in view, each with its sighting."""
         in_view = []
         for target in self._targets:
             sighting = target.compute(now, x, y, angle)
@@ -187,7 +188,7 @@ class VisionSim:
         elapsed = now - self._first_frame + _TICK
         if elapsed < self._next_frame * self._period:
             return False
-        # On the camera's schedule, not one period from now, or its frequency would depend on how often we are called.
+        # On the camera's schedule; one period from now would make the frequency depend on the calls.
         self._next_frame = math.floor(elapsed / self._period) + 1
         return True
 

@@ -1,4 +1,4 @@
-"""Controlling the robot's state during a test."""
+"""Control the robot's state during a test."""
 
 from __future__ import annotations
 
@@ -25,51 +25,51 @@ OnStep: TypeAlias = Callable[[float], object]
 
 
 class TestController:
-    """This object is used to control the robot during unit tests; your test gets it as the ``control`` fixture.
+    """Controls the robot during a unit test; your test gets it as the ``control`` fixture.
 
-    To set a game specific message for autonomous mode, set the `game_specific_message` property of this object; the
-    robot gets it upon transition into autonomous mode.
+    To send a game specific message for autonomous mode, set the attribute `game_specific_message`; the robot receives
+    it when it enters autonomous mode.
 
-    A robot is run in one of two ways: `run_test`, which calls your function on every packet, or
-    ``with control.run_robot():``, inside which `step_timing` moves the time.
+    Run the robot in one of two ways: with `run_test`, which calls your function on every packet, or inside ``with
+    control.run_robot():``, where `step_timing` advances the time.
     """
 
-    __test__ = False  # pytest: not a test class, for all its name
+    __test__ = False  # pytest: not a test class, despite its name
 
     def __init__(self, fake_time_inst: FakeTime, project: Project | None = None, seed: int = 0) -> None:
         self._time = fake_time_inst
         self._run = fake_time_inst.run
         self.project = project
-        #: What the random generators started from.
+        #: The random seed of this test.
         self.seed = seed
         self._practice_match: _PracticeMatch | None = None
-        #: What the field sends with autonomous mode, such as ``"LRL"``.
+        #: The message that the field sends with autonomous mode, such as ``"LRL"``.
         self.game_specific_message: str | None = None
 
     # -- modes ------------------------------------------------------------------------------------------------
 
     def get_mode(self) -> modes.Mode:
-        """The mode that the robot is in: 'autonomous', 'teleop', 'test', or 'disabled'.
+        """Return the robot's mode: 'autonomous', 'teleop', 'test', or 'disabled'.
 
-        While the driver station is lost, it is 'disabled'.
+        Without a driver station it is 'disabled'.
         """
         return modes.get_mode() if modes.is_attached() else "disabled"
 
     def set_autonomous(self, enabled: bool = True) -> None:
-        """Puts the robot in autonomous mode, with the next packet."""
+        """Put the robot in autonomous mode, with the next packet."""
         modes.set_game_message(self.game_specific_message or "")
         modes.set_mode(autonomous=True, enabled=enabled)
 
     def set_operator_control(self, enabled: bool = True) -> None:
-        """Puts the robot in operator control mode, with the next packet."""
+        """Put the robot in operator control mode, with the next packet."""
         modes.set_mode(enabled=enabled)
 
     def set_test_mode(self, enabled: bool = True) -> None:
-        """Puts the robot in test mode (the robot mode, not related to unit testing), with the next packet."""
+        """Put the robot in test mode (the robot mode, not related to unit testing), with the next packet."""
         modes.set_mode(test=True, enabled=enabled)
 
     def set_practice_match(self) -> None:
-        """Call this function to enable a practice match. Must only be called before `run_test` is called.
+        """Run a practice match. Call it before `run_test`.
 
         :raises RuntimeError: when the robot runs already
         """
@@ -77,15 +77,15 @@ class TestController:
             raise RuntimeError("set_practice_match() must be called before run_test()")
         self._practice_match = _PracticeMatch(self, self.project.settings.match if self.project else MatchSettings())
 
-    # -- running, as documented ------------------------------------------------------------------------------
+    # -- running with a function ------------------------------------------------------------------------------
 
     def run_test(self, controller: OnStep | type[Any] | None = None) -> Any:
-        """Call this to execute the robot code. Cannot be called more than once in a single test.
+        """Run the robot code. Call it at most once in a test.
 
-        :param controller: a function that takes the current robot time in seconds, or a class (or an object) that has
-            such a method ``on_step``; of a class an instance is made. It is called before every driver-station
-            packet, and the robot sees with that packet what it sets. The robot runs for as long as it returns
-            something true. In a practice match it may return nothing: the match decides when the run ends.
+        :param controller: a function that takes the robot time in seconds, or a class or an object with such a method
+            ``on_step``; a class is instantiated. It is called before every driver-station packet, and the robot
+            receives with that packet what it sets. The robot runs for as long as it returns a true value. In a practice
+            match it may return None: the match decides when the run ends.
         :returns: the instance, if `controller` is a class
         :raises RuntimeError: when called twice, in a thread, or without a controller and without `set_practice_match`
         """
@@ -97,8 +97,8 @@ class TestController:
             __tracebackhide__ = True
             if run.recorder is not None:
                 run.recorder.begin_outside(stepping=True)
-            answers = [on_step(now) for on_step in steps]  # each of them is to see every packet
-            if not all(answers):
+            results = [on_step(now) for on_step in steps]  # a list, so that every function is called on every packet
+            if not all(results):
                 if run.starting:
                     raise RuntimeError(
                         f"the test ended at {now:.2f} s of robot time, while robotInit still waited: "
@@ -116,7 +116,7 @@ class TestController:
         try:
             run.start()
             with suppress(TestEnded):
-                # Goes on until a step says it is over, or the time limit does.
+                # Runs until a step ends it, or the time limit.
                 run.run_until(run.clock.limit_us + 1)
         finally:
             run.clock.before_packet.remove(step)
@@ -135,26 +135,26 @@ class TestController:
                 raise TypeError(
                     f"run_test(controller): {controller!r} is neither a function nor a class with an on_step method"
                 )
-            steps.append(_answering(on_step) if self._practice_match is None else _until_false(on_step))
+            steps.append(_check_result(on_step) if self._practice_match is None else _until_false(on_step))
         if not steps:
             raise RuntimeError("run_test() needs a function to call on each step, or set_practice_match() before it")
         return instance, steps
 
-    # -- running, as recorded -----------------------------------------------------------------------------------
+    # -- running a script -----------------------------------------------------------------------------------
 
     def replay(self, path: str | Path) -> None:
-        """Run the robot as an input script says, from its start to the script's end.
+        """Run the robot with the inputs of a script, from the robot's start to the script's end.
 
-        A script that `pyfrc fuzz` has kept fails also when the robot does, without an exception, what that looks for.
+        With a script of `pyfrc fuzz`, misbehavior that it detects is a failure, too.
 
         :param path: the script, such as one that ``pyfrc test --record`` or ``pyfrc fuzz`` has written
-        :raises ScriptError: when it is not one, or does not fit this robot; with its line
+        :raises ScriptError: when the script is not valid, or does not fit this robot; with its line
         :raises RuntimeError: when the robot has run already in this test
         """
         __tracebackhide__ = True
         self._begin("replay")
         script = load_script(Path(path))
-        if script.seed != self.seed:  # else they have begun with it, before the robot was constructed
+        if script.seed != self.seed:  # otherwise they were seeded before the robot was constructed
             seed_generators(script.seed)
         with ExitStack() as closing:
             if self.project is not None:
@@ -164,11 +164,11 @@ class TestController:
             closing.callback(self._run.end)
             Player(script, self._run).play()
 
-    # -- running, as today ------------------------------------------------------------------------------------
+    # -- running step by step ------------------------------------------------------------------------------------
 
     @contextmanager
     def run_robot(self) -> Iterator[None]:
-        """``with control.run_robot():`` starts the robot (its `robotInit` runs on entry) and ends it on exit.
+        """Start the robot, and end it on exit; use it as ``with control.run_robot():``. `robotInit` runs on entry.
 
         :raises RuntimeError: when the robot has run already in this test
         """
@@ -181,11 +181,14 @@ class TestController:
             self._run.end()
 
     def step_timing(self, *, seconds: float, autonomous: bool, enabled: bool, assert_alive: bool = True) -> float:
-        """Let the robot run for some time in a mode, driver-station packets delivered.
+        """Run the robot for some time in a mode, with driver-station packets.
 
         :param seconds: how long, in robot time
+        :param autonomous: whether the mode is autonomous; else it is teleoperated
+        :param enabled: whether the robot is enabled
         :param assert_alive: fail when the robot program is not running, before or afterwards
-        :returns: the seconds by which robot time has moved on
+        :returns: the seconds by which robot time has advanced
+        :raises ValueError: when `seconds` is negative
         """
         __tracebackhide__ = True
         if assert_alive:
@@ -205,12 +208,12 @@ class TestController:
 
     @property
     def robot_is_alive(self) -> bool:
-        """True while the robot program runs: it has started, and has neither ended nor failed."""
+        """Whether the robot program is running: it has started, and has neither ended nor failed."""
         return self._run.alive
 
     @property
     def robot_is_starting(self) -> bool:
-        """True while the `robotInit` of a robot with WPILib's loop runs: one that waits lets robot time pass."""
+        """Whether `robotInit` of a robot with WPILib's loop is running; if it waits, robot time passes."""
         return self._run.starting
 
     def _begin(self, how: str) -> None:
@@ -224,37 +227,37 @@ class TestController:
 
 
 def _until_false(on_step: OnStep) -> OnStep:
-    """`on_step` of a practice match: nothing returned means "go on", something false ends the match early."""
+    """Wrap `on_step` for a practice match: None continues, a false value ends the match early."""
 
     def step(now: float) -> object:
         __tracebackhide__ = True
-        answer = on_step(now)
-        return answer is None or answer
+        result = on_step(now)
+        return result is None or result
 
     return step
 
 
-def _answering(on_step: OnStep) -> OnStep:
-    """`on_step`, with a word of help for the one who forgets what it must answer."""
+def _check_result(on_step: OnStep) -> OnStep:
+    """Wrap `on_step`: explain the mistake when it returns None on its first call."""
     first = True
 
     def step(now: float) -> object:
         __tracebackhide__ = True
         nonlocal first
-        answer = on_step(now)
-        if answer is None and first:
+        result = on_step(now)
+        if result is None and first:
             raise TypeError(
                 f"{getattr(on_step, '__qualname__', on_step)}() returned None: "
                 "return True for the robot to go on, False to end the test"
             )
         first = False
-        return answer
+        return result
 
     return step
 
 
 class _PracticeMatch:
-    """A whole match in a test, with the match time that the robot can ask for."""
+    """Puts the robot through the periods of a match, and sets the match time that the robot can read."""
 
     def __init__(self, control: TestController, settings: MatchSettings) -> None:
         self._control = control
@@ -262,7 +265,7 @@ class _PracticeMatch:
         self._periods = MatchPeriods(settings)
 
     def on_step(self, now: float) -> bool:
-        """Put the robot into the mode of this moment; return whether the match still goes on."""
+        """Set the mode of this time; return whether the match continues."""
         period = self._periods.at(to_us(now))
         if period is None:
             return False

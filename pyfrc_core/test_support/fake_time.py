@@ -1,4 +1,4 @@
-"""Control over the time a robot under test is using."""
+"""Control over robot time in a test."""
 
 from __future__ import annotations
 
@@ -10,32 +10,32 @@ __all__ = ["FakeTime", "TestEnded", "TestFroze", "TestRanTooLong"]
 
 
 class FakeTime:
-    """Keeps track of time for robot code being tested, and makes sure the driver station's packets come in.
+    """Keeps track of time for the robot code under test, and delivers the driver station's packets.
 
     Do not create this object: your test gets it as the ``fake_time`` fixture. All times are seconds of robot time,
-    which starts at 0 and moves only when the robot, or your test, lets it.
+    which starts at 0 and advances only when the robot or your test advances it.
 
-    A thread of the robot may use it, too: a thread that increments the time sleeps for as long, as with `time.sleep`.
-    A thread that does not live in robot time can only ask for the time and set the limit.
+    The robot's threads may use it, too: a thread that increments the time sleeps that long, as with `time.sleep`. A
+    thread outside robot time can only read the time and set the limit.
     """
 
     def __init__(self, run: RobotRun | None = None) -> None:
         self.run = RobotRun() if run is None else run
 
     def get(self) -> float:
-        """The current time for the robot, in seconds."""
+        """Return the current robot time, in seconds."""
         return self.run.clock.now
 
     def increment_new_packet(self) -> None:
-        """Increment time enough to where the new driver-station packet comes in (the next multiple of 20 ms)."""
+        """Increment time to the next driver-station packet (the next multiple of 20 ms)."""
         __tracebackhide__ = True
         self.run.next_packet()
 
     def increment_time_by(self, time: float) -> None:
-        """Increments time by some number of seconds; the robot, if it runs, does what it does in that time.
+        """Increment time by this many seconds; a running robot runs during that time.
 
-        :raises TestRanTooLong: when that goes past the time limit
-        :raises ValueError: when the time is negative
+        :raises TestRanTooLong: when time passes the time limit
+        :raises ValueError: when `time` is negative
         """
         __tracebackhide__ = True
         if time < 0:
@@ -43,7 +43,7 @@ class FakeTime:
         self.run.run_until(self.run.clock.now_us + to_us(time))
 
     def initialize(self) -> None:
-        """Initializes fake time: from now on the clock stands at 0 and moves only when told to.
+        """Initialize fake time: set the clock to 0, to advance only when it is incremented.
 
         :raises RuntimeError: when the robot runs already
         """
@@ -51,7 +51,7 @@ class FakeTime:
         self.run.clock.initialize()
 
     def reset(self) -> None:
-        """Resets the fake time to zero, and sets the time limit to default.
+        """Reset the time to zero, and the time limit to its default.
 
         :raises RuntimeError: when the robot runs already
         """
@@ -59,8 +59,8 @@ class FakeTime:
         self.set_time_limit(DEFAULT_TIME_LIMIT)
 
     def set_time_limit(self, time_limit: float) -> None:
-        """Sets the amount of time that a robot will run, in seconds; 500 by default.
+        """Set how long a robot may run, in seconds; 500 by default.
 
-        When time is incremented past this time, a `TestRanTooLong` is thrown.
+        When time passes the limit, `TestRanTooLong` is raised.
         """
         self.run.clock.limit_us = to_us(time_limit)

@@ -1,4 +1,4 @@
-"""How a test run was asked for."""
+"""Options of a test run."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ READY_MADE_TESTS = "pyfrc_core.tests"
 
 @dataclass(frozen=True)
 class TestOptions:
-    """How a test run was asked for.
+    """Options of a test run.
 
-    :param seed: what the random generators of Python and numpy start from, in every test
+    :param seed: the seed of Python's and numpy's random generators in every test
     :param jobs: how many tests run at the same time
-    :param isolation: what each test that uses the robot runs in
-    :param trace_directory: where to write what the robot did in each test
-    :param record_directory: where to write what the robot was told in each test, as scripts that can be replayed
-    :param hang_seconds: processor seconds without progress after which robot code counts as hanging
+    :param isolation: where each test that uses the robot runs
+    :param trace_directory: where to write a trace of the robot in each test
+    :param record_directory: where to record the robot's inputs in each test, as scripts for replay
+    :param hang_seconds: CPU time without progress, in seconds, after which robot code is considered hanging
     """
 
-    __test__ = False  # pytest: not a test class, for all its name
+    __test__ = False  # pytest: not a test class, despite its name
 
     seed: int = DEFAULT_SEED
     jobs: int = 1
@@ -49,7 +49,7 @@ class TestOptions:
         trace_directory: Path | None = None,
         record_directory: Path | None = None,
     ) -> TestOptions:
-        """What the command line says, else what the project's settings say, else the defaults."""
+        """Return the options of the command line, completed by the project's settings and the defaults."""
         jobs = jobs or settings.jobs
         return cls(
             seed=DEFAULT_SEED if seed is None else seed,

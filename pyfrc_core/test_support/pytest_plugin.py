@@ -1,4 +1,4 @@
-"""The pytest plugin: fixtures for robot tests, seeds, and failures that name the user's line first."""
+"""The pytest plugin: fixtures for robot tests, random seeds, and failures that name the user's line first."""
 
 from __future__ import annotations
 
@@ -41,26 +41,25 @@ if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
     from ..physics.engine import Physics, PhysicsModule
 
-#: The fixtures that have to do with the robot: a test that asks for one runs in a process of its own.
+#: The fixtures that use the robot: a test with one of them runs in a separate process.
 ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller", "robot", "wpilib"})
 
 _READY_MADE_DIRECTORY = Path(__file__).parents[1] / "tests"
 
 
 class ThreadStillRunningError(NamesItsPlace):
-    """A thread of the robot went on when its test was over, although it was told to stop."""
+    """A thread of the robot was still running after its test, although it was stopped."""
 
 
 class PyFrcPlugin:
-    """Pytest plugin. Each documented member function name can be an argument to your test functions, and the data
-    that these functions return will be passed to your test function.
+    """The pytest plugin. A test function gets each fixture that it names as an argument.
 
     :param robot_class: your robot class; None to load it from the file when a test first needs it
-    :param robot_file: the file your robot code is started from
-    :param robot_path: the directory that your robot code is located at
+    :param robot_file: the file that your robot code is started from
+    :param robot_path: the directory of your robot code
     """
 
-    #: pytest's name for this plugin, by which a second one of its kind is told from it.
+    #: The name by which pytest recognizes a second plugin of this kind.
     __name__ = "pyfrc.robot"
 
     def __init__(
@@ -75,15 +74,15 @@ class PyFrcPlugin:
     ) -> None:
         self.project = project or Project(Path(robot_file).resolve())
         self.options = options or TestOptions.combined(self.project.settings.test)
-        #: Whether this process serves one test and ends with it, so that there is nobody to tidy up for.
+        #: Whether this process runs a single test, and ends afterwards, so that no cleanup is needed.
         self.own_process = False
-        #: The file descriptor to which a call that never gives Python back is reported.
+        #: The file descriptor to which a call that never returns to Python is reported.
         self.when_python_is_stuck: int | None = None
-        #: Called with the explanation when robot code cannot be stopped otherwise than with its process.
+        #: Called with an explanation when robot code can only be stopped by ending its process.
         self.last_words: Callable[[str], None] | None = None
-        #: Called with each run when it has been opened.
+        #: Called with each run after it was opened.
         self.when_opened: Callable[[RobotRun], object] = lambda run: None
-        #: Why each test's own process imports the robot's modules; empty when they can be forked.
+        #: Why each test's process imports the robot's modules itself; empty when a fork inherits them.
         self.imports_late = imports_late
         self._former_logs: set[tuple[str, int]] = set()
         self._robot_class = robot_class
@@ -94,7 +93,7 @@ class PyFrcPlugin:
             sys.path.insert(0, self._robot_path)
 
     def robot_class(self) -> type[Any]:
-        """The robot class, imported when it is first asked for, and its physics with it."""
+        """Return the robot class; the first call imports it, and the project's physics."""
         if self._robot_class is None:
             self._robot_class = load_robot(self.project)
         self._physics_module  # noqa: B018
@@ -112,22 +111,22 @@ class PyFrcPlugin:
 
     @pytest.fixture
     def control(self, fake_time: FakeTime, robot: Any) -> TestController:
-        """A fixture that provides control over the robot."""
+        """Control over the robot."""
         return TestController(fake_time, self.project, self.options.seed)
 
     @pytest.fixture
     def fake_time(self, _robot_run: RobotRun) -> FakeTime:
-        """A fixture that gives you control over the time your robot is using."""
+        """Control over robot time."""
         return FakeTime(_robot_run)
 
     @pytest.fixture
     def hal_data(self, _robot_run: RobotRun) -> HalData:
-        """Provides access to a dict with all the device data about the robot."""
+        """A dict with the data of all the robot's devices."""
         return _robot_run.hal_data
 
     @pytest.fixture
     def physics_controller(self, _physics: Physics | None, robot: Any) -> PhysicsInterface:
-        """What your ``physics.py`` moves the robot with: knows where on the field it is."""
+        """The object with which your ``physics.py`` moves the robot; it knows the robot's position on the field."""
         if _physics is None:
             raise ProjectError("there is no physics.py in this project", where=self.project.root)
         return _physics.controller
@@ -140,33 +139,33 @@ class PyFrcPlugin:
 
     @pytest.fixture
     def robot_file(self) -> str:
-        """The absolute filename your robot code is started from."""
+        """The absolute path of the file that your robot code is started from."""
         return self._robot_file
 
     @pytest.fixture
     def robot_path(self) -> str:
-        """The absolute directory that your robot code is located at."""
+        """The absolute path of the directory of your robot code."""
         return self._robot_path
 
     @pytest.fixture
     def wpilib(self) -> ModuleType:
-        """The `wpilib` module. Provided for backwards compatibility."""
+        """The `wpilib` module, for backwards compatibility."""
         import wpilib
 
         return wpilib
 
     @pytest.fixture
     def _physics(self, _robot_run: RobotRun) -> Physics | None:
-        """The project's physics, taking part in the run."""
+        """The project's physics, attached to the run."""
         __tracebackhide__ = True
         module = self._physics_module
         return None if module is None else module.attach(_robot_run, FakeTime(_robot_run))
 
     @pytest.fixture
     def _robot_run(self, request: pytest.FixtureRequest) -> Iterator[RobotRun]:
-        """One run of the robot: its time, its threads; ended when the test is."""
+        """One run of the robot, which ends with the test."""
         __tracebackhide__ = True
-        self.robot_class()  # the robot's modules are imported before robot time begins
+        self.robot_class()  # imports the robot's modules before robot time begins
         name = _file_name(request.node.nodeid).removesuffix(".jsonl")
         run = RobotRun(LogPlace.of_test(self.project.root, name))
         hang_detector = HangDetector(
@@ -178,7 +177,7 @@ class PyFrcPlugin:
             LoopLimit(run, self.project.files, self.project.settings)
             if not self.own_process:
                 closing.callback(_forget, run, request.node)
-            closing.enter_context(self._written_down(run, request.node))
+            closing.enter_context(self._recorded(run, request.node))
             yield run
             run.end()
             if getattr(request.function, "__module__", "").startswith(READY_MADE_TESTS):
@@ -196,8 +195,8 @@ class PyFrcPlugin:
         name = record.thread.name if record.thread is not None else "?"
         return f"{line or self.project.main_file.name}: the thread {name!r} is still running after the test was over"
 
-    def _written_down(self, run: RobotRun, item: pytest.Item) -> ExitStack:
-        """Write down what the robot does and what it is told, if the user wants that."""
+    def _recorded(self, run: RobotRun, item: pytest.Item) -> ExitStack:
+        """Record the robot's trace and inputs, if the options ask for it."""
         closing, name, options = ExitStack(), _file_name(item.nodeid), self.options
         if options.trace_directory is not None:
             closing.enter_context(traced(run, options.trace_directory / name))
@@ -209,15 +208,15 @@ class PyFrcPlugin:
     # -- hooks ------------------------------------------------------------------------------------------------
 
     def pytest_pycollect_makemodule(self, module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
-        """Names the ready-made tests after the module that users import them from, wherever pyfrc is installed."""
+        """Name the ready-made tests after the module that users import, wherever pyfrc is installed."""
         if module_path.parent != _READY_MADE_DIRECTORY:
             return None
         return pytest.Module.from_parent(parent, path=module_path, nodeid="pyfrc.tests")
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
-        """`test_autonomous(gamedata)` runs once for each message that the field may send.
+        """Run `test_autonomous(gamedata)` once for each message that the field may send.
 
-        What is wrong with the settings is told here, once: the tests' own processes would all tell it.
+        Mistakes in the settings are reported here, once, and not by each test's process.
         """
         try:
             if "gamedata" in metafunc.fixturenames:
@@ -231,12 +230,12 @@ class PyFrcPlugin:
         self._former_logs = self._data_logs()
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Name the directory of the data logs that robots have written there."""
+        """Print the directory of the data logs that robots have written."""
         if self._data_logs() - self._former_logs:
             terminalreporter.write_line(f"data logs: {os.path.relpath(self.project.root / TEST_LOGS)}")
 
     def _data_logs(self) -> set[tuple[str, int]]:
-        """The data logs of tests, as they are now."""
+        """Return the current data logs of tests, with their modification times."""
         try:
             with os.scandir(self.project.root / TEST_LOGS) as files:
                 return {(file.name, file.stat().st_mtime_ns) for file in files}
@@ -247,7 +246,7 @@ class PyFrcPlugin:
     def pytest_make_collect_report(
         self, collector: pytest.Collector
     ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-        """A test file in another encoding is explained."""
+        """Explain a test file in another encoding."""
         report = yield
         if report.failed and isinstance(collector, pytest.Module):
             wrong = find_wrong_encoding(collector.path)
@@ -265,7 +264,7 @@ class PyFrcPlugin:
         self, item: pytest.Item, call: pytest.CallInfo[None]
     ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         short = not item.config.option.fulltrace
-        # Asked before pyfrc's own part is taken out of the traceback.
+        # Checked before pyfrc's own frames are removed from the traceback.
         never_run = call.excinfo is not None and call.when == "call" and _never_ran_the_robot(item, call.excinfo)
         if call.excinfo is not None and short:
             leave_out_pyfrc(call.excinfo.value, self.project.files)
@@ -290,7 +289,7 @@ _NEVER_RUN = (
 
 
 def _never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseException]) -> bool:
-    """Whether a test that has to do with the robot failed, and not because it ran the robot in a wrong way."""
+    """Return whether a test with a robot failed before it ran the robot, and not in a wrong call of the controller."""
     run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
     if not isinstance(run, RobotRun) or run.started:
         return False
@@ -298,7 +297,7 @@ def _never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseEx
 
 
 def _file_name(nodeid: str) -> str:
-    """A file name that tells the test, and that no other test has."""
+    """Return a file name that identifies the test, and is unique."""
     file, _, test = nodeid.partition("::")
     test = test.replace("::", ".")
     plain = re.sub(r"[^\w.\[\]-]+", "_", test)
@@ -307,16 +306,16 @@ def _file_name(nodeid: str) -> str:
 
 
 def seed_section(options: TestOptions) -> tuple[str, str]:
-    """What a failure's report says of its random seed."""
+    """Return the section of a failure's report that shows the random seed."""
     return "pyfrc", f"random seed: {options.seed} (--seed {options.seed} repeats it)"
 
 
 def _forget(run: RobotRun, item: pytest.Item) -> None:
-    """End the run and let go of its robot, so that the next robot in this process finds its devices free."""
+    """End the run and release its robot, so that the next robot in this process can create its devices."""
     import gc
 
     run.close()
-    # What else holds on to the robot: the test's arguments, and the traceback of its failure.
+    # Other references to the robot: the test's arguments, and the traceback of its failure.
     (getattr(item, "funcargs", None) or {}).clear()
     for name in ("last_exc", "last_value", "last_traceback"):
         vars(sys).pop(name, None)

@@ -1,4 +1,4 @@
-"""Puts the user's own file and line before everything else that pytest shows of a failure."""
+"""Show the user's own file and line before everything else that pytest shows of a failure."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ if TYPE_CHECKING:
     import pytest
 
 
-#: The attribute of a report that says by which bug of the robot's code a test has failed.
+#: The attribute of a report that identifies the bug of the robot's code.
 BUG = "pyfrc_bug"
 
-#: Numbers in a message differ from test to test, as times do.
+#: Numbers in a message, such as times, differ from test to test.
 _NUMBER = re.compile(r"\d+(\.\d+)?(e-?\d+)?")
 
 
@@ -28,7 +28,7 @@ def put_first(report: pytest.TestReport, text: str, only: bool = False) -> None:
         entry: Any = ReprEntryNative([*(f"{line}\n" for line in text.splitlines()), "\n"])
         if only:
             longrepr.chain = longrepr.chain[-1:]
-        traceback = longrepr.chain[0][0]  # what is shown first
+        traceback = longrepr.chain[0][0]  # the first part that pytest shows
         traceback.reprentries = [entry] if only else [entry, *traceback.reprentries]
         traceback.extraline = None if only else traceback.extraline
         for _, crash, _ in longrepr.chain[-1:]:
@@ -41,9 +41,10 @@ def put_first(report: pytest.TestReport, text: str, only: bool = False) -> None:
 
 
 def bug_of(headline: str | None) -> str | None:
-    """What is the same in all failures by one bug: the robot's line, and what happened there.
+    """Return the part of a headline that all failures by one bug have in common: the line, and the message without
+    numbers.
 
-    :param headline: ``robot.py:12: ZeroDivisionError: division by zero``
+    :param headline: such as ``robot.py:12: ZeroDivisionError: division by zero``
     """
     if headline is None or (found := re.match(r"[^\n]*?\.py:\d+: ", headline)) is None:
         return None

@@ -1,4 +1,4 @@
-"""Run a project's tests: what `pyfrc test` does."""
+"""Run a project's tests, for `pyfrc test`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .isolation.loop import IsolatedTests
 from .isolation.spare import Spare
 from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
-from .summary import Summary, warn_of_misspelled_methods
+from .summary import SummaryPlugin, warn_of_misspelled_methods
 
 
 class NoTestsError(PyfrcError):
@@ -24,7 +24,10 @@ class NoTestsError(PyfrcError):
 
 
 class _NoUnusedHypothesis:
-    """Spares a run that has not used hypothesis its import, which its plugin does for an empty summary."""
+    """Unregister hypothesis' plugin after a run that did not use it.
+
+    The plugin would import hypothesis for an empty summary.
+    """
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
@@ -40,16 +43,16 @@ def run_tests(
     builtin: bool = False,
     pytest_args: Sequence[str] = (),
 ) -> int:
-    """Run the project's tests, or the ready-made ones, and answer pytest's exit code.
+    """Run the project's tests, or the ready-made ones, and return pytest's exit code.
 
-    :param builtin: run the ready-made tests when the project has none
-    :param pytest_args: passed on to pytest as they are
-    :raises NoTestsError: when the project has none, and `builtin` is not wanted
+    :param builtin: run the ready-made tests if the project has none
+    :param pytest_args: passed on to pytest
+    :raises NoTestsError: when the project has no tests, and `builtin` is not set
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     args = _arguments(project, builtin, pytest_args)
     for directory in (options.trace_directory, options.record_directory):
-        if directory is not None:  # told once what is wrong with it, not by every test
+        if directory is not None:  # an error is reported once, and not by every test
             directory.mkdir(parents=True, exist_ok=True)
 
     def session(imports_late: str = "") -> int:
@@ -57,18 +60,18 @@ def run_tests(
             None, project.main_file, project.root, project=project, options=options, imports_late=imports_late
         )
         if not imports_late:
-            plugin.robot_class()  # a robot that cannot be imported is told once, not by every test
+            plugin.robot_class()  # an import error is reported once, and not by every test
             if spare is not None and (reasons := reasons_not_to_fork()):
                 status = spare.take_over("; ".join(reasons))
-                warn_of_misspelled_methods(project)  # the spare has not imported them
+                warn_of_misspelled_methods(project)  # the spare process has not imported them
                 return status
-        plugins = [plugin, IsolatedTests(plugin), Summary(project), _NoUnusedHypothesis()]
+        plugins = [plugin, IsolatedTests(plugin), SummaryPlugin(project), _NoUnusedHypothesis()]
         return int(pytest.main(args, plugins=plugins))
 
     spare = None
     if FORK_IS_SAFE and options.isolation in ("auto", "fork"):
         spare = Spare(session)
-    # What cancels a run (an IDE, a CI system) ends it as Ctrl-C does: with the processes it has started.
+    # SIGTERM, from an IDE or a CI system, ends a run like Ctrl-C: with the processes it has started.
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return session()
@@ -79,7 +82,7 @@ def run_tests(
 
 
 def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> list[str]:
-    """What to call pytest with."""
+    """Return the arguments for pytest."""
     if any(not each.startswith("-") and Path(each).absolute() == project.main_file for each in pytest_args):
         remedy = "pyfrc finds it, and its tests, by itself: pyfrc test"
         raise UsageError(f"{project.main_file.name} is the robot program, and not a test file", remedy=remedy)
@@ -94,12 +97,15 @@ def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> l
     looked = " and ".join(str(path) for path in project.test_directories)
     raise NoTestsError(
         f"this project has no tests: looked for files named test_*.py or *_test.py in {looked}",
-        remedy="Run the ready-made tests with: pyfrc test --builtin. Have them in the project with: pyfrc add-tests",
+        remedy="Run the ready-made tests with: pyfrc test --builtin. Add them to the project with: pyfrc add-tests",
     )
 
 
 def _configuration(project: Project) -> list[str]:
-    """The project's own pytest configuration; pytest would look for it beside the test files, wherever they are."""
+    """Return the arguments for the project's own pytest configuration.
+
+    pytest itself searches only beside the test files.
+    """
     for name in ("pytest.ini", ".pytest.ini", "pyproject.toml", "tox.ini", "setup.cfg"):
         file = project.pyproject.with_name(name)
         if file.is_file():
@@ -108,5 +114,5 @@ def _configuration(project: Project) -> list[str]:
 
 
 def _names_tests(args: Sequence[str]) -> bool:
-    """Whether the user has said which files to run."""
+    """Return whether the user has named files to run."""
     return any(not arg.startswith("-") and Path(arg.partition("::")[0]).exists() for arg in args)

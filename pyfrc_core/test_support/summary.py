@@ -1,6 +1,6 @@
-"""What pytest shows at the end of a run: one bug explained once, and methods that WPILib never calls.
+"""The end of pytest's output: each bug is explained once, and methods that WPILib never calls are listed.
 
-Reports are shortened for the terminal only: JUnit files and the like have each failure in full.
+Reports are shortened on the terminal only: JUnit files and other reports contain each failure in full.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from ..runtime.misspelled_methods import find_misspelled_methods
 from .reporting import BUG, put_first
 
 
-class Summary:
-    """The part of the plugin that decides what the summary says.
+class SummaryPlugin:
+    """The plugin that shortens and extends pytest's summary.
 
-    :param project: the robot project that is tested
+    :param project: the robot project under test
     """
 
     def __init__(self, project: Project) -> None:
@@ -39,13 +39,13 @@ class Summary:
 
 
 def warn_of_misspelled_methods(project: Project, stream: TextIO = sys.stderr) -> None:
-    """Print those of the modules that this process has imported."""
+    """Print the misspelled methods of the modules that this process has imported."""
     for method in find_misspelled_methods(project):
         print(f"warning: {method}", file=stream)
 
 
 def _explain_each_bug_once(stats: dict[str, list[Any]]) -> None:
-    """Let failures by a bug that has been explained point to the test where it is."""
+    """Replace the failures by a bug that was explained before by a reference to the explanation."""
     explained: dict[str, str] = {}
     for outcome in ("error", "failed"):  # in the order in which they are shown
         reports = stats.get(outcome, [])

@@ -1,6 +1,6 @@
-"""Tests that run just about any robot through its modes, to find out whether its code crashes.
+"""Tests that run almost any robot through its modes, to check that its code does not crash.
 
-What they do not do is find out whether the robot does what you want: for that, write tests of your own.
+They do not check that the robot does what you want: write your own tests for that.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from ..season import CURRENT
 from ..test_support.controller import TestController
 from ..test_support.fake_time import FakeTime
 
-# How long each mode runs by itself, in seconds.
+# How long each mode runs, in seconds.
 _AUTONOMOUS_SECONDS = CURRENT.match.autonomous
 _OTHER_SECONDS = 5.0
 
@@ -30,9 +30,9 @@ def _run_for(control: TestController, seconds: float) -> None:
     control.run_test(on_step)
 
 
-# First, being the longest: the others run beside it.
+# First, since it takes the longest and the others run in parallel.
 def test_practice(control: TestController, fake_time: FakeTime, robot: Any) -> None:
-    """Runs through the entire span of a practice match.
+    """Run through a whole practice match.
 
     The field sends the first of the `game_specific_messages` in ``sim/config.json``, if there are any;
     `test_autonomous` runs with each of them.
@@ -45,7 +45,7 @@ def test_practice(control: TestController, fake_time: FakeTime, robot: Any) -> N
 
 
 def test_autonomous(control: TestController, fake_time: FakeTime, robot: Any, gamedata: str) -> None:
-    """Runs autonomous mode by itself, once for each message that the field may send."""
+    """Run autonomous mode, once for each message that the field may send."""
     __tracebackhide__ = True
     control.game_specific_message = gamedata
     control.set_autonomous(enabled=True)
@@ -53,14 +53,14 @@ def test_autonomous(control: TestController, fake_time: FakeTime, robot: Any, ga
 
 
 def test_disabled(control: TestController, fake_time: FakeTime, robot: Any) -> None:
-    """Runs disabled mode by itself."""
+    """Run disabled mode."""
     __tracebackhide__ = True
     control.set_autonomous(enabled=False)
     _run_for(control, _OTHER_SECONDS)
 
 
 def test_operator_control(control: TestController, fake_time: FakeTime, robot: Any) -> None:
-    """Runs operator control mode by itself."""
+    """Run operator control mode."""
     __tracebackhide__ = True
     control.set_operator_control(enabled=True)
     _run_for(control, _OTHER_SECONDS)

@@ -1,7 +1,7 @@
 """A test that all of your robot code has docstrings.
 
-Properly using docstrings will make your code more maintainable and look more professional. To use it, add
-``from pyfrc.tests.docstring_test import *`` to a file in your tests directory.
+Docstrings make your code easier to maintain. To use this test, add ``from pyfrc.tests.docstring_test import *`` to a
+file in your tests directory.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ __all__ = ["ignore_object", "test_docstrings"]
 
 
 def ignore_object(o: Any, robot_path: str) -> bool:
-    """Returns true if the object can be ignored: it does not come from the robot's own code.
+    """Return whether the object is not part of the robot's own code.
 
     :param o: a module, class or function
     :param robot_path: the directory of the robot's code
@@ -33,7 +33,7 @@ def ignore_object(o: Any, robot_path: str) -> bool:
 
 
 def test_docstrings(robot: Any, robot_path: str) -> None:
-    """The purpose of this test is to ensure that all of your robot code has docstrings."""
+    """Check that all of your robot code has docstrings."""
     __tracebackhide__ = True
     missing = sorted(
         place

@@ -1,7 +1,7 @@
-"""Mashes the buttons and switches in random ways, to find the control situations that nobody thinks of.
+"""Test the robot with random inputs, to find combinations of controls that your tests do not cover.
 
-Its random numbers start from the run's seed. The shortest way to what made the robot fail is kept as an input script:
-``pyfrc replay`` has it fail again.
+The random numbers start from the run's seed. The shortest script of a failure is saved as an input script, and ``pyfrc
+replay`` repeats the failure.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from ..test_support.fake_time import FakeTime
 
 __all__ = ["test_fuzz"]
 
-#: Where scripts of failing matches are kept, in the project.
-_KEPT = Path(".pyfrc", "fuzz")
+#: The directory of the project for scripts of failing matches.
+_SCRIPTS = Path(".pyfrc", "fuzz")
 
-#: How many robots are run at most to make a script short.
+#: The maximum number of runs to shrink a script.
 _MOST_RUNS = 300
 
 
 def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, robot: Any) -> None:
-    """Runs through a whole game randomly setting components."""
+    """Run through a whole match with random inputs."""
     __tracebackhide__ = True
     clock, project, seed = fake_time.run.clock, control.project or find_project(), control.seed
     generator = InputGenerator(
-        random.Random(f"fuzz {seed}"),  # not the generator that the robot's own code draws from
+        random.Random(f"fuzz {seed}"),  # not the generator that the robot's code uses
         fake_time.run,
         seconds=seconds_of(project.settings.match),
         settings=project.settings.match,
@@ -45,25 +45,25 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
     try:
         control.run_test(fuzz_run.on_packet)
     except Exception as error:
-        print(f"The robot failed at {clock.now:.2f} s of a match with everything mashed, in {modes.mode_name()} mode.")
-        _keep(project, fuzz_run.script(project.main_file.name, seed), generator, error)
+        print(f"The robot failed at {clock.now:.2f} s of a match with random inputs, in {modes.mode_name()} mode.")
+        _save(project, fuzz_run.script(project.main_file.name, seed), generator, error)
         raise
 
 
-def _keep(project: Project, script: InputScript, generator: InputGenerator, error: Exception) -> None:
-    """Write it where a next run with the same seed finds it, out of version control; as short as it can be made."""
+def _save(project: Project, script: InputScript, generator: InputGenerator, error: Exception) -> None:
+    """Shrink the script, and save it where a run with the same seed finds it, outside version control."""
     from ..fuzz.failure import failure_of
     from ..fuzz.shrink_apart import shrunk_apart
 
     shrunk = shrunk_apart(project, script, failure_of(error, project.files), generator.inputs, _MOST_RUNS)
-    file = project.root / _KEPT / f"seed-{script.seed}.jsonl"
+    file = project.root / _SCRIPTS / f"seed-{script.seed}.jsonl"
     (shrunk.script or script).save(file)
-    ignored = project.root / _KEPT.parts[0] / ".gitignore"
+    ignored = project.root / _SCRIPTS.parts[0] / ".gitignore"
     if not ignored.exists():
         ignored.write_text("*\n", encoding="utf-8")
     shown = os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
     if shrunk.script is not None:
-        print("The shortest way there:\n", *(f"    {line}" for line in shrunk.story), sep="\n")
+        print("The shortest script of the failure:\n", *(f"    {line}" for line in shrunk.story), sep="\n")
     else:
-        print(f"What it was told, {len(script.steps)} changes from seed {script.seed}, is kept: {shrunk.why_not}.")
-    print(f"\nTo have it fail again:\n\n    pyfrc replay {shown}\n")
+        print(f"The whole script, {len(script.steps)} changes from seed {script.seed}, is saved: {shrunk.why_not}.")
+    print(f"\nTo repeat the failure:\n\n    pyfrc replay {shown}\n")

@@ -1,8 +1,8 @@
-"""Which of a robot's motors drive it, which is on which side, and which encoder belongs to what.
+"""Identify the motors that drive the robot, their sides, and the encoders of each motor.
 
-Known are how the motors answer the sticks and what the robot's code calls them. What an answer means follows from what
-a driver means by it: a stick pushed forward drives the robot forward, one pushed to the left turns or moves it to the
-left.
+The inputs are the motors' reactions to the joysticks, and the names in the robot's code. The interpretation follows a
+driver's habits: a stick pushed forward drives the robot forward, a stick pushed to the left turns the robot or moves it
+to the left.
 """
 
 from __future__ import annotations
@@ -16,10 +16,11 @@ from .survey import Encoder, Motor, Survey
 
 
 @dataclass(frozen=True)
-class Side:
-    """Motors that do the same, being geared together.
+class MotorGroup:
+    """Motors that are geared together, and do the same.
 
-    :param forward: the sign of their output when it drives the robot forward
+    :param motors: the motors
+    :param forward: the sign of their output when the robot drives forward
     """
 
     motors: list[Motor]
@@ -28,10 +29,10 @@ class Side:
 
 @dataclass(frozen=True)
 class Tank:
-    """Two sides of motors."""
+    """A tank drive: a group of motors on each side."""
 
-    left: Side
-    right: Side
+    left: MotorGroup
+    right: MotorGroup
 
     @property
     def motors(self) -> list[Motor]:
@@ -40,9 +41,9 @@ class Tank:
 
 @dataclass(frozen=True)
 class Mecanum:
-    """Four wheels, each with motors of its own, by their corners: ``front_left`` and so on."""
+    """A mecanum drive: four wheels with their own motors, by corner: ``front_left`` and so on."""
 
-    wheels: dict[str, Side]
+    wheels: dict[str, MotorGroup]
 
     @property
     def motors(self) -> list[Motor]:
@@ -51,7 +52,10 @@ class Mecanum:
 
 @dataclass(frozen=True)
 class Swerve:
-    """Four wheels, each with a motor that drives it and one that turns it: what they do together cannot be seen."""
+    """A swerve drive: four wheels with a drive motor and a steering motor each.
+
+    Their joint effect cannot be observed.
+    """
 
     drive: list[Motor]
     steer: list[Motor]
@@ -62,15 +66,15 @@ CORNERS = ("front_left", "rear_left", "front_right", "rear_right")
 
 
 @dataclass
-class Layout:
-    """What is what on the robot.
+class DrivetrainLayout:
+    """The identified parts of the robot.
 
-    :param drivetrain: one whose motors can be told apart
-    :param swerve: the motors that are a swerve drive's by their names
+    :param drivetrain: a drivetrain whose motors can be identified
+    :param swerve: the motors of a swerve drive, by their names
     :param encoders: the encoders of the wheels, by side or corner
-    :param mechanisms: each other motor that has an encoder, with it
-    :param undriven: motors and encoders of which nothing is known
-    :param assumptions: sentences on what was taken for granted
+    :param mechanisms: the other motors with an encoder, each with its encoder
+    :param undriven: motors and encoders whose purpose is unknown
+    :param assumptions: sentences about assumptions
     """
 
     drivetrain: Tank | Mecanum | None = None
@@ -81,9 +85,9 @@ class Layout:
     assumptions: list[str] = field(default_factory=list)
 
 
-def find_layout(found: Survey) -> Layout:
-    """What is what on the robot, as far as names and sticks tell."""
-    layout = Layout(swerve=_swerve(found.motors))
+def find_layout(found: Survey) -> DrivetrainLayout:
+    """Identify the parts of the robot, as far as names and joysticks allow."""
+    layout = DrivetrainLayout(swerve=_swerve(found.motors))
     if layout.swerve is None and not any(motor.name.says_swerve for motor in found.motors):
         layout.drivetrain = _Finder(found, layout.assumptions).find()
     _assign_encoders(found, layout)
@@ -96,13 +100,13 @@ def _swerve(motors: list[Motor]) -> Swerve | None:
 
 
 class _Finder:
-    """Looks for the drivetrain, from the surest sign to the least sure one."""
+    """Finds the drivetrain, from the surest evidence to the least sure."""
 
     def __init__(self, found: Survey, assumptions: list[str]) -> None:
         self._motors = {motor.path: motor for motor in found.motors}
         self._responses = {
-            axis: {path: answer for path, answer in answers.items() if path in self._motors}
-            for axis, answers in found.responses.items()
+            axis: {path: reaction for path, reaction in reactions.items() if path in self._motors}
+            for axis, reactions in found.responses.items()
         }
         self._assumptions = assumptions
         self._contradicted = False
@@ -111,14 +115,14 @@ class _Finder:
         return self._by_forward_and_turn() or self._by_two_sticks() or self._by_names()
 
     def _by_forward_and_turn(self) -> Tank | Mecanum | None:
-        """Motors that all answer one axis, and some of them the other way round another one."""
+        """Find motors that all react to one axis, and some of them in reverse to another one."""
         for forward in self._forward_axes():
-            answers = self._responses[forward]
-            signs = {path: _sign(answer) for path, answer in answers.items()}
+            reactions = self._responses[forward]
+            signs = {path: _sign(reaction) for path, reaction in reactions.items()}
             patterns: dict[Axis, dict[str, int]] = {}
             for axis, others in self._responses.items():
                 pattern = {path: _sign(others.get(path, 0.0)) * sign for path, sign in signs.items()}
-                if others.keys() == answers.keys() and len(set(pattern.values())) == 2:
+                if others.keys() == reactions.keys() and len(set(pattern.values())) == 2:
                     patterns.setdefault(axis, pattern)
             if patterns:
                 wheels = self._mecanum(signs, patterns)
@@ -142,11 +146,11 @@ class _Finder:
                 distinct.append(pattern)
         if len(distinct) < 2:
             return None
-        # The first of the two axes, a stick's x, moves nearly all robots sideways. Names know better.
+        # On nearly all robots, the first of the two axes, a stick's x, moves it sideways. Names have priority.
         sideways, turn = distinct[:2]
         if self._misfit(sideways) < self._misfit(turn):
             sideways, turn = turn, sideways
-        # With followers, several motors turn a wheel, and on all four wheels the same number.
+        # With followers, each wheel has several motors, the same number on all four.
         wheels: dict[tuple[int, int], list[str]] = {}
         for path in signs:
             wheels.setdefault((sideways[path], turn[path]), []).append(path)
@@ -163,12 +167,12 @@ class _Finder:
             return None
         if not all(self._motors[path].name.side for path in signs):
             self._assumptions.append(
-                "The robot was taken to turn left and to move left with sticks pushed to the left."
+                "It was assumed that the robot turns left and moves left with sticks pushed to the left."
             )
         return Mecanum({corner: self._side(paths, signs) for corner, paths in sorted(corners.items())})
 
     def _tank(self, turn: Mapping[str, int], signs: Mapping[str, int]) -> Tank | None:
-        """Two sides; what their motors are called comes before which way the stick turned them."""
+        """Return two sides; the motors' names have priority over their reaction to the turning stick."""
         left = [path for path, sign in turn.items() if sign < 0]
         right = [path for path, sign in turn.items() if sign > 0]
         misnamed = self._misnamed(turn)
@@ -177,47 +181,47 @@ class _Finder:
                 fewer = misnamed if self._misfit(turn) == len(misnamed) else self._named(turn) - misnamed
                 motors = ", ".join(str(self._motors[path]) for path in turn if path in fewer)
                 self._assumptions.append(
-                    "The stick that turns the robot moves some motors as if they were on the other side than the one "
-                    f"that they are called after, unlike the rest: {motors}. Their names or their channels may be "
-                    "mixed up, or more than one drivetrain answers that stick."
+                    "The stick that turns the robot moves these motors as if they were on the opposite side of "
+                    f"their names, unlike the others: {motors}. Their names or their channels may be "
+                    "mixed up, or several drivetrains use that stick."
                 )
             self._contradicted = True
             return None
         if misnamed:
             left, right = right, left
             self._assumptions.append(
-                "By their names, the motors turn the robot right when the stick is pushed to the left: in its code a "
-                "sign is likely to be wrong (WPILib counts counter-clockwise turns as positive)."
+                "According to their names, the motors turn the robot right when the stick is pushed to the left: a "
+                "sign in its code is probably wrong (in WPILib, counter-clockwise turns are positive)."
             )
         elif not all(self._motors[path].name.side for path in signs):
-            self._assumptions.append("The robot was taken to turn left with the stick pushed to the left.")
+            self._assumptions.append("It was assumed that the robot turns left with the stick pushed to the left.")
         return Tank(self._side(left, signs), self._side(right, signs))
 
     def _named(self, turn: Mapping[str, int]) -> set[str]:
         return {path for path in turn if self._motors[path].name.side is not None}
 
     def _misnamed(self, turn: Mapping[str, int]) -> set[str]:
-        """The motors that are called after the other side than the one that a turn to the left puts them on."""
+        """Return the motors whose names contradict the side that a turn to the left puts them on."""
         return {path for path in self._named(turn) if (self._motors[path].name.side == "left") != (turn[path] < 0)}
 
     def _misfit(self, turn: Mapping[str, int]) -> int:
-        """How many motors' names contradict the others': none if all are on their side, or all on the other one."""
+        """Return how many motors' names contradict the others'; 0 if all agree, or all contradict."""
         wrong = len(self._misnamed(turn))
         return min(wrong, len(self._named(turn)) - wrong)
 
     def _by_two_sticks(self) -> Tank | None:
-        """Each side answers a stick of its own."""
+        """Find two sides that react to a stick each."""
         groups: list[tuple[Axis, dict[str, float]]] = []
-        for axis, answers in self._responses.items():
+        for axis, reactions in self._responses.items():
             moved = {path for _, group in groups for path in group}
-            if axis[1] in FORWARD_AXES and answers and not moved & answers.keys():
-                groups.append((axis, answers))
+            if axis[1] in FORWARD_AXES and reactions and not moved & reactions.keys():
+                groups.append((axis, reactions))
         named: dict[str | None, dict[str, float]] = {}
-        for _, answers in groups:
-            sides = {self._motors[path].name.side for path in answers}
-            plain = all(self._motors[path].name.is_plain for path in answers)
+        for _, reactions in groups:
+            sides = {self._motors[path].name.side for path in reactions}
+            plain = all(self._motors[path].name.is_plain for path in reactions)
             if len(sides) == 1 and plain:
-                named.setdefault(sides.pop(), answers)
+                named.setdefault(sides.pop(), reactions)
         if named.keys() >= {"left", "right"}:
             left, right = named["left"], named["right"]
         else:
@@ -226,12 +230,12 @@ class _Finder:
             if len(nameless) < 2 or len(nameless[0]) != len(nameless[1]):
                 return None
             left, right = nameless[:2]
-            self._assumptions.append("The first of the two sticks was taken for the left side's.")
-        signs = {path: _sign(answer) for path, answer in (left | right).items()}
+            self._assumptions.append("It was assumed that the first of the two sticks drives the left side.")
+        signs = {path: _sign(reaction) for path, reaction in (left | right).items()}
         return Tank(self._side(left, signs), self._side(right, signs))
 
     def _by_names(self) -> Tank | None:
-        """Motors that are called after the two sides, and nothing else."""
+        """Find motors that are named after the two sides, and nothing else."""
         drive = {path: motor for path, motor in self._motors.items() if motor.name.is_plain and motor.name.side}
         left = [path for path, motor in drive.items() if motor.name.side == "left"]
         right = [path for path in drive if path not in left]
@@ -240,24 +244,24 @@ class _Finder:
         forward = next((self._responses[axis] for axis in self._forward_axes()), {})
         signs = {path: _sign(forward.get(path, -1.0 if motor.inverted else 1.0)) for path, motor in drive.items()}
         if self._contradicted:
-            self._assumptions.append("Which motor is on which side was told by their names.")
+            self._assumptions.append("The motors' sides were derived from their names.")
         elif not drive.keys() <= forward.keys():
             self._assumptions.append(
-                "No stick moved the motors as a drivetrain's: which is on which side was told by their names, and an "
-                "output of 1 was taken for forward, of -1 for motors that the robot's code inverts."
+                "No stick moved the motors like a drivetrain: their sides were derived from their names, and it was "
+                "assumed that an output of 1 is forward, or -1 for motors that the robot's code inverts."
             )
         else:
-            self._assumptions.append("No stick turned the robot: which motor is on which side was told by their names.")
+            self._assumptions.append("No stick turned the robot: the motors' sides were derived from their names.")
         return Tank(self._side(left, signs), self._side(right, signs))
 
-    def _side(self, paths: Iterable[str], signs: Mapping[str, int]) -> Side:
+    def _side(self, paths: Iterable[str], signs: Mapping[str, int]) -> MotorGroup:
         motors = [motor for path, motor in self._motors.items() if path in set(paths)]
-        return Side(motors, signs[motors[0].path])
+        return MotorGroup(motors, signs[motors[0].path])
 
 
-def _agreed(said: set[str | None]) -> str | None:
-    """What the names of motors that are geared together say, where they do not contradict each other."""
-    words = said - {None}
+def _agreed(names: set[str | None]) -> str | None:
+    """Return the common word in the names of motors that are geared together; None if they differ."""
+    words = names - {None}
     return words.pop() if len(words) == 1 else None
 
 
@@ -272,7 +276,7 @@ def _opposite(one: Mapping[str, int], other: Mapping[str, int]) -> bool:
 # -- encoders ----------------------------------------------------------------------------------------------------
 
 
-def _assign_encoders(found: Survey, layout: Layout) -> None:
+def _assign_encoders(found: Survey, layout: DrivetrainLayout) -> None:
     driving = layout.drivetrain.motors if layout.drivetrain else []
     others = [motor for motor in found.motors if motor not in driving]
     free = list(found.encoders)
@@ -291,7 +295,8 @@ def _assign_encoders(found: Survey, layout: Layout) -> None:
         plain = [encoder for encoder in free if not encoder.name.purpose]
         for encoder in _wheel_encoders(layout, plain or [encoder for encoder in free if encoder.name.side]):
             free.remove(encoder)
-    # One motor and one encoder belong together whatever they are called, unless that is lift and turret.
+    # One motor and one encoder belong together regardless of their names, unless both have a purpose, such as lift and
+    # turret.
     single = layout.drivetrain is None and len(others) == len(free) == 1
     if single and not (others[0].name.purpose and free[0].name.purpose):
         pair(others[0], free[0])
@@ -299,7 +304,7 @@ def _assign_encoders(found: Survey, layout: Layout) -> None:
 
 
 def _likeness(motor: Name, encoder: Name) -> tuple[int, bool, bool, bool]:
-    """More of it, the likelier they belong together."""
+    """Return a sort key: the greater, the more likely they belong together."""
     return (
         len(motor.purpose & encoder.purpose),
         motor.owner == encoder.owner,
@@ -308,8 +313,8 @@ def _likeness(motor: Name, encoder: Name) -> tuple[int, bool, bool, bool]:
     )
 
 
-def _wheel_encoders(layout: Layout, candidates: list[Encoder]) -> list[Encoder]:
-    """Give the drivetrain its encoders, by their names or, without, in the order of their channels; answers them."""
+def _wheel_encoders(layout: DrivetrainLayout, candidates: list[Encoder]) -> list[Encoder]:
+    """Assign the drivetrain's encoders by their names, or else in the order of their channels; return them."""
     corners = isinstance(layout.drivetrain, Mecanum)
     wheels = list(CORNERS) if corners else ["left", "right"]
     by_name: dict[str, list[Encoder]] = {}
@@ -321,8 +326,8 @@ def _wheel_encoders(layout: Layout, candidates: list[Encoder]) -> list[Encoder]:
         by_name = {wheel: [encoder] for wheel, encoder in zip(wheels, candidates, strict=False)}
         taken = [wheel.replace("_", " ") for wheel in by_name]
         if len(taken) == 1:
-            layout.assumptions.append(f"The encoder was taken for the {taken[0]} {'wheel' if corners else 'side'}'s.")
+            layout.assumptions.append(f"The encoder was assigned to the {taken[0]} {'wheel' if corners else 'side'}.")
         elif taken:
-            layout.assumptions.append(f"The encoders were taken in the order {', '.join(taken)}.")
+            layout.assumptions.append(f"The encoders were assigned in the order {', '.join(taken)}.")
     layout.encoders = {wheel: by_name[wheel] for wheel in wheels if wheel in by_name}
     return [encoder for encoders in layout.encoders.values() for encoder in encoders]

@@ -1,4 +1,4 @@
-"""Writes ``physics.py`` and ``sim/config.json`` for the robot at hand, and tells what was there already."""
+"""Write ``physics.py`` and ``sim/config.json`` for a robot, unless they exist."""
 
 from __future__ import annotations
 
@@ -18,47 +18,48 @@ from .proposal import propose
 
 @dataclass
 class Created:
-    """What `create_physics` has done; files are absolute.
+    """Result of `create_physics`; files are absolute.
 
-    :param left_alone: the files that were there, each with what is wrong with it or an empty text
-    :param recognised: lines on the drivetrain, encoders and gyros found; none when no robot was looked at
-    :param notes: sentences on what was taken for granted, and what is left to do
-    :param problem: why the robot could not be driven, naming the user's line
+    :param written: the files that were written
+    :param unchanged: the files that existed, each with an error message or an empty text
+    :param recognised: lines about the drivetrain, encoders and gyros; empty when the robot was not started
+    :param notes: sentences about assumptions and remaining work
+    :param problem: why the robot could not be driven, with the user's line
     """
 
     written: list[Path] = field(default_factory=list)
-    left_alone: dict[Path, str] = field(default_factory=dict)
+    unchanged: dict[Path, str] = field(default_factory=dict)
     recognised: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     problem: str | None = None
 
 
 def create_physics(project: Project) -> Created:
-    """Write ``physics.py`` and ``sim/config.json`` unless they are there; the robot's program is started for it.
+    """Write ``physics.py`` and ``sim/config.json`` unless they exist; for that, start the robot program.
 
-    :raises RobotCodeError: when the robot's code fails before it can be driven, or ends the process it runs in;
-        nothing is written then
-    :raises UsageError: when something else is where a file or the directory ``sim`` has to be
-    :raises PyfrcError: when a file cannot be written, saying which were
+    :raises RobotCodeError: when the robot's code fails before it can be driven, or ends its process; then nothing is
+        written
+    :raises UsageError: when a file or the directory ``sim`` cannot be created, since the name is in use
+    :raises PyfrcError: when a file cannot be written, with the files that were written before
     """
     physics, config = project.physics_file, project.root / SIM_CONFIG
     schema = config.with_name(SCHEMA_NAME)
     done = Created()
     if os.path.lexists(physics):
-        done.left_alone[physics] = _what_is_wrong_with_physics(physics)
+        done.unchanged[physics] = _physics_error(physics)
     if os.path.lexists(config):
-        done.left_alone[config] = _what_is_wrong_with_config(project.root)
-    if len(done.left_alone) == 2:
+        done.unchanged[config] = _config_error(project.root)
+    if len(done.unchanged) == 2:
         return done
     _check_places(physics, config)
-    proposal = run_apart(propose, project, "while pyfrc was looking at what it has")
+    proposal = run_apart(propose, project, "while pyfrc was searching for its devices")
     texts = {physics: proposal.physics, config: proposal.config}
-    if config not in done.left_alone:
+    if config not in done.unchanged:
         texts[schema] = sim_config_schema() + "\n"
         if os.path.lexists(schema):
-            done.left_alone[schema] = ""
+            done.unchanged[schema] = ""
     for file, text in texts.items():
-        if file not in done.left_alone:
+        if file not in done.unchanged:
             _write(file, text, done)
     done.recognised = proposal.recognised
     done.notes = [*proposal.assumptions, *(proposal.advice if physics in done.written else ())]
@@ -67,24 +68,24 @@ def create_physics(project: Project) -> Created:
 
 
 def _check_places(physics: Path, config: Path) -> None:
-    """See that nothing is in the way, before the robot is started."""
+    """Check that all names are free, before the robot is started."""
     others = sorted(each.name for each in physics.parent.iterdir() if each.name.casefold() == physics.name)
-    # Where upper and lower case are the same, the file is there under the other name.
+    # On file systems that ignore case, the existing file has the other name.
     if others and physics.name not in others:
         raise UsageError(f"there is a {others[0]}: rename it to {physics.name}")
     package = physics.with_suffix("")
     if not others and any(package.glob("*.py")):
         raise UsageError(
             f"there is a package {package.name}/, but pyfrc runs a file {physics.name}",
-            remedy=f"Move what is in {package.name}/__init__.py to {physics.name}, and give the package another name: "
-            "Python cannot import two things called the same.",
+            remedy=f"Move the contents of {package.name}/__init__.py to {physics.name}, and rename the package: "
+            "Python cannot import two modules with the same name.",
         )
     directory = config.parent
     if os.path.lexists(directory) and not directory.is_dir():
-        raise UsageError(f"{directory.name} is a file, where the directory of {SIM_CONFIG.as_posix()} has to be")
+        raise UsageError(f"{directory.name} is a file, but the directory of {SIM_CONFIG.as_posix()} needs this name")
 
 
-def _what_is_wrong_with_physics(file: Path) -> str:
+def _physics_error(file: Path) -> str:
     try:
         compile(file.read_bytes(), file.name, "exec", dont_inherit=True)
     except SyntaxError as error:
@@ -94,7 +95,7 @@ def _what_is_wrong_with_physics(file: Path) -> str:
     return ""
 
 
-def _what_is_wrong_with_config(root: Path) -> str:
+def _config_error(root: Path) -> str:
     try:
         load_sim_config(root)
     except (SettingsError, OSError) as error:

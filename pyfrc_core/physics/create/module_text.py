@@ -1,4 +1,4 @@
-"""A Python module's text while it grows: its imports, its names, what is set up and what is done in each loop."""
+"""Assemble the text of a Python module: its imports, names, set-up code and loop code."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .survey import Encoder, Motor
 
 
 class ModuleText:
-    """The parts of the file, while it grows."""
+    """The parts of a module while it is assembled."""
 
     def __init__(self) -> None:
         self.imports: set[str] = set()
@@ -19,13 +19,13 @@ class ModuleText:
         self.numbers: list[str] = []
         self.setup: list[str] = []
         self.update: list[str] = []
-        # In capitals, as the numbers at the top are. "top" would make a second TOP_SPEED.
+        # In capitals, like the constants at the top. An attribute "top" would make a second TOP_SPEED.
         taken = ("physics_controller", "drivetrain", "update_sim", "top", *kwlist)
         self._taken: set[str] = {name.upper() for name in taken}
 
     def name(self, wanted: str) -> str:
-        """An attribute's name that is not taken yet."""
-        # As Python's parser reads it: "arm²" is arm2.
+        """Return an unused attribute name."""
+        # Normalized as by Python's parser: "arm²" is arm2.
         letters = normalize("NFKC", normalize("NFKC", wanted).lower())
         plain = re.sub("_+", "_", "".join(letter if f"_{letter}".isidentifier() else "_" for letter in letters))
         plain = plain.strip("_") or "device"
@@ -38,7 +38,7 @@ class ModuleText:
         return name
 
     def motor(self, motor: Motor, wanted: str) -> str:
-        """Sets up a motor; answers the expression for its output."""
+        """Add the set-up of a motor; return the expression for its output."""
         name = self.name(wanted)
         if motor.channel is not None:
             self.sims.add("PWMSim")
@@ -49,7 +49,7 @@ class ModuleText:
         return f"self.{name}.get()"
 
     def encoder(self, encoder: Encoder, wanted: str, units: str) -> str:
-        """Sets up an encoder; answers its name."""
+        """Add the set-up of an encoder; return its name."""
         self.sims.add("EncoderSim")
         name = self.name(wanted)
         how = f"createForChannel({encoder.channels[0]})" if encoder.channels else f"createForIndex({encoder.index})"
@@ -58,5 +58,5 @@ class ModuleText:
 
 
 def quoted(text: str) -> str:
-    """`text` as a Python literal."""
+    """Return `text` as a Python literal."""
     return json.dumps(text, ensure_ascii=False)

@@ -1,4 +1,4 @@
-"""What the robot's code calls its devices: found by looking through the robot's attributes, and what such names say."""
+"""Find the names of devices in the robot's attributes, and interpret them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import wpilib
 from ...hal.devices import encoder_channels
 from ...project.robot_files import RobotFiles
 
-#: How many attributes stand between the robot and a device at most, and how many parts of a list are looked at.
+#: The maximum number of attributes between the robot and a device, and of list elements that are searched.
 _DEPTH, _PARTS = 6, 64
 
 _LEFT = {"left", "l", "lf", "fl", "lr", "rl", "lb", "bl", "lm", "ml"}
@@ -21,7 +21,7 @@ _RIGHT = {"right", "r", "rf", "fr", "rr", "rb", "br", "rm", "mr"}
 _FRONT = {"front", "f", "lf", "fl", "rf", "fr"}
 _REAR = {"rear", "back", "lr", "rl", "rr", "lb", "bl", "rb", "br"}
 
-#: Words that say no more of a motor or an encoder than that it is part of a drivetrain, or nothing at all.
+#: Words of drivetrain parts, and words without a meaning here.
 _PLAIN = {
     *_LEFT, *_RIGHT, *_FRONT, *_REAR,
     "mid", "middle", "center", "motor", "motors", "controller", "controllers", "drive", "driver", "train",
@@ -34,14 +34,14 @@ _PLAIN = {
 
 _SWERVE = {"swerve", "steer", "steering", "azimuth"}
 
-#: Of a swerve module's two motors: words that call one the motor that turns the wheel, or the one that drives it.
+#: Words in the names of a swerve module's two motors: the one that turns the wheel, and the one that drives it.
 _STEERING = {"steer", "steering", "azimuth", "angle", "pivot", "rotate", "rotation", "turn", "turning"}
 _DRIVING = {"drive", "driving", "speed", "propulsion"}
 _OF_MODULES = _SWERVE | _STEERING | _DRIVING | {"module", "modules"}
 
 
 class Name:
-    """What robot code calls a device, from the robot down: ``drivetrain.left_motor``."""
+    """A device's name in robot code, from the robot down: ``drivetrain.left_motor``."""
 
     def __init__(self, path: tuple[str, ...] = ()) -> None:
         self.text = one_line(".".join(path).replace(".[", "["))
@@ -56,17 +56,17 @@ class Name:
 
     @property
     def side(self) -> str | None:
-        """``left`` or ``right``, where the name says so: the device's own comes before its owner's."""
+        """Return ``left`` or ``right``, or None; the device's own name has priority over its owner's."""
         return self._which({"left": _LEFT, "right": _RIGHT})
 
     @property
     def end(self) -> str | None:
-        """``front`` or ``rear``, where the name says so."""
+        """Return ``front`` or ``rear``, or None."""
         return self._which({"front": _FRONT, "rear": _REAR})
 
     @property
     def is_plain(self) -> bool:
-        """Whether nothing in the name speaks against its being the drivetrain's, as ``left_climber`` does."""
+        """Return whether nothing in the name contradicts a drivetrain, as ``left_climber`` does."""
         return bool(self) and not self.purpose
 
     @property
@@ -75,7 +75,7 @@ class Name:
 
     @property
     def task(self) -> str | None:
-        """Which of a swerve module's two motors it is by its name, ``drive`` or ``steer``; None for other motors."""
+        """Return the task of a swerve module's motor by its name, ``drive`` or ``steer``; None for other motors."""
         if self.purpose - _OF_MODULES:
             return None
         for words in reversed(self._words):
@@ -86,7 +86,7 @@ class Name:
 
     @property
     def purpose(self) -> set[str]:
-        """The words that tell it from other devices, such as ``lift`` in ``lift_motor``."""
+        """Return the words that distinguish it from other devices, such as ``lift`` in ``lift_motor``."""
         return {
             word
             for words in self._words
@@ -96,45 +96,45 @@ class Name:
 
     def _which(self, choices: dict[str, set[str]]) -> str | None:
         for words in reversed(self._words):
-            said = [choice for choice, known in choices.items() if known.intersection(words)]
-            if len(said) == 1:
-                return said[0]
+            matches = [choice for choice, known in choices.items() if known.intersection(words)]
+            if len(matches) == 1:
+                return matches[0]
         return None
 
 
 def one_line(text: str) -> str:
-    """`text` as a comment may hold it, whatever the keys of a dict and the names of devices look like."""
+    """Return `text` without line breaks and control characters, for a comment."""
     return " ".join("".join(letter if letter.isprintable() else " " for letter in text).split())
 
 
 def _words(name: str) -> list[str]:
-    """``leftMotor_2`` and ``_left_motor2`` both are left, motor, 2."""
+    """Split a name: ``leftMotor_2`` and ``_left_motor2`` both are left, motor, 2."""
     name = re.sub(r"^_[A-Z]\w*?__", "", name)  # as Python stores a name that begins with two underscores
     return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", name)]
 
 
-#: A device's place: the room of `hal_data` and the channel, or for a device on the CAN bus ``CAN`` and its number.
+#: A device's place: the key in `hal_data` and the channel; for a device on the CAN bus ``CAN`` and its number.
 Place = tuple[str, int]
 
 
-class Found(NamedTuple):
-    """A device that the robot's code holds."""
+class NamedDevice(NamedTuple):
+    """A device in the robot's code."""
 
     name: Name
-    #: The robot's own object for it.
+    #: The robot's object.
     thing: Any
 
 
-def find_devices(robot: Any, files: RobotFiles) -> dict[Place, Found]:
-    """The robot's devices as its code calls them; under the shortest name where there are several.
+def find_devices(robot: Any, files: RobotFiles) -> dict[Place, NamedDevice]:
+    """Return the robot's devices with their names in its code; the shortest name where there are several.
 
-    Looked through are the robot's attributes, those of the project's own objects that it holds, lists and dicts of
-    them, and the variables of the project's modules. Called are only the devices' own methods that tell a channel.
+    The search covers the robot's attributes, those of the project's own objects, lists and dicts of them, and the
+    variables of the project's modules. It calls only methods of devices that return a channel.
     """
-    found: dict[Place, Found] = {}
+    found: dict[Place, NamedDevice] = {}
     for path, thing in _reachable(robot, files):
         for place, suffix in _places(thing):
-            found.setdefault(place, Found(Name((*path[:-1], path[-1] + suffix)), thing))
+            found.setdefault(place, NamedDevice(Name((*path[:-1], path[-1] + suffix)), thing))
     return found
 
 
@@ -180,7 +180,7 @@ def _parts(owner: Any, ours: set[str]) -> Iterable[tuple[str, Any]]:
 
 
 def _places(thing: Any) -> Iterator[tuple[Place, str]]:
-    """Where a device is: its rooms and channels, each with what is to be added to its name."""
+    """Return the keys and channels of a device, each with a suffix for its name."""
     if isinstance(thing, wpilib.Encoder):
         index = thing.getFPGAIndex()
         yield ("encoder", index), ""
@@ -223,12 +223,12 @@ _CAN_NUMBERS = range(63)
 
 
 def _can_number(thing: Any) -> int | None:
-    """The number on the CAN bus of a vendor's motor controller or sensor, as the vendors' classes tell it."""
+    """Return the CAN number of a vendor's motor controller or sensor, from the methods of the vendors' classes."""
     if isinstance(thing, type):
         return None
     for name in ("getDeviceId", "getDeviceID", "device_id"):
-        teller = getattr(type(thing), name, None)
-        if teller is None:
+        getter = getattr(type(thing), name, None)
+        if getter is None:
             continue
         try:
             number = getattr(thing, name)

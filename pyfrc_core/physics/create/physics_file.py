@@ -1,4 +1,4 @@
-"""The text of ``physics.py`` for a robot: today's generation, in metres and counter-clockwise."""
+"""Write the text of a robot's ``physics.py``, of the current generation: in metres and counter-clockwise."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import re
 from textwrap import wrap
 
 from ...errors import PyfrcError
-from .drivetrain import CORNERS, Layout, Mecanum, Tank
+from .drivetrain import CORNERS, DrivetrainLayout, Mecanum, Tank
 from .module_text import ModuleText, quoted
 from .names import one_line
 from .report import listed, notes
 from .survey import Encoder, Gyro, Motor, Survey
 
-_HEAD = '''"""The physics of this robot: what its motors do to its sensors and to its place on the field.
+_HEAD = '''"""The physics of this robot: how its motors change its sensors and its position on the field.
 
-`pyfrc test` and the simulator run it because it is beside the robot's code. `pyfrc create-physics`
-looked at the robot and wrote it; from now on it is yours. The numbers below are those of a common
-robot: put in your own.
+`pyfrc test` and the simulator use this file because it is beside the robot's code.
+`pyfrc create-physics` wrote it; change it as you like. The numbers below are those of a common
+robot: replace them with your own.
 """
 '''
 
@@ -39,22 +39,22 @@ TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right ones
 WHEELBASE = 22 * units.inch  # from the front wheels to the rear ones
 """
 
-#: By the unit of the drivetrain's model.
+#: The comment on encoder units, by the unit of the drivetrain's model.
 _UNITS = {
     "foot": """
-# What the robot's setDistancePerPulse() has its encoders measure: 0.3048 for metres, 1 for feet,
+# The unit of the robot's encoders, from its setDistancePerPulse(): 0.3048 for metres, 1 for feet,
 # 12 for inches.
 ENCODER_UNITS = 0.3048
 """,
     "metre": """
-# What the robot's setDistancePerPulse() has its encoders measure: 1 for metres, 3.281 for feet,
+# The unit of the robot's encoders, from its setDistancePerPulse(): 1 for metres, 3.281 for feet,
 # 39.37 for inches.
 ENCODER_UNITS = 1.0
 """,
 }
 
 _COUNTS = """
-# Some encoders are taken in counts by the robot, which calls no setDistancePerPulse().
+# The robot uses counts of some encoders: it does not call setDistancePerPulse().
 COUNTS_PER_TURN = 360  # of a wheel
 {diameter}ENCODER_COUNTS = COUNTS_PER_TURN / (math.pi * WHEEL_DIAMETER.m_as("{unit}"))
 """
@@ -62,16 +62,16 @@ COUNTS_PER_TURN = 360  # of a wheel
 _SHAFT = '''
 
 class EncoderShaft:
-    """Turns an encoder; like a real one, it counts on from where the robot's reset() has put it."""
+    """Turns an encoder. Like a real one, it continues from the count that the robot's reset() has set."""
 
     def __init__(self, encoder: EncoderSim, units: float) -> None:
-        """`units`: how many of the encoder's units are one of those that it is turned by."""
+        """`units`: the number of encoder units in one unit of `turn_to`."""
         self.encoder = encoder
         self.units = units
         self.counts = 0
 
     def turn_to(self, position: float, velocity: float) -> None:
-        """The velocity is per second."""
+        """Set the position, and the velocity per second."""
         counts = round(position * self.units / self.encoder.getDistancePerPulse())
         if counts != self.counts:
             self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
@@ -82,20 +82,20 @@ class EncoderShaft:
 _ENGINE = '''
 
 class PhysicsEngine:
-    """Made when the robot's robotInit is over; its update_sim is called after the robot's loop."""
+    """Created after the robot's robotInit; update_sim is called after each loop of the robot."""
 
     def __init__(self, physics_controller: PhysicsInterface, robot: wpilib.RobotBase) -> None:
         self.physics_controller = physics_controller
 {setup}
     def update_sim(self, now: float, tm_diff: float) -> None:
-        """`now` is the robot's time, `tm_diff` how much of it has passed since the last call."""
+        """`now` is the robot time, `tm_diff` the time since the last call, in seconds."""
 {update}'''
 
 
-def physics_text(found: Survey, layout: Layout) -> str:
-    """The whole file.
+def physics_text(found: Survey, layout: DrivetrainLayout) -> str:
+    """Return the text of the file.
 
-    :raises PyfrcError: should it come out as no valid Python
+    :raises PyfrcError: when it is not valid Python
     """
     text = ModuleText()
     drivetrain = layout.drivetrain
@@ -109,17 +109,17 @@ def physics_text(found: Survey, layout: Layout) -> str:
 
 
 def checked(text: str) -> str:
-    """`text`, which nobody gets to see if it is no valid Python.
+    """Return `text` if it is valid Python.
 
-    :raises PyfrcError: asking to report it
+    :raises PyfrcError: otherwise, with a request to report it
     """
     try:
         compile(text, "physics.py", "exec", dont_inherit=True)
     except (SyntaxError, ValueError) as error:
         line = text.splitlines()[error.lineno - 1].strip() if isinstance(error, SyntaxError) and error.lineno else ""
         raise PyfrcError(
-            f"a physics.py was made that is no valid Python: {error}" + (f"\n    {line}" if line else ""),
-            remedy="That is a mistake in pyfrc: please report it, with this message and what your robot calls its "
+            f"the generated physics.py is not valid Python: {error}" + (f"\n    {line}" if line else ""),
+            remedy="This is a bug in pyfrc: please report it, with this message and the names of your robot's "
             "motors and sensors. Nothing was written.",
         ) from error
     return text
@@ -157,14 +157,14 @@ def _indented(lines: list[str]) -> str:
 # -- drivetrains -------------------------------------------------------------------------------------------------
 
 
-def _tank(text: ModuleText, tank: Tank, layout: Layout, gyros: list[Gyro]) -> None:
+def _tank(text: ModuleText, tank: Tank, layout: DrivetrainLayout, gyros: list[Gyro]) -> None:
     text.imports |= {"from pyfrc.physics import motor_cfgs, tankmodel", "from pyfrc.physics.units import units"}
     text.numbers.append(_TANK_NUMBERS.format(per_side=max(len(tank.left.motors), len(tank.right.motors))))
     outputs = {}
     for side, motors in (("left", tank.left), ("right", tank.right)):
         text.setup += ["", f"# {side.capitalize()}: {listed(motors.motors)}"]
         if len(motors.motors) > 1:
-            text.setup[-1] += ". Geared together, one tells for all."
+            text.setup[-1] += ". Geared together, so one is enough."
         sign = motors.forward if side == "left" else -motors.forward
         outputs[side] = _signed(sign, text.motor(motors.motors[0], f"{side}_motor"))
     text.setup += [
@@ -179,12 +179,12 @@ def _tank(text: ModuleText, tank: Tank, layout: Layout, gyros: list[Gyro]) -> No
         "    robot_length=ROBOT_LENGTH,",
         "    wheel_diameter=WHEEL_DIAMETER,",
         ")",
-        "# With this moment of inertia the robot turns as far as its encoders say: its wheels never slip.",
+        "# With this moment of inertia the turn equals the encoders' difference: the wheels never slip.",
         "self.drivetrain.inertia = MASS * TRACK_WIDTH**2 / 2",
     ]
     encoders = _wheel_encoders(text, layout)
     text.update += [
-        *_about_signs("To the model, the left motor is forward at 1 and the right one at -1", *outputs.values()),
+        *_about_signs("In the model, the left motor is forward at 1 and the right one at -1", *outputs.values()),
         f"left = {outputs['left']}",
         f"right = {outputs['right']}",
         "moved = self.drivetrain.calculate(left, right, tm_diff)",
@@ -198,12 +198,12 @@ def _tank(text: ModuleText, tank: Tank, layout: Layout, gyros: list[Gyro]) -> No
     _gyros(text, gyros, "math.degrees(moved.rotation().radians())")
 
 
-def _mecanum(text: ModuleText, mecanum: Mecanum, layout: Layout, gyros: list[Gyro]) -> None:
+def _mecanum(text: ModuleText, mecanum: Mecanum, layout: DrivetrainLayout, gyros: list[Gyro]) -> None:
     text.imports |= {"from pyfrc.physics import drivetrains", "from pyfrc.physics.units import units"}
     text.numbers.append(_MECANUM_NUMBERS)
     text.setup.append("")
     if any(len(wheel.motors) > 1 for wheel in mecanum.wheels.values()):
-        text.setup.append("# Of motors geared together, one tells for all.")
+        text.setup.append("# Of motors that are geared together, one is enough.")
     values = []
     for corner in CORNERS:
         wheel = mecanum.wheels[corner]
@@ -215,7 +215,7 @@ def _mecanum(text: ModuleText, mecanum: Mecanum, layout: Layout, gyros: list[Gyr
     text.setup += ["", "self.drivetrain = drivetrains.MecanumDrivetrain(TRACK_WIDTH, WHEELBASE, TOP_SPEED)"]
     encoders = _wheel_encoders(text, layout)
     text.update += [
-        *_about_signs("To the drivetrain, left motors are forward at 1 and right ones at -1", *values),
+        *_about_signs("In the drivetrain, left motors are forward at 1 and right ones at -1", *values),
         "speeds = self.drivetrain.calculate(",
         *(f"    {value}," for value in values),
         ")",
@@ -232,16 +232,16 @@ def _mecanum(text: ModuleText, mecanum: Mecanum, layout: Layout, gyros: list[Gyr
     _gyros(text, gyros, "math.degrees(speeds.omega * tm_diff)")
 
 
-def _wheel_encoders(text: ModuleText, layout: Layout) -> list[tuple[str, str]]:
-    """Sets up the wheels' encoders; answers each one's wheel and name."""
+def _wheel_encoders(text: ModuleText, layout: DrivetrainLayout) -> list[tuple[str, str]]:
+    """Add the set-up of the wheels' encoders; return each one's wheel and name."""
     found = [(wheel, encoder) for wheel, encoders in layout.encoders.items() for encoder in encoders]
     if not found:
         return []
-    unit = "foot" if isinstance(layout.drivetrain, Tank) else "metre"  # what the drivetrain's model measures in
+    unit = "foot" if isinstance(layout.drivetrain, Tank) else "metre"  # the unit of the drivetrain's model
     if any(not encoder.counts for _, encoder in found):
         text.numbers.append(_UNITS[unit])
     if any(encoder.counts for _, encoder in found):
-        diameter = "" if unit == "foot" else "WHEEL_DIAMETER = 6 * units.inch\n"  # else it stands above already
+        diameter = "" if unit == "foot" else "WHEEL_DIAMETER = 6 * units.inch\n"  # otherwise it is defined above
         text.numbers.append(_COUNTS.format(diameter=diameter, unit={"foot": "foot", "metre": "meter"}[unit]))
     text.setup.append("")
     return [
@@ -252,7 +252,7 @@ def _wheel_encoders(text: ModuleText, layout: Layout) -> list[tuple[str, str]]:
 
 def _about_signs(rule: str, *values: str) -> list[str]:
     negated = any(value.startswith("-") for value in values)
-    return [f"# {rule}; with a minus, so is this robot's." if negated else f"# {rule}."]
+    return [f"# {rule}; a minus adapts this robot's signs." if negated else f"# {rule}."]
 
 
 def _signed(sign: int, expression: str) -> str:
@@ -263,7 +263,10 @@ def _signed(sign: int, expression: str) -> str:
 
 
 def _gyros(text: ModuleText, gyros: list[Gyro], turned: str) -> None:
-    """`turned`: the expression for the robot's turn, in degrees counter-clockwise."""
+    """Add the robot's gyros.
+
+    :param turned: the expression for the robot's turn, in degrees counter-clockwise
+    """
     if gyros:
         text.update += ["", f"turned = {turned}  # counter-clockwise"]
     for gyro in gyros:
@@ -300,10 +303,10 @@ def _mechanism(text: ModuleText, motor: Motor, encoder: Encoder) -> None:
     ]
     name = text.name("_".join(purpose) or "mechanism")
     number = name.upper()
-    speed, unit = ("720.0", "counts") if encoder.counts else ("1.0", "what its encoder measures")
+    speed, unit = ("720.0", "counts") if encoder.counts else ("1.0", "encoder units")
     text.numbers.append(
         f"\n{number}_SPEED = {speed}  # at full power, in {unit} per second\n"
-        f"{number}_MIN, {number}_MAX = None, None  # where it comes to a stop; None if nothing stops it\n"
+        f"{number}_MIN, {number}_MAX = None, None  # its end stops; None if there are none\n"
     )
     text.setup += ["", f"# {motor} turns {encoder}"]
     output = text.motor(motor, f"{name}_motor")
@@ -312,7 +315,7 @@ def _mechanism(text: ModuleText, motor: Motor, encoder: Encoder) -> None:
     if text.update:
         text.update.append("")
     text.update += [
-        f"before = self.{name}.position_ft  # or in whatever unit: that of {number}_SPEED",
+        f"before = self.{name}.position_ft  # in the unit of {number}_SPEED",
         f"self.{name}.compute({_signed(-1 if motor.inverted else 1, output)}, tm_diff)",
         f"after = self.{name}.position_ft",
         f"self.{shaft}.turn_to(after, (after - before) / tm_diff)",

@@ -1,4 +1,4 @@
-"""What is proposed for a robot: the files, and what they rest on. Made in the process that the robot's code runs in."""
+"""Create the proposed files for a robot, in the process that runs the robot's code."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from ...runtime.own_process import LastWords
 
 @dataclass(frozen=True)
 class Proposal:
-    """For one robot.
+    """The proposal for a robot.
 
-    :param physics, config: the text of each file
-    :param recognised: lines on the drivetrain, encoders and gyros found
-    :param assumptions: sentences on what was taken for granted
-    :param advice: sentences on what is left to do
-    :param problem: why the sticks could not be tried
+    :param physics: the text of ``physics.py``
+    :param config: the text of ``sim/config.json``
+    :param recognised: lines about the drivetrain, encoders and gyros
+    :param assumptions: sentences about assumptions
+    :param advice: sentences about remaining work
+    :param problem: why the joysticks could not be tested
     """
 
     physics: str
@@ -28,11 +29,11 @@ class Proposal:
 
 
 def propose(project: Project, last_words: LastWords) -> Proposal:
-    """Look at the robot, and write nothing.
+    """Start the robot program and return a proposal; write nothing.
 
     :raises RobotCodeError: when the robot's code fails before it can be driven
     """
-    # Here, since the process that asks needs none of it.
+    # Imported here, since the parent process does not need them.
     from .config_file import config_text
     from .drivetrain import find_layout
     from .physics_file import physics_text

@@ -1,8 +1,8 @@
-"""What `pyfrc create-physics` has recognised, taken for granted and left out, in words."""
+"""Describe what `pyfrc create-physics` has recognised, assumed and left out."""
 
 from __future__ import annotations
 
-from .drivetrain import CORNERS, Layout, Mecanum, Side, Tank
+from .drivetrain import CORNERS, DrivetrainLayout, Mecanum, MotorGroup, Tank
 from .survey import Motor, Survey
 
 
@@ -10,39 +10,39 @@ def listed(motors: list[Motor]) -> str:
     return ", ".join(map(str, motors))
 
 
-def advice(layout: Layout) -> list[str]:
-    """What there is left to do for the robot to drive."""
+def advice(layout: DrivetrainLayout) -> list[str]:
+    """Return the remaining work until the robot drives."""
     if layout.swerve is not None:
         return [
-            "A swerve drive's wheels cannot be told apart by its sticks, so the robot stays where it is. To drive it, "
-            "let update_sim() give the outputs of the four drive motors and the angles of the four wheels to "
-            "drivetrains.four_motor_swerve_drivetrain() of pyfrc.physics, and its answer to "
+            "The wheels of a swerve drive cannot be identified by joystick inputs: the robot does not move. To drive "
+            "it, let update_sim() give the outputs of the four drive motors and the angles of the four wheels to "
+            "drivetrains.four_motor_swerve_drivetrain() of pyfrc.physics, and its result to "
             "self.physics_controller.drive(): see docs/physics.md."
         ]
     if layout.drivetrain is None:
         return [
-            "No drivetrain was recognised, so the robot stays where it is. To drive it, let update_sim() call "
+            "No drivetrain was recognised, so the robot does not move. To drive it, let update_sim() call "
             "self.physics_controller.drive() or move_robot(): see pyfrc.physics.drivetrains (for a swerve drive, its "
             "four_motor_swerve_drivetrain), pyfrc.physics.tankmodel and docs/physics.md."
         ]
     return []
 
 
-def notes(found: Survey, layout: Layout) -> list[str]:
-    """What is to be known of it: sentences for the file."""
-    said = list(layout.assumptions)
+def notes(found: Survey, layout: DrivetrainLayout) -> list[str]:
+    """Return the notes for the written file, as sentences."""
+    sentences = list(layout.assumptions)
     if found.problem:
-        said.append(f"The robot's sticks could not be tried: {found.problem.splitlines()[0]}")
-    said += advice(layout)
+        sentences.append(f"The robot's joysticks could not be tested: {found.problem.splitlines()[0]}")
+    sentences += advice(layout)
     still = found.gyros if layout.drivetrain is None else []
     left_out = [*map(str, [*layout.undriven, *still]), *found.others]
     if left_out:
-        said.append(f"Left as they are, as nothing is known of what they do: {', '.join(left_out)}.")
-    return said
+        sentences.append(f"Not simulated, since their purpose is unknown: {', '.join(left_out)}.")
+    return sentences
 
 
-def summary(layout: Layout, found: Survey) -> list[str]:
-    """What was recognised, in a few lines for the terminal."""
+def summary(layout: DrivetrainLayout, found: Survey) -> list[str]:
+    """Return a summary for the terminal, in a few lines."""
     lines = []
     drivetrain = layout.drivetrain
     if isinstance(drivetrain, Tank):
@@ -54,7 +54,7 @@ def summary(layout: Layout, found: Survey) -> list[str]:
         wheels = {corner.replace("_", " "): drivetrain.wheels[corner] for corner in CORNERS}
         lines += [f"  {name}: {listed(wheel.motors)}{_reversed(wheel)}" for name, wheel in wheels.items()]
     elif layout.swerve is not None:
-        lines += ["swerve drive, which is left to you"]
+        lines += ["swerve drive, which you need to complete"]
         lines += [f"  drive: {listed(layout.swerve.drive)}", f"  steering: {listed(layout.swerve.steer)}"]
     else:
         lines.append("no drivetrain recognised")
@@ -65,5 +65,5 @@ def summary(layout: Layout, found: Survey) -> list[str]:
     return lines
 
 
-def _reversed(side: Side) -> str:
+def _reversed(side: MotorGroup) -> str:
     return ", forward at -1" if side.forward < 0 else ""

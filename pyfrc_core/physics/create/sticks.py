@@ -1,4 +1,4 @@
-"""Which motors answer which joystick axis, and how: found by driving the robot, one axis after the other."""
+"""Find the motors that react to each joystick axis, by driving the robot with one axis after the other."""
 
 from __future__ import annotations
 
@@ -10,39 +10,39 @@ from ...runtime.robot import RobotRun
 #: A joystick's port and the index of one of its axes.
 Axis = tuple[int, int]
 
-#: For each axis that motors answer: how much the output of each changes when that axis is pushed to -1, which for a
-#: stick is forward or left. By the motors' paths in `hal_data`.
+#: For each axis that moves motors: the change of each motor's output when the axis is pushed to -1, which for a stick
+#: is forward or left. The keys are the motors' paths in `hal_data`.
 Responses = dict[Axis, dict[str, float]]
 
 Output = Callable[[HalData], float]
 
-#: The axes that are a stick's forward and backward: of a joystick or a gamepad's left stick, and of its right stick.
+#: The axes for forward and backward: of a joystick or a gamepad's left stick, and of its right stick.
 FORWARD_AXES = (1, 5)
 
 _PORTS, _AXES = 6, 6
 _PUSHED_US, _STEADY_US = 200_000, 100_000
-#: How often to wait for motors to come to rest, for code that lets them speed up and slow down gently.
+#: How often to wait for motors to stop, for code that limits their acceleration.
 _PATIENCE = 40
-#: Changes of an output smaller than this are not an answer.
+#: Smaller changes of an output are not a reaction.
 _SMALL = 0.04
 
 
 def try_sticks(run: RobotRun, outputs: Mapping[str, Output]) -> Responses:
-    """Drive the robot in teleop, pushing each axis there may be to both its ends.
+    """Drive the robot in teleop, moving each possible axis to both ends.
 
-    An axis that moves nothing by itself is tried again while the robot drives forward, for robots that steer only then.
+    An axis without effect is tried again while the robot drives forward, for robots that steer only then.
 
-    :param outputs: what to look at, by name
+    :param outputs: the outputs to observe, by name
     """
     trial = _Trial(run, outputs)
     trial.begin()
-    responses = {axis: answers for axis in _axes() if (answers := trial.response(axis))}
+    responses = {axis: reactions for axis in _axes() if (reactions := trial.response(axis))}
     forward = next((axis for axis in responses if axis[1] in FORWARD_AXES and len(responses[axis]) > 1), None)
     if forward is not None and not any(
-        axis != forward and answers.keys() == responses[forward].keys() for axis, answers in responses.items()
+        axis != forward and reactions.keys() == responses[forward].keys() for axis, reactions in responses.items()
     ):
-        silent = [axis for axis in _axes() if axis not in responses]
-        responses |= {axis: answers for axis in silent if (answers := trial.response(axis, held=forward))}
+        without_effect = [axis for axis in _axes() if axis not in responses]
+        responses |= {axis: reactions for axis in without_effect if (reactions := trial.response(axis, held=forward))}
     trial.end()
     return responses
 
@@ -52,7 +52,7 @@ def _axes() -> Iterator[Axis]:
 
 
 class _Trial:
-    """The robot enabled, with a hand on its sticks."""
+    """Drives the enabled robot with joystick inputs."""
 
     def __init__(self, run: RobotRun, outputs: Mapping[str, Output]) -> None:
         self._run = run
@@ -70,9 +70,9 @@ class _Trial:
         self._wait(_STEADY_US)
 
     def response(self, axis: Axis, held: Axis | None = None) -> dict[str, float]:
-        """Half the difference of the outputs with the axis at -1 and at 1, of those that change.
+        """Return half the difference of the outputs with the axis at -1 and at 1, for the outputs that change.
 
-        :param held: an axis that is at -1 meanwhile
+        :param held: an axis that is held at -1
         """
         if not self._run.alive:
             return {}
@@ -88,18 +88,21 @@ class _Trial:
                 self._push(held, 0.0)
             self._come_to_rest()
         back, forth = ends
-        answers = {name: (back[name] - forth[name]) / 2 for name in self._outputs}
-        return {name: answer for name, answer in answers.items() if abs(answer) >= _SMALL}
+        reactions = {name: (back[name] - forth[name]) / 2 for name in self._outputs}
+        return {name: reaction for name, reaction in reactions.items() if abs(reaction) >= _SMALL}
 
     def _come_to_rest(self) -> None:
-        """Wait until all outputs are as they were. Those that never are move by themselves: they are left out then."""
+        """Wait until all outputs have their initial values.
+
+        Outputs that never do move by themselves, and are ignored from then on.
+        """
         for _ in range(_PATIENCE):
             self._wait(_STEADY_US)
             now = self._read()
-            restless = {name for name, value in now.items() if abs(value - self._at_rest[name]) >= _SMALL}
-            if not restless:
+            moving = {name for name, value in now.items() if abs(value - self._at_rest[name]) >= _SMALL}
+            if not moving:
                 return
-        for name in restless:
+        for name in moving:
             del self._outputs[name]
 
     def _push(self, axis: Axis, value: float) -> None:

@@ -1,4 +1,4 @@
-"""What a robot has: its motors, encoders and gyros, found by starting its program and looking at what it made."""
+"""Find the robot's motors, encoders and gyros, by starting its program."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from ...runtime.loading import load_robot
 from ...runtime.own_process import LastWords
 from ...runtime.patches import patches
 from ...runtime.robot import RobotRun
-from .names import Found, Name, Place, find_devices, one_line
+from .names import Name, NamedDevice, Place, find_devices, one_line
 from .sticks import Responses, try_sticks
 
-#: How long the robot is left alone, disabled, before its devices are counted: some are made in the first loop.
+#: How long the robot stays disabled before its devices are counted: some are created in the first loop.
 _SETTLING_US = 100_000
 
-#: How much robot time it may take, for robots that sleep in their loops.
+#: The limit of robot time, for robots that sleep in their loops.
 _LIMIT_US = 10_000_000_000
 
 _FAILURES = (Exception, SystemExit, TestRanTooLong)
@@ -38,9 +38,11 @@ _FAILURES = (Exception, SystemExit, TestRanTooLong)
 class Motor:
     """A motor, and where its output can be read.
 
-    :param channel: the PWM channel; None for a motor that shows as a SimDevice
-    :param device, value: the SimDevice and which of its values is the output
-    :param inverted: whether the robot has inverted it, where that can be told
+    :param name: its name in the robot's code
+    :param channel: the PWM channel; None for a motor that appears as a SimDevice
+    :param device: the name of the SimDevice
+    :param value: the name of the SimDevice's value with the output
+    :param inverted: whether the robot has inverted it, if that is known
     """
 
     name: Name
@@ -51,7 +53,7 @@ class Motor:
 
     @property
     def path(self) -> str:
-        """Its output in `hal_data`."""
+        """Return the path of its output in `hal_data`."""
         return f"pwm[{self.channel}].value" if self.channel is not None else f"CAN[{self.device}].{self.value}"
 
     def __str__(self) -> str:
@@ -59,7 +61,7 @@ class Motor:
         return f"{place} ({self.name})" if self.name else place
 
     def output(self, hal_data: HalData) -> float:
-        """What the robot tells it to do, from -1 to 1."""
+        """Return the output that the robot has set, from -1 to 1."""
         if self.channel is not None:
             return float(hal_data["pwm"][self.channel]["value"])
         return float(hal_data["CAN"][self.device][self.value])
@@ -69,8 +71,10 @@ class Motor:
 class Encoder:
     """A quadrature encoder.
 
-    :param channels: its two digital inputs, where that can be told
-    :param counts: whether the robot takes it in counts, `setDistancePerPulse` never being called
+    :param name: its name in the robot's code
+    :param index: its index
+    :param channels: its two digital inputs, if they are known
+    :param counts: whether the robot uses its count, and never calls `setDistancePerPulse`
     """
 
     name: Name
@@ -85,11 +89,14 @@ class Encoder:
 
 @dataclass(frozen=True)
 class Gyro:
-    """Something that measures the robot's heading, in degrees.
+    """A sensor for the robot's heading, in degrees.
 
+    :param name: its name in the robot's code
     :param channel: an analog gyro's channel; None for a SimDevice
-    :param device: the SimDevice, whose values `angle` and `rate` are
-    :param clockwise: the direction in which it counts up
+    :param device: the name of the SimDevice
+    :param angle: the name of the SimDevice's value with the angle
+    :param rate: the name of the SimDevice's value with the rate
+    :param clockwise: whether its angle increases clockwise
     :param wraps: whether its angle stays between -180 and 180
     """
 
@@ -108,26 +115,26 @@ class Gyro:
 
 @dataclass
 class Survey:
-    """What was found."""
+    """The devices of a robot."""
 
     motors: list[Motor] = field(default_factory=list)
     encoders: list[Encoder] = field(default_factory=list)
     gyros: list[Gyro] = field(default_factory=list)
-    #: Devices of which no physics are known, as text.
+    #: Devices without known physics, as text.
     others: list[str] = field(default_factory=list)
-    #: For ``sim/config.json``: what the channels of each kind are called.
+    #: The names of the channels of each kind, for ``sim/config.json``.
     labels: dict[str, dict[str, str]] = field(default_factory=dict)
-    #: How the motors answered the driver's sticks.
+    #: The motors' reactions to the joysticks.
     responses: Responses = field(default_factory=dict)
-    #: Why the sticks could not be tried, in a line that names the user's.
+    #: Why the joysticks could not be tested, in a line that names the user's.
     problem: str | None = None
 
 
 def survey(project: Project, last_words: LastWords) -> Survey:
-    """Start the robot's program, look at what it has made, then let it be driven and see which motors answer.
+    """Start the robot program, find its devices, then drive it to find the motors that react.
 
-    :param last_words: of this process, which ends when the robot's code hangs and cannot be stopped
-    :raises RobotCodeError: when the robot's code fails before it can be driven, naming the user's line
+    :param last_words: the crash report of this process, which ends when the robot's code hangs and cannot be stopped
+    :raises RobotCodeError: when the robot's code fails before it can be driven, with the user's line
     """
     patches.install(project.files)
     robot_class = load_robot(project)
@@ -143,7 +150,7 @@ def survey(project: Project, last_words: LastWords) -> Survey:
                 run.run_until(run.clock.now_us + _SETTLING_US)
             except _FAILURES as error:
                 raise _of_robot_code(error, project) from error
-            found = look(run.hal_data, find_devices(run.robot, project.files))
+            found = list_devices(run.hal_data, find_devices(run.robot, project.files))
             try:
                 found.responses = try_sticks(run, {motor.path: motor.output for motor in found.motors})
             except _FAILURES as error:
@@ -155,7 +162,7 @@ def survey(project: Project, last_words: LastWords) -> Survey:
 
 
 def _close(run: RobotRun) -> None:
-    """The end of the run; a robot that cannot end has told all that is asked of it here."""
+    """End the run; a robot that cannot end does not matter here."""
     with suppress(Exception, TestEnded):
         run.close()
 
@@ -165,14 +172,14 @@ def _of_robot_code(error: BaseException, project: Project) -> PyfrcError:
     if not isinstance(error, TestRanTooLong):
         return as_robot_code_error(error, project.files)
     return RobotCodeError(
-        f"the robot is still here after {_LIMIT_US / 1_000_000:g} s of robot time, and cannot be driven.",
+        f"the robot is still in this line after {_LIMIT_US / 1_000_000:g} s of robot time, and cannot be driven.",
         where=project.files.innermost_line(error.__traceback__),
-        remedy="Does it wait here forever? The robot's methods must return for it to go on.",
+        remedy="Does it wait here forever? The robot continues only when its methods return.",
     )
 
 
-def look(hal_data: HalData, named: Mapping[Place, Found]) -> Survey:
-    """What the HAL shows of the devices that the robot has made, with the names that its code has for them."""
+def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice]) -> Survey:
+    """Return the devices that the robot has created in the HAL, with their names in its code."""
     found = Survey()
 
     def name_of(room: str, channel: int) -> Name:
@@ -194,7 +201,7 @@ def look(hal_data: HalData, named: Mapping[Place, Found]) -> Survey:
     for channel in _made(hal_data, "analog_gyro"):
         found.gyros.append(Gyro(name_of("analog_gyro", channel), channel))
     for device in hal_data["CAN"]:
-        _look_at_sim_device(found, device, named)
+        _add_sim_device(found, device, named)
     found.labels = _labels(found, named)
     for (room, channel), device in named.items():
         kind = {"dio": "digital", "analog_in": "analog"}.get(room)
@@ -209,7 +216,9 @@ def _made(hal_data: HalData, room: str) -> list[int]:
 
 @dataclass(frozen=True)
 class _GyroKind:
-    """Gyros that show as a SimDevice of this name, and how they count: WPILib's and the vendors' documentation."""
+    """Gyros that appear as a SimDevice of this name, and their properties, from the documentation of WPILib and the
+    vendors.
+    """
 
     device: re.Pattern[str]
     angle: str
@@ -224,12 +233,13 @@ _GYROS = (
     _GyroKind(re.compile(r"navX-Sensor\[\d+\]"), "Yaw", "Rate", wraps=True),
 )
 
-#: What vendors call the output of a motor controller, from -1 to 1.
+#: Patterns for the name of a vendor motor controller's output, from -1 to 1.
 _OUTPUT = re.compile(r"((applied|percent|motor|duty)[ _]?)?(cycle|output|speed)", re.IGNORECASE)
 
 
-def _look_at_sim_device(found: Survey, device: str, named: Mapping[Place, Found]) -> None:
-    # WPILib's own devices have a kind before a colon; those that are not on the CAN bus are told by their channels.
+def _add_sim_device(found: Survey, device: str, named: Mapping[Place, NamedDevice]) -> None:
+    # WPILib's own devices have a kind before a colon; those that are not on the CAN bus are identified by their
+    # channels.
     elsewhere = ":" in device and not device.startswith("CAN")
     number = None if elsewhere else re.search(r"\[(\d+)\]$", device)
     known = named.get(("CAN", int(number[1]))) if number else None
@@ -240,7 +250,7 @@ def _look_at_sim_device(found: Survey, device: str, named: Mapping[Place, Found]
             rate = kind.rate if kind.rate in values else ""
             found.gyros.append(Gyro(name, None, device, kind.angle, rate, kind.clockwise, kind.wraps))
             return
-    # Which of its values is a motor's output will show when the sticks are tried.
+    # The test of the joysticks shows which value is a motor's output.
     outputs = [value for value, readonly in values.items() if readonly or _OUTPUT.fullmatch(value)]
     value_of = SimDeviceSim(device).getValue
     outputs = [value for value in outputs if value_of(value).type == hal.Type.DOUBLE]
@@ -250,32 +260,32 @@ def _look_at_sim_device(found: Survey, device: str, named: Mapping[Place, Found]
 
 
 def _one_output_each(found: Survey) -> list[Motor]:
-    """The motors, with one value for each SimDevice: the one that answers the sticks, or is called an output."""
-    answers = {path: abs(answer) for answers in found.responses.values() for path, answer in answers.items()}
+    """Return the motors, with one value for each SimDevice: one that reacts to the joysticks or is called an output."""
+    reactions = {path: abs(value) for group in found.responses.values() for path, value in group.items()}
     chosen: dict[str, Motor] = {}
     for motor in found.motors:
         if motor.channel is not None:
             chosen[motor.path] = motor
             continue
-        claim, before = _claim(motor, answers), chosen.get(motor.device)
-        if any(claim) and (before is None or claim > _claim(before, answers)):
+        claim, before = _claim(motor, reactions), chosen.get(motor.device)
+        if any(claim) and (before is None or claim > _claim(before, reactions)):
             chosen[motor.device] = motor
     missed = {motor.device: motor for motor in found.motors if motor.channel is None and motor.device not in chosen}
     found.others += map(str, missed.values())
     return list(chosen.values())
 
 
-def _claim(motor: Motor, answers: Mapping[str, float]) -> tuple[bool, bool]:
-    return 0 < answers.get(motor.path, 0) <= 1, bool(_OUTPUT.fullmatch(motor.value))
+def _claim(motor: Motor, reactions: Mapping[str, float]) -> tuple[bool, bool]:
+    return 0 < reactions.get(motor.path, 0) <= 1, bool(_OUTPUT.fullmatch(motor.value))
 
 
-#: The rooms of `hal_data` whose channels ``sim/config.json`` may name, and the key that they have there.
+#: The keys of `hal_data` whose channels ``sim/config.json`` may name, and the key that each has there.
 _LABELLED = {"pwm": "pwm", "dio": "dio", "analog_in": "analog", "relay": "relay", "solenoid": "solenoid", "CAN": "CAN"}
 
 
-def _labels(found: Survey, named: Mapping[Place, Found]) -> dict[str, dict[str, str]]:
+def _labels(found: Survey, named: Mapping[Place, NamedDevice]) -> dict[str, dict[str, str]]:
     names: dict[str, dict[int, str]] = {key: {} for key in _LABELLED.values()}
-    # Channels whose devices have no name of their own are called what they are.
+    # Channels whose devices have no name get the name of their kind.
     names["pwm"] = {motor.channel: "motor" for motor in found.motors if motor.channel is not None}
     for encoder in found.encoders:
         for letter, channel in zip("AB", encoder.channels or (), strict=False):
