@@ -42,7 +42,7 @@ def test_what_processes_kept_adds_up(tmp_path_factory: pytest.TempPathFactory, p
         figures.on_line(CodeLine("robot.py:4", "MyRobot.teleopPeriodic"), computing, waiting)
         figures.stacks[(("MyRobot.teleopPeriodic", "robot.py", 4),)] = computing
         files.append(directory / f"{number}.figures")
-        figures.keep(files[-1])
+        figures.save(files[-1])
     total = added_up(files)
     assert list(total.times[TELEOP]) == [each for nanoseconds, _, _ in processes for each in nanoseconds]
     computing, waiting = (sum(process[at] for process in processes) for at in (1, 2))
