@@ -204,7 +204,7 @@ def test_channels_that_the_roborio_lacks_are_kept_values(tree: HalData) -> None:
 
 def test_pneumatics_of_both_makers(tree: HalData) -> None:
     assert not tree["pcm"]
-    with pytest.raises(KeyError, match="appears when the robot makes it"):
+    with pytest.raises(KeyError, match="appears when the robot creates it"):
         tree["pcm"][1]
     ctre = wpilib.Solenoid(0, wpilib.PneumaticsModuleType.CTREPCM, 2)
     ctre.set(True)

@@ -1,7 +1,7 @@
 """`hal_data`: the robot's inputs and outputs as one tree, live over WPILib's simulated HAL.
 
-The only room that names simulated devices. Importing it changes nothing in the HAL, and imports WPILib only when the
-tree is used: the window of the simulator needs paths and no tree.
+This is the only package that names simulated devices. Importing it does not change the HAL, and imports WPILib only
+when the tree is used: the simulator's window needs paths and no tree.
 """
 
 from __future__ import annotations
@@ -37,16 +37,16 @@ def __getattr__(name: str) -> Any:
 
 
 def devices_exist() -> bool:
-    """Return whether this process has made any device in the HAL that still exists."""
-    return _tree().anything_made()
+    """Return whether this process has created any device in the HAL that still exists."""
+    return _tree().any_exist()
 
 
 def existing_devices() -> list[str]:
-    """Return the devices that this process has made in the HAL and that still exist, as ``pwm[3]``."""
-    return _tree().devices_made()
+    """Return the devices that this process has created in the HAL and that still exist, such as ``pwm[3]``."""
+    return _tree().existing()
 
 
-@cache  # it takes longer to make than to ask
+@cache  # creating it takes longer than reading it
 def _tree() -> HalData:
     from .data import HalData
 

@@ -1,10 +1,10 @@
-"""Base classes that make the live containers of `hal_data` a `dict` and a `list` of Python.
+"""Base classes that make the live containers of `hal_data` instances of Python's `dict` and `list`.
 
-Tests of 2019 check ``isinstance(hal_data, dict)``, and hand parts of the tree to code that takes a dict or a list only.
-The values stay in the HAL: `dict` and `list` are bases for the type check, and their own storage holds no value. Each
-method that would look there is replaced here. What Python's own C code does with a subclass goes through these
-methods: ``json.dumps``, ``dict(x)``, ``{**x}``, ``x | y``, ``x == y``, ``copy``, ``pickle``, ``list(x)``, ``x + y``.
-A C extension that reads the storage itself, as `orjson` does, finds one entry that names the remedy: not an empty dict.
+Tests of 2019 check ``isinstance(hal_data, dict)``, and pass parts of the tree to code that accepts only a dict or a
+list. The values stay in the HAL: `dict` and `list` are bases for the type check, and their own storage holds no value.
+Every method that would use the storage is overridden here. Python's own C code uses these methods for a subclass:
+``json.dumps``, ``dict(x)``, ``{**x}``, ``x | y``, ``x == y``, ``copy``, ``pickle``, ``list(x)``, ``x + y``. A C
+extension that reads the storage itself, such as `orjson`, finds one entry with a remedy, not an empty dict.
 """
 
 from __future__ import annotations
@@ -15,36 +15,36 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from .kinds import WrongType
 
-#: The one entry of a dict's own storage. `json` takes a dict without any for an empty one.
+#: The only entry in a dict's own storage. `json` treats a dict without entries as empty.
 _STORED = ("live", "these values are in the HAL: take a copy with dict(...) or hal_data.snapshot()")
 
 
 if TYPE_CHECKING:
-    # The parameters that the standard library's two descriptions of a dict give to the same method differ a little.
+    # The standard library's two descriptions of a dict differ in some parameters of the same method.
     _Dict = dict[Any, Any]
     _List = list[Any]
 else:
 
     class _Dict(MutableMapping, dict):
-        """What every method of `dict` does, by the few methods of a `MutableMapping`."""
+        """Every method of `dict`, based on the few methods of a `MutableMapping`."""
 
     class _List(Sequence, list):
-        """What the reading methods of `list` do, by the few methods of a `Sequence`."""
+        """The reading methods of `list`, based on the few methods of a `Sequence`."""
 
 
 class LiveMapping(_Dict):
-    """A dict whose entries are somewhere else; subclasses say where, as for a `MutableMapping`."""
+    """A dict whose entries are stored elsewhere; subclasses provide the access, as for a `MutableMapping`."""
 
     def __init__(self) -> None:
         dict.__setitem__(self, *_STORED)
 
     def copy(self) -> dict[Any, Any]:
-        """A dict of the values of this moment. Containers in it are live."""
+        """Return a dict of the current values. Containers in it are live."""
         return {key: self[key] for key in self}
 
     @classmethod
     def fromkeys(cls, iterable: Iterable[Any], value: Any = None) -> dict[Any, Any]:
-        """As of `dict`, of which this makes an ordinary one."""
+        """Return an ordinary dict, like `dict.fromkeys`."""
         return dict.fromkeys(iterable, value)
 
     def __reversed__(self) -> Iterator[Any]:
@@ -79,17 +79,17 @@ class LiveMapping(_Dict):
 
 
 class LiveSequence(_List):
-    """A list of fixed length whose entries are somewhere else; subclasses say where, as for a `Sequence`."""
+    """A list of fixed length whose entries are stored elsewhere; subclasses provide the access, as for a `Sequence`."""
 
     def __init__(self, path: str) -> None:
         self._path = path
 
     def copy(self) -> list[Any]:
-        """A list of the values of this moment. Containers in it are live."""
+        """Return a list of the current values. Containers in it are live."""
         return list(self)
 
     def _fixed(self, *_: Any, **__: Any) -> NoReturn:
-        problem, remedy = "the list has a fixed length and order", "write its entries, or take list(...) of it"
+        problem, remedy = "the list has a fixed length and order", "write its entries, or copy it with list(...)"
         raise WrongType(problem, where=self._path, remedy=remedy)
 
     append = extend = insert = pop = remove = clear = sort = reverse = _fixed

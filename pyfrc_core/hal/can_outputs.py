@@ -1,6 +1,6 @@
-"""The outputs of CAN motor controllers, which their vendors' libraries show as values of SimDevices.
+"""The outputs of CAN motor controllers, which vendors' libraries show as values of SimDevices.
 
-A SimDevice has no mark for "this drives the motor", so names decide. Seen with REV's library (``SPARK MAX [5]``:
+A SimDevice does not mark the value that drives the motor, so names decide. Known from REV's library (``SPARK MAX [5]``:
 ``Setpoint``, ``Applied Output``) and CTRE's (``CANMotor:Talon FX (v6)[3]``: ``dutyCycle``, ``motorVoltage``).
 """
 
@@ -15,12 +15,12 @@ import hal
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
-#: A motor controller by its device's name, and what is beside one on the bus.
+#: Patterns for the device names of motor controllers, and of other devices on the bus.
 _MOTOR = re.compile(r"motor|talon|victor|spark|venom|nova|titan|jaguar", re.IGNORECASE)
 _NO_MOTOR = re.compile(r"encoder|sensor|switch|limit|gyro|imu|candio|canain", re.IGNORECASE)
 
 # Names in small letters, without spaces.
-#: What can only be what a motor gets.
+#: Names that are always a motor's output.
 _OUTPUTS = {
     "appliedoutput",
     "appliedvoltage",
@@ -32,7 +32,7 @@ _OUTPUTS = {
     "percentoutput",
     "throttle",
 }
-#: What is an output in a motor controller, when only the robot's code writes it.
+#: Names that are an output in a motor controller, if only the robot's code writes the value.
 _COMMANDS = {
     "arbitraryfeedforward",
     "command",
@@ -48,7 +48,7 @@ _COMMANDS = {
     "voltage",
 }
 _SETPOINT, _MODE = "setpoint", "controlmode"
-#: REV's control modes in which a setpoint is a position: a motor that is off does not go to 0.
+#: REV's control modes in which a setpoint is a position: a motor that is off does not move to 0.
 _POSITION_MODES = (3, 5)
 
 
@@ -56,12 +56,12 @@ class _Output(NamedTuple):
     raw: hal.SimValue
     get: Callable[[], Any]
     put: Callable[[Any], None]
-    #: Whether the value is a position to go to.
+    #: Whether the value is a target position.
     is_position: Callable[[], bool] | None
 
 
 class CanOutputs:
-    """The outputs of all CAN motor controllers there are."""
+    """The outputs of all CAN motor controllers."""
 
     def __init__(self) -> None:
         self._names: list[str] = []
@@ -69,9 +69,9 @@ class CanOutputs:
         self._outputs: list[_Output] = []
 
     def turn_off(self) -> Iterator[Callable[[], None]]:
-        """Turn off what is on.
+        """Turn off the outputs that are on.
 
-        :returns: what restores it, each
+        :returns: a function for each of them that restores it
         """
         names = SimDeviceSim.enumerateDevices("")
         if names != self._names or any(hs.getSimDeviceHandle(name) != handle for name, handle in self._handles):
@@ -93,12 +93,12 @@ class CanOutputs:
 
 
 class _Written:
-    """An output that is turned off, and whether something writes it meanwhile: as a vendor's model does."""
+    """An output that is turned off. It detects writes in the meantime, such as those of a vendor's model."""
 
     def __init__(self, output: _Output, before: Any) -> None:
         self._output, self._before = output, before
         self._written = False
-        # Called for every write, also for one of the same value.
+        # Called for every write, even if the value does not change.
         self._watch: object = hs.registerSimValueChangedCallback(output.raw, self._note, False)
 
     def _note(self, *_: object) -> None:
@@ -130,7 +130,9 @@ def _outputs_of(name: str) -> Iterator[_Output]:
 
 
 def _only_robot_writes(raw: hal.SimValue) -> bool:
-    """`enumerateValues` says so of values for both directions, too; a callback is given which direction it is."""
+    """Return whether the value is an output only. `enumerateValues` does not distinguish values for both directions; a
+    callback receives the direction.
+    """
     directions: list[int] = []
     hs.registerSimValueChangedCallback(raw, lambda _n, _h, direction, _v: directions.append(int(direction)), True)
     return directions == [hal.SimDevice.Direction.kOutput.value]

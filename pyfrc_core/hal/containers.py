@@ -1,6 +1,6 @@
-"""The dicts and lists that `hal_data` is made of: they hold ways to read and write, never the values.
+"""The dicts and lists of `hal_data`: they contain functions to read and write, never the values.
 
-`builtin_types` gives the behaviour of `dict` and `list`; what is added is speed (a read is one dict look-up and one
+`builtin_types` provides the behaviour of `dict` and `list`. This module adds speed (a read is one dict look-up and one
 bound method of WPILib), errors that name the place, and listeners.
 """
 
@@ -21,14 +21,16 @@ Callback = Callable[[Any, Any], object]
 
 
 class Slot(NamedTuple):
-    """How one value is reached.
+    """Access to one value.
 
-    :param watch: asks the HAL to call a function on each change, and returns what keeps that going while it
-        is kept
-    :param canonical: the key whose listeners also hear of this one; differs from the key for another name of
-        a value
-    :param recorded: whether the value tells something that no other field tells
-    :param unset: what to write for None, at an output of the robot; None where None cannot be written
+    :param get: reads the value
+    :param set: writes the value; None for a read-only value
+    :param kind: the check of values that are written
+    :param watch: makes the HAL call a function on each change; returns an object that must be kept for as long
+    :param canonical: the key whose listeners are also called; differs from the key for an alias of a value
+    :param recorded: whether the value cannot be derived from other fields
+    :param remedy: the advice in the error when the value cannot be written
+    :param unset: the value to write for None, at an output of the robot; None where None cannot be written
     """
 
     get: Callable[[], Any]
@@ -41,7 +43,7 @@ class Slot(NamedTuple):
     unset: Any = None
 
 
-#: What the HAL holds for a number that a test has set to None: nothing that a robot sets, and as good as 0.
+#: The number that stands for None in the HAL: robots never set it, and it acts like 0.
 NOT_SET = 5e-324
 
 
@@ -50,33 +52,34 @@ def _get_unless_unset(slot: Slot) -> Any:
     return None if value == NOT_SET else value
 
 
-def kept(default: Any = None) -> Slot:
-    """A value that the HAL of today does not have: it is kept as written, so that older tests still work."""
+def stored(default: Any = None) -> Slot:
+    """Return a slot for a value that the current HAL does not have. It is stored as written, so that older tests still
+    work.
+    """
     cell = [default]
     return Slot(partial(cell.__getitem__, 0), partial(cell.__setitem__, 0), recorded=False)
 
 
 class _Watch:
-    """The listeners of one value, and the HAL's notification they hang on."""
+    """The listeners of one value, and its callback in the HAL."""
 
     def __init__(self, owner: LiveDict, slot: Slot) -> None:
         self.owner = owner
         self.listeners: list[tuple[Any, Callback]] = []
-        self.heard = False
+        self.called = False
         self.store = slot.watch(self.fire) if slot.watch else None
 
     def fire(self) -> None:
-        self.heard = True
+        self.called = True
         for key, callback in list(self.listeners):
             callback(key, self.owner[key])
 
 
 class LiveDict(LiveMapping):
-    """A dict whose values live in the simulated HAL.
+    """A dict whose values are stored in the simulated HAL.
 
-    Reading asks WPILib, writing tells it. A wrong key raises a `KeyError` that lists the keys; a value that
-    cannot be there raises a `TypeError` or `ValueError` that names the place. Keys cannot be added or
-    removed.
+    Reads and writes go to WPILib. A wrong key raises a `KeyError` that lists the keys; an impossible value raises a
+    `TypeError` or `ValueError` that names the place. Keys cannot be added or removed.
     """
 
     def __init__(self, path: str, build: Callable[[], Mapping[str, Slot]]) -> None:
@@ -87,7 +90,7 @@ class LiveDict(LiveMapping):
         self._getters: dict[Any, Callable[[], Any]] = {}
         self._watches: dict[str, _Watch] = {}
 
-    # Built on first use: the tree has some two thousand values and a test looks at ten.
+    # Built on first use: the tree has some two thousand values, and a test uses ten.
     @property
     def _slots(self) -> Mapping[str, Slot]:
         if self._built is None:
@@ -132,17 +135,17 @@ class LiveDict(LiveMapping):
         if watch is None:
             slot.set(checked)
             return
-        # The HAL tells of changes only, and for some values of nothing: what it did not tell is told here.
-        watch.heard = False
+        # The HAL reports changes only, and for some values nothing: then the listeners are called here.
+        watch.called = False
         slot.set(checked)
-        if not watch.heard:
+        if not watch.called:
             watch.fire()
 
     def __delitem__(self, key: Any) -> None:
         raise UnknownKey("a key of hal_data cannot be removed", where=join(self._path, key))
 
     def clear(self) -> None:
-        """Remove every key, which most dicts here refuse."""
+        """Remove every key; most dicts here raise an error."""
         for key in list(self):
             del self[key]
 
@@ -156,19 +159,19 @@ class LiveDict(LiveMapping):
         return key in self._slots
 
     def get(self, key: Any, default: Any = None) -> Any:
-        """The value at `key`, or `default` where there is no such key."""
+        """Return the value at `key`, or `default` if there is no such key."""
         if key in self:
             return self[key]
         return default
 
     def setdefault(self, key: Any, default: Any = None) -> Any:
-        """The value at `key`; a missing key is written first, which most dicts here refuse."""
+        """Return the value at `key`. A missing key is written first; most dicts here raise an error."""
         if key not in self:
             self[key] = default
         return self[key]
 
     def assign(self, values: Mapping[Any, Any]) -> None:
-        """Write every key that `values` has."""
+        """Write every key of `values`."""
         if not isinstance(values, Mapping):
             raise WrongType(f"expected a dict, not a {type(values).__name__}", where=self._path)
         for key, value in values.items():
@@ -177,9 +180,11 @@ class LiveDict(LiveMapping):
     def register(self, key: Any, callback: Callback, notify: bool = False) -> None:
         """Call ``callback(key, value)`` each time `key` is set, by the robot or through `hal_data`.
 
-        The HAL reports the robot's writes only when they change the value; values that only `hal_data` knows
-        are reported when written through it. With `notify` the callback is called at once as well. What the
-        callback raises reaches whoever set the value. Raises `KeyError` for a key that is not there.
+        The HAL reports the robot's writes only when they change the value. Values that only `hal_data` has are reported
+        when they are written through it. An exception of the callback is raised where the value was set.
+
+        :param notify: also call the callback now
+        :raises KeyError: when there is no such key
         """
         slot = self._slot(key)
         name = slot.canonical or key
@@ -191,7 +196,7 @@ class LiveDict(LiveMapping):
             callback(key, self[key])
 
     def _changed(self, key: str) -> None:
-        """An entry of the list at `key` was written."""
+        """Call the listeners after an entry of the list at `key` was written."""
         if key in self._watches:
             self._watches[key].fire()
 
@@ -200,7 +205,7 @@ class LiveDict(LiveMapping):
 
 
 class LiveList(LiveSequence):
-    """A list of fixed length: of devices, or of values that live in the HAL (`ValueList`)."""
+    """A list of fixed length, of devices or of values in the HAL (`ValueList`)."""
 
     def __init__(self, path: str, items: Sequence[Any]) -> None:
         super().__init__(path)
@@ -243,7 +248,11 @@ class LiveList(LiveSequence):
         )
 
     def assign(self, values: Sequence[Any]) -> None:
-        """Write the first entries. Raises TypeError for what is no list, ValueError for one too long."""
+        """Write the first entries.
+
+        :raises TypeError: when `values` is not a list
+        :raises ValueError: when it is too long
+        """
         if isinstance(values, str) or not isinstance(values, Sequence):
             raise WrongType(f"expected a list, not a {type(values).__name__}", where=self._path)
         if len(values) > len(self):
@@ -258,10 +267,10 @@ class LiveList(LiveSequence):
 class ValueList(LiveList):
     """A list of values of one kind.
 
-    :param length:  how many entries there are now
-    :param get:     reads one entry
-    :param put:     writes one entry
-    :param load:    reads all entries at once
+    :param length: returns the current number of entries
+    :param get: reads one entry
+    :param put: writes one entry
+    :param load: reads all entries at once
     :param changed: called after a write
     """
 
@@ -308,13 +317,13 @@ class ValueList(LiveList):
 
 
 def plain(value: Any) -> Any:
-    """A copy made of dicts, lists, numbers, strings, bools and None only, as ``json.dumps`` takes it."""
+    """Return a copy made of dicts, lists, numbers, strings, bools and None only, as for ``json.dumps``."""
     if value is None or type(value) in (bool, int, float, str):
         return value
     if isinstance(value, Mapping):
         if all(isinstance(key, int) for key in value):
             return {key: plain(item) for key, item in value.items()}
-        # Texts and numbers together cannot be sorted, as a recording's keys are.
+        # Strings and numbers cannot be sorted together, as a recording's keys are.
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
         return [plain(v) for v in value]
@@ -326,7 +335,7 @@ def plain(value: Any) -> Any:
         return int(value) if isinstance(value, Integral) else float(value)
     try:
         text = str(value)
-    except Exception:  # of a class of the user's
+    except Exception:  # from the user's class
         text = ""
-    # Without a text of its own, an object shows its address, which differs from run to run.
+    # By default, an object's text contains its address, which differs from run to run.
     return text if text and " at 0x" not in text else f"<{type(value).__name__}>"

@@ -9,40 +9,39 @@ import hal
 from wpilib import simulation as sim
 
 from . import devices, driver_station
-from .containers import LiveDict, LiveList, Slot, kept, plain
+from .containers import LiveDict, LiveList, Slot, plain, stored
 from .fields import group
 from .kinds import UnknownKey, WrongPath, WrongType
 from .modules import Modules
 from .paths import Segment, format_path, join, parse_path
-from .recording import Recording
 from .sim_devices import RobotDict, SimDevices
+from .tree_reader import TreeReader
 
-#: The keys whose value is a part of one of the robot's pneumatics modules.
+#: The keys whose value belongs to one of the robot's pneumatics modules.
 _OF_A_MODULE = ("solenoid", "compressor")
 
 
 class HalData(LiveDict):
     """The robot's inputs and outputs as one tree of dicts and lists, live over WPILib's simulated HAL.
 
-    ``hal_data['pwm'][3]['value']`` asks WPILib for the output the robot has set;
-    ``hal_data['dio'][1]['value'] = True`` is what the robot reads next. There may be several trees, made
-    before or after the robot's devices: none keeps a value that the HAL has. Making one sets the inputs that
-    the HAL leaves open: see `apply_defaults`.
+    ``hal_data['pwm'][3]['value']`` reads the output that the robot has set; ``hal_data['dio'][1]['value'] = True`` is
+    what the robot reads next. There may be several trees, created before or after the robot's devices: none stores a
+    value that the HAL has. Creating one sets the inputs that the HAL leaves open: see `apply_defaults`.
 
-    :param defaults: whether to set them; in a run, they are set when it begins
+    :param defaults: whether to set them; a run sets them when it begins
     """
 
     def __init__(self, defaults: bool = True) -> None:
         super().__init__("", self._values)
         self.modules = Modules()
-        self._recording: Recording | None = None
-        self._rooms: dict[Any, Any] = {"custom": {}, "reports": {}}
-        self._makers = self._room_makers()
+        self._reader: TreeReader | None = None
+        self._branches: dict[Any, Any] = {"custom": {}, "reports": {}}
+        self._builders = self._branch_builders()
         if defaults:
             self.apply_defaults()
 
     def apply_defaults(self) -> None:
-        """Red alliance, station 1, at the event 'sim-event', where neither has been said yet."""
+        """Set red alliance, station 1, and the event name 'sim-event', unless they were set before."""
         if sim.DriverStationSim.getAllianceStationId() == hal.AllianceStationID.kUnknown:
             self["alliance_station"] = "red1"
         if not self["event"]["name"]:
@@ -54,17 +53,17 @@ class HalData(LiveDict):
             "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim),
             "fpga_button": devices.FPGA_BUTTON.slot(sim.RoboRioSim),
             "user_program_state": Slot(driver_station.program_state, None),
-            "error_data": kept(),
-            "pwm_loop_timing": kept(40),
-            "d0_pwm_rate": kept(),
+            "error_data": stored(),
+            "pwm_loop_timing": stored(40),
+            "d0_pwm_rate": stored(),
         }
 
-    def _room_makers(self) -> dict[str, Callable[[], Any]]:
+    def _branch_builders(self) -> dict[str, Callable[[], Any]]:
         modules = self.modules
         return {
             "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL),
             "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME),
-            "event": driver_station.Event,
+            "event": driver_station.EventData,
             "joysticks": driver_station.joysticks,
             "robot": lambda: RobotDict(self["CAN"]),
             "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER),
@@ -81,57 +80,62 @@ class HalData(LiveDict):
 
     def __getitem__(self, key: Any) -> Any:
         try:
-            return self._rooms[key]
+            return self._branches[key]
         except (KeyError, TypeError):
             pass
         if key in _OF_A_MODULE:
-            # Not kept: which module's it is depends on what the robot has made.
+            # Not cached: the module depends on the devices that the robot has created.
             return getattr(self.modules, key)
-        if isinstance(key, str) and key in self._makers:
-            room = self._rooms[key] = self._makers[key]()
-            return room
+        if isinstance(key, str) and key in self._builders:
+            branch = self._branches[key] = self._builders[key]()
+            return branch
         return super().__getitem__(key)
 
     def __setitem__(self, key: Any, value: Any) -> None:
         if key in self._slots:
             super().__setitem__(key, value)
             return
-        room = self[key]
-        if isinstance(room, (LiveDict, LiveList)):
-            room.assign(value)
-        elif room is not value:
+        branch = self[key]
+        if isinstance(branch, (LiveDict, LiveList)):
+            branch.assign(value)
+        elif branch is not value:
             if not isinstance(value, Mapping):
                 raise WrongType(f"expected a dict, not a {type(value).__name__}", where=key)
             new = dict(value)
-            room.clear()
-            room.update(new)
+            branch.clear()
+            branch.update(new)
 
     def __contains__(self, key: object) -> bool:
-        return key in self._rooms or key in self._makers or key in _OF_A_MODULE or key in self._slots
+        return key in self._branches or key in self._builders or key in _OF_A_MODULE or key in self._slots
 
     def __iter__(self) -> Iterator[str]:
-        return iter([*self._slots, *self._makers, *_OF_A_MODULE, "custom", "reports"])
+        return iter([*self._slots, *self._builders, *_OF_A_MODULE, "custom", "reports"])
 
     def __repr__(self) -> str:
         return f"<hal_data: {', '.join(self)}>"
 
     def read(self, path: str) -> Any:
-        """The value at a path such as ``joysticks[0].axes[1]``.
+        """Return the value at a path such as ``joysticks[0].axes[1]``.
 
-        Raises `ValueError` for a text that is no path and for one that leads into something without parts,
-        `KeyError` or `IndexError` for a part that is not there; each names the part.
+        :raises ValueError: when the text is not a path, or leads through a value without parts
+        :raises LookupError: when a part does not exist; the error names it
         """
         return self._walk(parse_path(path))
 
     def write(self, path: str, value: Any) -> None:
-        """Write the value at a path; raises what `read` raises, and what writing raises."""
+        """Write the value at a path.
+
+        :raises ValueError: as `read`
+        :raises LookupError: as `read`
+        :raises PyfrcError: when the value cannot be written there
+        """
         *parents, last = parse_path(path)
         place = self._walk(tuple(parents))
         self._has_parts(place, tuple(parents), last)
         place[last] = value
 
     def can_write(self, path: str) -> bool:
-        """Whether the value at a path can be written, by itself or in its parts."""
+        """Return whether the value at a path, or its parts, can be written."""
         *parents, last = parse_path(path)
         place = self._walk(tuple(parents))
         slot = place._slots.get(str(last)) if isinstance(place, LiveDict) else None
@@ -144,7 +148,7 @@ class HalData(LiveDict):
             try:
                 place = place[segment]
             except LookupError as problem:
-                # The live containers say it themselves; what is free is a dict of the user's.
+                # The live containers raise a complete error; the free branches are plain dicts.
                 if isinstance(place, (LiveDict, LiveList)):
                     raise
                 where = format_path(segments[:depth])
@@ -163,37 +167,40 @@ class HalData(LiveDict):
             raise WrongPath(problem, remedy=f"use an index, such as {where}[0]")
 
     def sync(self) -> None:
-        """Find SimDevices that the robot has made, and hand them what was written to `robot` for them."""
-        robot = self._rooms.get("robot")
-        if robot is not None and robot.waits_for_devices:  # looking for them costs more than a robot's whole loop
+        """Find new SimDevices, and write the values that `robot` has stored for them."""
+        robot = self._branches.get("robot")
+        if robot is not None and robot.waits_for_devices:  # the search takes longer than a robot's whole loop
             robot.sync()
 
-    def anything_made(self) -> bool:
+    def any_exist(self) -> bool:
         """Return whether any device exists in the HAL."""
-        return self._recorder().anything_made()
+        return self._tree_reader().any_exist()
 
-    def devices_made(self) -> list[str]:
-        """Return the devices that exist in the HAL, as ``pwm[3]``."""
-        return self._recorder().devices_made()
+    def existing(self) -> list[str]:
+        """Return the devices that exist in the HAL, such as ``pwm[3]``."""
+        return self._tree_reader().existing()
 
     def leaves(self) -> list[tuple[str, Any]]:
-        """The robot and its inputs at this moment, as pairs of path and plain value, in a fixed order.
+        """Return the current state of the robot and its inputs as pairs of path and plain value, in a fixed order.
 
-        Mode, match, joysticks that have any control, devices that the robot has made, SimDevices, `robot` and
-        `custom`. Nothing in it depends on the wall clock or the machine.
+        It contains the mode, match, joysticks with any control, the devices that the robot has created, SimDevices,
+        `robot` and `custom`. It does not depend on the wall clock or the machine.
         """
         return list(zip(*self.paths_and_values(), strict=True))
 
     def paths_and_values(self) -> tuple[list[str], list[Any]]:
-        """The same in two lists: the paths, the same list while they are the same, and the values."""
-        return self._recorder().look()
+        """Return the same as two lists, of paths and of values.
 
-    def _recorder(self) -> Recording:
-        if self._recording is None:
-            self._recording = Recording(self, self.modules)
-        return self._recording
+        The list of paths stays the same object while it does not change.
+        """
+        return self._tree_reader().read()
+
+    def _tree_reader(self) -> TreeReader:
+        if self._reader is None:
+            self._reader = TreeReader(self, self.modules)
+        return self._reader
 
     def snapshot(self) -> dict[str, Any]:
-        """A copy of the whole tree in dicts, lists, numbers, strings, bools and None, fit for ``json``."""
+        """Return a copy of the whole tree in dicts, lists, numbers, strings, bools and None, ready for ``json``."""
         copy: dict[str, Any] = plain(self)
         return copy

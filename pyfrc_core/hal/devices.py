@@ -1,4 +1,4 @@
-"""The devices of the roboRIO: a table of which field is which value of WPILib's simulation (see `fields`)."""
+"""The devices of the roboRIO: a table that maps fields to values of WPILib's simulation (see `fields`)."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import wpilib
 from wpilib import simulation as sim
 
 from .containers import NOT_SET
-from .fields import HAS_SOURCE, INITIALIZED, DeviceKind, Field
+from .fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind
 from .kinds import BOOL, FLOAT, INT32, INT64, Kind, choice, number, text, whole
 
 RANGE = choice({"2G": 0, "4G": 1, "8G": 2}, hal.AccelerometerRange)
 LED_STATE = choice({"off": 0, "green": 1, "red": 2, "orange": 3}, wpilib.RadioLEDState)
 
-_LSB = 1220703e-9  # volts per count of the 12-bit converter, as the HAL has it
+_LSB = 1220703e-9  # volts per count of the 12-bit converter, as in the HAL
 
 
 def _relay_initialized(relay: sim.RelaySim) -> bool:
@@ -29,8 +29,8 @@ def _initialize_relay(relay: sim.RelaySim, value: bool) -> None:
 
 
 def encoder_channels(index: int) -> dict[str, int | None]:
-    """The digital channels of an encoder: None where the HAL cannot tell."""
-    # WPILib's C interface tells them, its Python interface does not. The library is loaded already.
+    """Return the digital channels of an encoder; None where the HAL does not know them."""
+    # WPILib's C interface has them, its Python interface does not. The library is already loaded.
     try:
         native = import_module("native.wpihal._init_robotpy_native_wpihal")
         library = vars(native)["__lib"]
@@ -43,7 +43,7 @@ def encoder_channels(index: int) -> dict[str, int | None]:
 
 
 def led_data(strip: sim.AddressableLEDSim) -> list[list[int]]:
-    """The colours as ``[red, green, blue]``, 0 to 255."""
+    """Return the colours as ``[red, green, blue]``, 0 to 255."""
     return [[led.r, led.g, led.b] for led in strip.getData()]
 
 
@@ -58,7 +58,7 @@ def _set_led_data(strip: sim.AddressableLEDSim, colours: list[list[int]]) -> Non
     strip.setData([wpilib.AddressableLED.LEDData(*colour) for colour in colours])
 
 
-F = Field  # the table below is read in columns
+F = DeviceField  # a short name, for a compact table
 KINDS = (
     DeviceKind(
         "pwm",
@@ -103,7 +103,7 @@ KINDS = (
             F("reverse_direction", "ReverseDirection", BOOL),
             F("samples_to_average", "SamplesToAverage", INT32),
             F("distance_per_pulse", "DistancePerPulse", FLOAT),
-            # WPILib derives both from period, count and distance per pulse, and the other way round.
+            # WPILib derives both from period, count and distance per pulse, and vice versa.
             F("rate", "Rate", FLOAT, recorded=False),
             F("distance", "Distance", FLOAT, recorded=False),
             F("min_rate", default=0.0),
@@ -119,7 +119,7 @@ KINDS = (
             HAS_SOURCE,
             F("voltage", "Voltage", FLOAT),
             F("avg_voltage", "Voltage", FLOAT, same_as="voltage", recorded=False),
-            # The HAL computes both counts from the voltage; the margin makes its truncation give back what
+            # The HAL computes both counts from the voltage; because of the margin, truncation returns the count that
             # was set.
             *(
                 F(

@@ -1,6 +1,6 @@
-"""What the driver station sends: mode, alliance, match, joysticks; and the rumble that comes back.
+"""The data that the driver station sends: mode, alliance, match, joysticks; and the rumble that the robot sends back.
 
-A write is shown here at once. The robot sees it with the next driver-station packet, as with a real one.
+A write is visible here at once. The robot sees it with the next driver-station packet, as with a real one.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from hal import simulation as hs
 from wpilib import DriverStation
 from wpilib.simulation import DriverStationSim
 
-from .containers import LiveDict, LiveList, Slot, ValueList, kept
-from .fields import HAS_SOURCE, Field
+from .containers import LiveDict, LiveList, Slot, ValueList, stored
+from .fields import HAS_SOURCE, DeviceField
 from .kinds import BOOL, FLOAT, INT32, Kind, choice, number, text, whole
 from .paths import join
 
 JOYSTICKS = 6
-AXES = POVS = 12  # as many as the HAL has room for
-BUTTONS = 12  # in the list without more ado; a joystick with more shows them all
+AXES = POVS = 12  # the maximum of the HAL
+BUTTONS = 12  # the shortest list; a joystick with more buttons shows all
 MAX_BUTTONS = 32
 
 STATION = choice(
@@ -30,26 +30,27 @@ STATION = choice(
 MATCH_TYPE = choice({"none": 0, "practice": 1, "qualification": 2, "elimination": 3}, DriverStation.MatchType)
 
 CONTROL = (
-    Field("enabled", "Enabled", BOOL),
-    Field("autonomous", "Autonomous", BOOL),
-    Field("test", "Test", BOOL),
-    Field("eStop", "EStop", BOOL),
-    Field("dsAttached", "DsAttached", BOOL),
-    Field("fmsAttached", "FmsAttached", BOOL),
+    DeviceField("enabled", "Enabled", BOOL),
+    DeviceField("autonomous", "Autonomous", BOOL),
+    DeviceField("test", "Test", BOOL),
+    DeviceField("eStop", "EStop", BOOL),
+    DeviceField("dsAttached", "DsAttached", BOOL),
+    DeviceField("fmsAttached", "FmsAttached", BOOL),
     HAS_SOURCE,
 )
-ALLIANCE_STATION = Field("alliance_station", "AllianceStationId", STATION)
+ALLIANCE_STATION = DeviceField("alliance_station", "AllianceStationId", STATION)
 TIME = (
-    Field("remaining", "MatchTime", FLOAT),
-    Field("program_start", default=0.0),
+    DeviceField("remaining", "MatchTime", FLOAT),
+    DeviceField("program_start", default=0.0),
     HAS_SOURCE,
 )
 
 
 def program_state() -> str | None:
-    """What the robot program says it is doing; None until it has started.
+    """Return the robot program's mode; None until it has started.
 
-    The HAL is told that but does not tell it on, so this says what the program goes by: the last packet it has read.
+    The program reports its mode to the HAL, which does not return it. So this is the mode of the last packet that the
+    program has read.
     """
     if not hs.getProgramStarted():
         return None
@@ -60,15 +61,15 @@ def program_state() -> str | None:
     return "test" if DriverStation.isTest() else "teleop"
 
 
-class Event(LiveDict):
-    """The match as the field tells it."""
+class EventData(LiveDict):
+    """The match, as sent by the field."""
 
     def __init__(self) -> None:
         super().__init__("event", self._all)
         self._info = hal.MatchInfo()
 
     def fingerprint(self) -> object:
-        """Differs when something has changed."""
+        """Return a value that differs after any change."""
         info = self._info
         hs.getMatchInfo(info)
         texts = info.eventName.tobytes(), info.gameSpecificMessage.tobytes(), info.gameSpecificMessageSize
@@ -93,7 +94,7 @@ class Event(LiveDict):
             "match_number": Slot(get(lambda: info.matchNumber), station.setMatchNumber, whole(0, 65535)),
             "replay_number": Slot(get(lambda: info.replayNumber), station.setReplayNumber, whole(0, 255)),
             "game_specific_message": Slot(get(message), station.setGameSpecificMessage, text(64)),
-            "has_source": kept(False),
+            "has_source": stored(False),
         }
 
 
@@ -102,16 +103,15 @@ def _c_text(characters: memoryview) -> str:
 
 
 def joysticks() -> LiveList:
-    """The joysticks, by port."""
-    return LiveList("joysticks", [Joystick(port) for port in range(JOYSTICKS)])
+    """Return the joysticks, by port."""
+    return LiveList("joysticks", [JoystickData(port) for port in range(JOYSTICKS)])
 
 
-class Joystick(LiveDict):
-    """One joystick: its axes, buttons and POVs as sent to the robot, and what the robot sends back.
+class JoystickData(LiveDict):
+    """One joystick: its axes, buttons and POVs as sent to the robot, and the data that the robot sends back.
 
-    The robot sees as many axes, buttons and POVs as `axis_count`, `button_count` and `pov_count` say; writing
-    one beyond raises its count. Values are read from WPILib's buffer, so an axis has the precision of a C
-    float.
+    The robot sees `axis_count` axes, `button_count` buttons and `pov_count` POVs; writing a later one raises its count.
+    Values are read from WPILib's buffer, so an axis has the precision of a C float.
     """
 
     def __init__(self, port: int) -> None:
@@ -119,7 +119,7 @@ class Joystick(LiveDict):
         self._port = port
         self._unused_button = False
         self._axes, self._buttons, self._povs = hal.JoystickAxes(), hal.JoystickButtons(), hal.JoystickPOVs()
-        # Both are views of the buffers above, which each read fills anew.
+        # Both are views of the buffers above, which each read fills again.
         self._axis_values, self._pov_values = self._axes.axes, self._povs.povs
         path = self._path
         self.axes = ValueList(
@@ -152,7 +152,7 @@ class Joystick(LiveDict):
         )
 
     def counts(self) -> tuple[int, int, int]:
-        """How many axes, buttons and POVs the robot sees."""
+        """Return how many axes, buttons and POVs the robot sees."""
         return hs.getJoystickCounts(self._port)
 
     def _all(self) -> dict[str, Slot]:
@@ -194,7 +194,7 @@ class Joystick(LiveDict):
             "outputs": rumble(0),
             "left_rumble": rumble(1),
             "right_rumble": rumble(2),
-            "has_source": kept(False),
+            "has_source": stored(False),
         }
 
     def _axis(self, index: int) -> float:
@@ -206,7 +206,7 @@ class Joystick(LiveDict):
         return self._axis_values.tolist()  # type: ignore[return-value]
 
     def fingerprint(self) -> object:
-        """Differs when one of the controls has changed, or what is sent back."""
+        """Return a value that differs after any change of the controls, or of the data sent back."""
         port = self._port
         hs.getJoystickAxes(port, self._axes)
         hs.getJoystickPOVs(port, self._povs)
@@ -214,7 +214,7 @@ class Joystick(LiveDict):
         return values, self.counts(), hs.getJoystickOutputs(port)
 
     def controls(self) -> tuple[list[float], list[bool], list[int]]:
-        """Axes, buttons and POVs as far as the robot sees them."""
+        """Return the axes, buttons and POVs that the robot sees."""
         axes, buttons, povs = self.counts()
         return self._load_axes()[:axes], [False, *self._load_buttons()[1 : buttons + 1]], self._load_povs()[:povs]
 
@@ -234,13 +234,14 @@ class Joystick(LiveDict):
         return bool(self._bits() >> (index - 1) & 1) if index else self._unused_button
 
     def _load_buttons(self) -> list[bool]:
-        # Position 0 is unused: the bits move up by one.
+        # Position 0 is unused, so the bits move up by one.
         bits = self._bits() << 1 | self._unused_button
         return [bool(bits >> i & 1) for i in range(self._buttons_shown())]
 
     def _set_button(self, index: int, value: bool) -> None:
         if index == 0:
-            # Buttons count from 1, as in WPILib. Loops over the whole list write this one too: the robot cannot see it.
+            # Buttons count from 1, as in WPILib. Loops over the whole list also write position 0, which the robot
+            # cannot see.
             self._unused_button = value
             return
         hs.setJoystickButton(self._port, index, value)
@@ -251,7 +252,7 @@ class Joystick(LiveDict):
         return self._load_povs()[index]
 
     def _load_povs(self) -> list[int]:
-        # What the HAL holds beyond the count is 0, which would say "up": the robot sees "not pressed".
+        # Beyond the count, the HAL has 0, which means "up"; the robot sees "not pressed".
         hs.getJoystickPOVs(self._port, self._povs)
         values: list[int] = self._pov_values.tolist()
         count = self._povs.count

@@ -38,7 +38,7 @@ class DriverStationConnection:
 
     @property
     def connected(self) -> bool:
-        """Whether the last packet has arrived."""
+        """Return whether the last packet has arrived."""
         return self.held is None
 
     def boot(self) -> None:
@@ -94,7 +94,7 @@ class DriverStationConnection:
 
 @contextmanager
 def _nothing_new() -> Iterator[None]:
-    """Within this, a packet brings no joysticks, and the alliance and match time that the robot has already."""
+    """Make packets contain no joysticks, and the alliance and match time that the robot has, until the context ends."""
     counts = [hs.getJoystickCounts(stick) for stick in range(JOYSTICKS)]
     alliance, match_time = hs.getDriverStationAllianceStationId(), hs.getDriverStationMatchTime()
     for stick in range(JOYSTICKS):

@@ -1,8 +1,8 @@
-"""How a row of the device tables becomes a live value.
+"""Convert rows of the device tables to live values.
 
 A field with a WPILib name `Speed` is read by ``getSpeed``, written by ``setSpeed`` and watched by
-``registerSpeedCallback`` of the `*Sim` object it is bound to. A field without one is not known to today's
-HAL: it is kept as written, so that older tests still work.
+``registerSpeedCallback`` of its `*Sim` object. A field without a WPILib name does not exist in the current HAL: it is
+stored as written, so that older tests still work.
 """
 
 from __future__ import annotations
@@ -12,20 +12,24 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from .containers import LiveDict, LiveList, Slot, kept
+from .containers import LiveDict, LiveList, Slot, stored
 from .kinds import ANY, BOOL, Kind
 from .paths import join
 
 
 @dataclass(frozen=True)
-class Field:
+class DeviceField:
     """One value of a device.
 
-    :param hal:      WPILib's name for it; None where today's HAL lacks it and `default` is kept instead
-    :param same_as:  the field of which this is another name: it shares the listeners
-    :param recorded: False for a value that follows from others
-    :param unset:    of an output of the robot: what the HAL gets when a test writes None
-    :param get, put: the access from and to the `*Sim` object where it is not WPILib's own
+    :param name: its key in `hal_data`
+    :param hal: WPILib's name for it; None where the current HAL lacks it, and `default` is stored instead
+    :param kind: the check of values that are written
+    :param default: the initial value where the HAL lacks it
+    :param same_as: the field of which this is an alias, with the same listeners
+    :param recorded: False for a value that can be derived from others
+    :param unset: for an output of the robot: the value in the HAL when a test writes None
+    :param get: reads from the `*Sim` object, where that differs from WPILib's method
+    :param put: writes to the `*Sim` object, where that differs from WPILib's method
     """
 
     name: str
@@ -39,9 +43,9 @@ class Field:
     put: Callable[[Any, Any], object] | None = None
 
     def slot(self, device: Any) -> Slot:
-        """The access to this field of `device`; None stands for a channel that the HAL does not have."""
+        """Return the access to this field of `device`; None stands for a channel that the HAL does not have."""
         if device is None or (self.hal is None and self.get is None):
-            return kept(self.kind.default if self.default is None else self.default)
+            return stored(self.kind.default if self.default is None else self.default)
         get = partial(self.get, device) if self.get else getattr(device, f"get{self.hal}")
         if self.kind.load is not None:
             get = _loaded(get, self.kind.load)
@@ -59,24 +63,26 @@ def _watch(register: Callable[..., object], fire: Callable[[], None]) -> object:
     return register(lambda *_: fire(), False)
 
 
-INITIALIZED = Field("initialized", "Initialized", BOOL, recorded=False)
-HAS_SOURCE = Field("has_source", default=False)
+INITIALIZED = DeviceField("initialized", "Initialized", BOOL, recorded=False)
+HAS_SOURCE = DeviceField("has_source", default=False)
 
 
 @dataclass(frozen=True)
 class DeviceKind:
     """A list of devices of one kind.
 
-    :param count:  entries of the list
-    :param make:   gives WPILib's object for an index
-    :param real:   how many of them the HAL has; the rest are kept values
-    :param config: gives the read-only value at ``config``, for kinds that have one
+    :param name: its key in `hal_data`
+    :param count: the length of the list
+    :param make: returns WPILib's object for an index
+    :param fields: the fields of each device
+    :param real: how many of them the HAL has; the others are stored values
+    :param config: returns the read-only value at ``config``, for kinds that have one
     """
 
     name: str
     count: int
     make: Callable[[int], Any] | None
-    fields: tuple[Field, ...]
+    fields: tuple[DeviceField, ...]
     real: int = 64
     config: Callable[[int], Any] | None = None
 
@@ -94,13 +100,13 @@ class DeviceKind:
         return LiveList(self.name, [self.device(join(self.name, i), i) for i in range(self.count)])
 
     def initialized(self) -> list[Slot]:
-        """For each device that the HAL has, whether the robot has made it."""
+        """Return a slot for each device of the HAL that says whether the robot has created it."""
         if self.make is None:
             return []
-        tells = next(field for field in self.fields if field.name == "initialized")
-        return [tells.slot(self.make(i)) for i in range(min(self.count, self.real))]
+        initialized = next(field for field in self.fields if field.name == "initialized")
+        return [initialized.slot(self.make(i)) for i in range(min(self.count, self.real))]
 
 
-def group(path: str, device: Any, fields: tuple[Field, ...]) -> LiveDict:
-    """One dict for a device there is only one of."""
+def group(path: str, device: Any, fields: tuple[DeviceField, ...]) -> LiveDict:
+    """Return one dict for a device that exists only once."""
     return LiveDict(path, lambda: {field.name: field.slot(device) for field in fields})

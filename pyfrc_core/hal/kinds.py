@@ -1,7 +1,7 @@
-"""What a value of `hal_data` may be: the checks on writing, and the errors that say what was expected.
+"""The kinds of values in `hal_data`: checks of writes, with errors that state the expected value.
 
-Values from WPILib's own bindings raise a `TypeError` about C++ overloads; a student's test deserves the path
-and the range instead, so every write passes through a `Kind` first.
+WPILib's bindings raise a `TypeError` about C++ overloads. Students need the path and the range instead, so every write
+is checked by a `Kind` first.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pyfrc_core.errors import PyfrcError
 
 
 class UnknownKey(PyfrcError, KeyError):
-    """There is no such key, or it cannot be removed or added."""
+    """There is no such key, or keys cannot be added or removed."""
 
 
 class WrongIndex(PyfrcError, IndexError):
@@ -24,22 +24,22 @@ class WrongIndex(PyfrcError, IndexError):
 
 
 class WrongType(PyfrcError, TypeError):
-    """The value is not of a type that can be stored there."""
+    """The value has a type that cannot be stored there."""
 
 
 class WrongValue(PyfrcError, ValueError):
-    """The value has the right type but not a value that can be there."""
+    """The value has the right type, but is not allowed there."""
 
 
 class WrongPath(PyfrcError, ValueError):
-    """A text is not a path, or it leads through something that has no parts."""
+    """A text is not a path, or it leads through a value without parts."""
 
 
 class Choice(int):
     """One of a few named numbers, such as an alliance station.
 
-    It is the number, so ``json.dumps`` and arithmetic work, and it equals WPILib's enum; it also equals its
-    `name` (``hal_data['alliance_station'] == 'red1'``). It hashes as the number.
+    It is an int, so ``json.dumps`` and arithmetic work, and it equals WPILib's enum. It also equals its `name`
+    (``hal_data['alliance_station'] == 'red1'``). It hashes as the number.
     """
 
     name: str
@@ -69,13 +69,13 @@ class Choice(int):
 
 @dataclass(frozen=True)
 class Kind:
-    """What a value may be.
+    """A kind of values.
 
     :param expected: completes "expected ..." in an error
-    :param convert:  gives the value as stored; raises TypeError or ValueError for one that cannot be
-    :param default:  what a field of this kind holds where the HAL has no such channel
-    :param load:     gives the value as shown to the reader, from what WPILib returns
-    :param plain:    gives the value as recorded, where that is not the value as shown
+    :param convert: returns the value to store; raises TypeError or ValueError for an invalid one
+    :param default: the value of a field of this kind where the HAL has no such channel
+    :param load: returns the value to show, from WPILib's value
+    :param plain: returns the value to record, where that differs from the value to show
     """
 
     expected: str
@@ -85,7 +85,11 @@ class Kind:
     plain: Callable[[Any], Any] | None = None
 
     def check(self, value: Any, where: str) -> Any:
-        """The value as it is stored. Raises `WrongType` or `WrongValue`, which name `where`."""
+        """Return the value to store.
+
+        :raises WrongType: when it has the wrong type; names `where`
+        :raises WrongValue: when it is not allowed; names `where`
+        """
         try:
             return self.convert(value)
         except TypeError:
@@ -100,9 +104,9 @@ def _show(value: Any) -> str:
 
 
 def _as_float(value: Any) -> float:
-    if type(value) is float:  # nearly always; asking the abstract class is slow
+    if type(value) is float:  # nearly always; a check with the abstract class is slow
         return value
-    # A bool is an int in Python; as a voltage or an axis it is a slip of the pen.
+    # A bool is an int in Python; as a voltage or an axis it is a mistake.
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError
     return float(value)
@@ -120,7 +124,7 @@ def _as_int(value: Any) -> int:
 
 
 def _as_bool(value: Any) -> bool:
-    # 0 and 1 are what older tests write; any other truth value ('off', []) is more likely a mistake.
+    # Older tests write 0 and 1; any other truth value ('off', []) is probably a mistake.
     if isinstance(value, (str, bytes)) or not hasattr(value, "__bool__"):
         raise TypeError
     if value not in (0, 1):
@@ -129,7 +133,7 @@ def _as_bool(value: Any) -> bool:
 
 
 def number(low: float | None = None, high: float | None = None) -> Kind:
-    """A float; NaN and infinity are accepted only where there is no range, as sensors may report them."""
+    """Return the kind of floats; NaN and infinity are allowed only without a range, since sensors may report them."""
     if low is None or high is None:
         return Kind("a number", _as_float, 0.0)
 
@@ -143,7 +147,7 @@ def number(low: float | None = None, high: float | None = None) -> Kind:
 
 
 def whole(low: int, high: int) -> Kind:
-    """A whole number; a float is accepted if it is whole."""
+    """Return the kind of whole numbers; a float is accepted if it is whole."""
 
     def convert(value: Any) -> int:
         result = _as_int(value)
@@ -155,7 +159,7 @@ def whole(low: int, high: int) -> Kind:
 
 
 def text(max_bytes: int) -> Kind:
-    """A string of at most so many bytes of UTF-8: the HAL cuts longer ones silently."""
+    """Return the kind of strings with at most this many bytes of UTF-8: the HAL silently cuts longer ones."""
 
     def convert(value: Any) -> str:
         if not isinstance(value, str):
@@ -168,7 +172,11 @@ def text(max_bytes: int) -> Kind:
 
 
 def choice(names: dict[str, int], make: Callable[[int], Any] = int) -> Kind:
-    """One of `names`: accepted as name in any case, number or enum; `make` gives what the HAL takes."""
+    """Return the kind of the values in `names`.
+
+    :param names: the number of each name; names (in any case), numbers and enums are accepted
+    :param make: returns the value for the HAL
+    """
     by_number = {value: Choice(value, name) for name, value in names.items()}
 
     def convert(value: Any) -> Any:
@@ -176,7 +184,7 @@ def choice(names: dict[str, int], make: Callable[[int], Any] = int) -> Kind:
             if value.lower() not in lower:
                 raise ValueError
             return make(lower[value.lower()])
-        # The enums of the bindings are no Integral but have an index.
+        # The enums of the bindings are not Integral, but have an index.
         chosen = _as_int(value)
         if chosen not in by_number:
             raise ValueError

@@ -1,4 +1,4 @@
-"""The driver station's mode: what a test, a script or a person may put the robot into."""
+"""The driver station's mode, set by tests, scripts and people."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ from wpilib.simulation import DriverStationSim
 
 from ..errors import UsageError
 
-#: The four names that `TestController.get_mode` answers with.
+#: The four modes that `TestController.get_mode` returns.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
 
 JOYSTICKS = 6
 #: As in 2019.
 EVENT_NAME = "sim-event"
-#: What each joystick has until somebody says otherwise: as many controls as a robot may ask for.
+#: The default controls of each joystick: as many as a robot may read.
 AXES, BUTTONS, POVS = 12, 12, 1
-#: What a POV reads while nobody touches it; pressed, it is an angle in degrees clockwise from up.
+#: The value of a POV that is not pressed; when pressed, it is an angle in degrees clockwise from up.
 NOT_PRESSED = -1
 
 
 def reset_driver_station() -> None:
-    """Set what the driver station sends at first: attached, disabled, red 1, six joysticks with nothing pressed."""
+    """Set the initial data of the driver station: attached, disabled, red 1, six joysticks with nothing pressed."""
     resetDriverStationData()
     setDriverStationDsAttached(True)
     setDriverStationAllianceStationId(AllianceStationID.kRed1)
@@ -55,7 +55,7 @@ def reset_driver_station() -> None:
 
 
 def plug_in(stick: int) -> None:
-    """A joystick is there, and nobody touches it."""
+    """Plug in a joystick with nothing pressed."""
     setJoystickAxisCount(stick, AXES)
     setJoystickButtonCount(stick, BUTTONS)
     setJoystickPOVCount(stick, POVS)
@@ -67,21 +67,21 @@ def plug_in(stick: int) -> None:
 
 
 def unplug(stick: int) -> None:
-    """A joystick is gone: it has no axes, buttons and POVs."""
+    """Unplug a joystick: it has no axes, buttons and POVs."""
     setJoystickAxisCount(stick, 0)
     setJoystickButtonCount(stick, 0)
     setJoystickPOVCount(stick, 0)
 
 
 def set_mode(*, autonomous: bool = False, test: bool = False, enabled: bool) -> None:
-    """What the next driver-station packet will say."""
+    """Set the mode of the next driver-station packet."""
     setDriverStationAutonomous(autonomous)
     setDriverStationTest(test)
     setDriverStationEnabled(enabled)
 
 
 def get_mode() -> Mode:
-    """The mode last asked for, whether or not a packet has carried it to the robot yet."""
+    """Return the mode that was last set, even if no packet has delivered it to the robot yet."""
     if not getDriverStationEnabled():
         return "disabled"
     if getDriverStationAutonomous():
@@ -89,7 +89,7 @@ def get_mode() -> Mode:
     return "test" if getDriverStationTest() else "teleop"
 
 
-#: How scripts name the modes: those the robot can be in, and those it can be about to be enabled in.
+#: The modes of scripts: those that the robot can be in, and the disabled modes before them.
 _NAMED = {
     "disabled": (False, False, False),
     "autonomous": (True, False, True),
@@ -102,18 +102,18 @@ MODES = tuple(_NAMED)
 
 
 def set_mode_named(name: str) -> None:
-    """Ask for one of `MODES`.
+    """Set one of `MODES`.
 
     :raises UsageError: when there is no such mode
     """
     if name not in _NAMED:
-        raise UsageError(f"there is no mode {name!r}: there is {', '.join(MODES)}")
+        raise UsageError(f"there is no mode {name!r}: the modes are {', '.join(MODES)}")
     autonomous, test, enabled = _NAMED[name]
     set_mode(autonomous=autonomous, test=test, enabled=enabled)
 
 
 def mode_name() -> str:
-    """Which of `MODES` was last asked for."""
+    """Return which of `MODES` was last set."""
     mode = get_mode()
     if mode != "disabled":
         return mode
@@ -123,9 +123,9 @@ def mode_name() -> str:
 
 
 def when_mode_changes(listener: Callable[[str, Any], None]) -> list[object]:
-    """Have a function called whenever what `mode_name` returns may have changed.
+    """Call a function whenever the result of `mode_name` may have changed.
 
-    :returns: what has to be kept for as long as it is to be called
+    :returns: objects that must be kept for as long as the function is to be called
     """
     station = DriverStationSim
     return [
@@ -139,25 +139,25 @@ def when_mode_changes(listener: Callable[[str, Any], None]) -> list[object]:
 
 
 def is_enabled() -> bool:
-    """Whether the robot may move: enabled by a driver station that is there, and not stopped in an emergency."""
+    """Return whether the robot may move: it is enabled, attached to a driver station, and not emergency-stopped."""
     return bool(getDriverStationEnabled()) and bool(getDriverStationDsAttached()) and not getDriverStationEStop()
 
 
 def is_attached() -> bool:
-    """Whether a driver station is there."""
+    """Return whether a driver station is attached."""
     return bool(getDriverStationDsAttached())
 
 
 def is_stopped() -> bool:
-    """Whether the emergency stop was pressed."""
+    """Return whether the emergency stop was pressed."""
     return bool(getDriverStationEStop())
 
 
 def set_match_time(seconds_left: float) -> None:
-    """The time left in the current period, in seconds: `DriverStation.getMatchTime` in robot code."""
+    """Set the time left in the current period, in seconds: `DriverStation.getMatchTime` in robot code."""
     setDriverStationMatchTime(seconds_left)
 
 
 def set_game_message(message: str) -> None:
-    """The message that the field sends to all robots: `DriverStation.getGameSpecificMessage`."""
+    """Set the message that the field sends to all robots: `DriverStation.getGameSpecificMessage`."""
     setGameSpecificMessage(message)

@@ -1,4 +1,4 @@
-"""Modules on the CAN bus, by their number: pneumatics (CTRE's and REV's) and power distribution."""
+"""Modules on the CAN bus, by number: pneumatics (CTRE's and REV's) and power distribution."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from wpilib import simulation as sim
 
 from .containers import LiveDict, LiveList, Slot, ValueList
-from .fields import HAS_SOURCE, INITIALIZED, Field, group
+from .fields import HAS_SOURCE, INITIALIZED, DeviceField, group
 from .kinds import BOOL, FLOAT, choice
 from .paths import join
 
@@ -20,16 +20,16 @@ CHANNELS = 24  # of a power distribution module
 
 COMPRESSOR = (
     INITIALIZED,
-    Field("on", "CompressorOn", BOOL),
-    Field("pressure_switch", "PressureSwitch", BOOL),
-    Field("current", "CompressorCurrent", FLOAT),
+    DeviceField("on", "CompressorOn", BOOL),
+    DeviceField("pressure_switch", "PressureSwitch", BOOL),
+    DeviceField("current", "CompressorCurrent", FLOAT),
     HAS_SOURCE,
 )
-PCM_COMPRESSOR = (*COMPRESSOR, Field("closed_loop_enabled", "ClosedLoopEnabled", BOOL))
+PCM_COMPRESSOR = (*COMPRESSOR, DeviceField("closed_loop_enabled", "ClosedLoopEnabled", BOOL))
 HUB_COMPRESSOR_FIELDS = (
     *COMPRESSOR,
-    Field("config_type", "CompressorConfigType", HUB_COMPRESSOR),
-    Field(
+    DeviceField("config_type", "CompressorConfigType", HUB_COMPRESSOR),
+    DeviceField(
         "closed_loop_enabled",
         "CompressorConfigType",
         BOOL,
@@ -41,15 +41,15 @@ HUB_COMPRESSOR_FIELDS = (
 )
 DISTRIBUTION = (
     INITIALIZED,
-    Field("voltage", "Voltage", FLOAT),
-    Field("temperature", "Temperature", FLOAT),
-    Field("total_power", default=0.0),
-    Field("total_energy", default=0.0),
+    DeviceField("voltage", "Voltage", FLOAT),
+    DeviceField("temperature", "Temperature", FLOAT),
+    DeviceField("total_power", default=0.0),
+    DeviceField("total_energy", default=0.0),
 )
 
 
 def solenoid(module: Any, path: str, channel: int) -> LiveDict:
-    """A solenoid of a pneumatics module; it is initialized as its module is."""
+    """Return a solenoid of a pneumatics module; it is initialized when its module is."""
 
     def build() -> dict[str, Slot]:
         def watch(fire: Callable[[], None]) -> object:
@@ -62,13 +62,13 @@ def solenoid(module: Any, path: str, channel: int) -> LiveDict:
 
 
 def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
-    """A power distribution module. Both kinds show the 24 channels that the HAL keeps for each."""
+    """Return a power distribution module. Both kinds show the HAL's 24 channels."""
 
     def build() -> dict[str, Slot]:
         slots = {field.name: field.slot(module) for field in DISTRIBUTION}
         currents = ValueList(join(path, "current"), FLOAT, lambda: CHANNELS, module.getCurrent, module.setCurrent)
         slots["current"] = Slot(lambda: currents, None, watch=watch)
-        # As the HAL computes it when the robot asks.
+        # Computed like the HAL's value for the robot.
         slots["total_current"] = Slot(
             lambda: float(sum(currents)),
             None,
@@ -86,9 +86,11 @@ def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
 
 
 class ModuleDict(LiveDict):
-    """Modules by their CAN number, each there once the robot has made it.
+    """Modules by their CAN number; each appears when the robot has created it.
 
-    :param early: the number of a module that can be read and written before that, too
+    :param initialized: returns whether the module with a number was created
+    :param make: returns the module with a number
+    :param early: the number of a module that can also be read and written before that
     """
 
     def __init__(
@@ -106,7 +108,7 @@ class ModuleDict(LiveDict):
     def __getitem__(self, key: Any) -> Any:
         if key not in self and (key != self._early or not isinstance(key, int)):
             there = ", ".join(map(str, self)) or "none"
-            raise self._unknown(key, f"a module appears when the robot makes it; there is now: {there}")
+            raise self._unknown(key, f"a module appears when the robot creates it; existing modules: {there}")
         return self._make(key)
 
     def __setitem__(self, key: Any, value: Any) -> None:
@@ -114,7 +116,7 @@ class ModuleDict(LiveDict):
 
 
 class Modules:
-    """All CAN modules. Each dict is made once and is the same object wherever the tree shows it."""
+    """All CAN modules. Each dict is created once, and is the same object everywhere in the tree."""
 
     def __init__(self) -> None:
         self._pcm_sim = lru_cache(None)(sim.CTREPCMSim)
@@ -142,7 +144,7 @@ class Modules:
         return self._hub_sim(module).getInitialized()
 
     def _either(self, module: int) -> LiveList:
-        # A PCM and a hub may share a number: the PCM has the older right to the key, and what no robot has made is one.
+        # A PCM and a hub may share a number: the key is the PCM's by history, and also before any is created.
         is_hub = self._has_hub(module) and not self._has_pcm(module)
         return self._hub_solenoids(module) if is_hub else self._pcm_solenoids(module)
 
@@ -153,12 +155,12 @@ class Modules:
 
     @property
     def solenoid(self) -> LiveList:
-        """The solenoids of module 0, whether the robot has made it or not: CTRE's, unless it has made REV's only."""
+        """The solenoids of module 0, also before it is created: CTRE's, unless only REV's exists."""
         return self._either(0)
 
     @property
     def compressor(self) -> LiveDict:
-        """The compressor of the robot's first module, CTRE's before REV's; else of CTRE's module 0."""
+        """The compressor of the robot's first module, CTRE's before REV's; by default that of CTRE's module 0."""
         for number in self.pcm_compressor:
             return self._pcm_compressor(number)
         for number in self.ph_compressor:
@@ -166,15 +168,15 @@ class Modules:
         return self._pcm_compressor(0)
 
     def pcm_solenoids(self) -> list[LiveList]:
-        """The solenoids of every CTRE module that the robot has made."""
+        """Return the solenoids of every CTRE module that the robot has created."""
         return [self._pcm_solenoids(number) for number in self.pcm_compressor]
 
     def hub_solenoids(self) -> list[LiveList]:
-        """The solenoids of every REV hub that the robot has made."""
+        """Return the solenoids of every REV hub that the robot has created."""
         return [self._hub_solenoids(number) for number in self.ph_compressor]
 
     def initialized(self) -> list[Slot]:
-        """For each module there may be, whether the robot has made it."""
+        """Return a slot for each possible module that says whether the robot has created it."""
         return [
             INITIALIZED.slot(make(number))
             for make in (self._pcm_sim, self._hub_sim, self._power_sim)

@@ -1,6 +1,6 @@
-"""`get` of motor controllers that do not ask the HAL, but return what their object was last given.
+"""Override `get` of motor controllers that return the value last set, and not that of the HAL.
 
-REV's ``SparkMax.get()`` is one, and a team's own motor controller class may be another.
+REV's ``SparkMax.get()`` is an example; a team's own motor controller class may be another.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ class MotorGetters:
         self._classes: list[type[Any]] = []
 
     def turn_off(self) -> Iterator[Callable[[], None]]:
-        """Have `get` return 0.
+        """Make `get` return 0.
 
-        :returns: what restores it, for each class
+        :returns: a function for each class that restores it
         """
-        if len(sys.modules) != self._modules:  # classes come with modules
+        if len(sys.modules) != self._modules:  # new modules may have new classes
             self._modules = len(sys.modules)
             self._classes = _classes()
         for owner in self._classes:
@@ -40,7 +40,7 @@ def _zero(*_: object, **__: object) -> float:
 
 
 def _classes() -> list[type[Any]]:
-    """Classes with a `get` of their own, if there are any besides WPILib's: those for PWM ask the HAL."""
+    """Return the classes with their own `get`, if there are any besides WPILib's: those for PWM read the HAL."""
     found: list[type[Any]] = []
     derived: list[type[Any]] = MotorController.__subclasses__()
     while derived:

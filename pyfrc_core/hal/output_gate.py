@@ -1,9 +1,9 @@
-"""Outputs as a disabled robot's hardware has them: off, whatever the robot's code sets.
+"""Turn outputs off as the hardware of a disabled robot does, whatever the robot's code sets.
 
 On a robot the roboRIO, pneumatics modules and CAN motor controllers turn their outputs off while it is disabled.
 WPILib's simulated HAL does not: an output reads as the code set it. `OutputGate` turns outputs off while physics runs,
-and then restores what the code set: tests, recordings and the robot itself see that, and it takes effect when the robot
-is enabled.
+and then restores the code's values: tests, recordings and the robot itself see those, and they take effect when the
+robot is enabled.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from wpilib import simulation as sim
 
 from . import modes
 from .can_outputs import CanOutputs
-from .fields import INITIALIZED, Field
+from .fields import INITIALIZED, DeviceField
 from .kinds import BOOL
 from .modules import MODULES
 from .motor_getters import MotorGetters
-from .recording import MadeDevices
+from .tree_reader import CreatedDevices
 
 #: The pulse that stops a PWM motor controller, in microseconds: within the deadband of all of them. Not 0, as on the
-#: robot's wire, which physics that computes with pulses would take for full speed backwards.
+#: robot's wire, since physics that computes with pulses would treat it as full speed backwards.
 _NEUTRAL_US = 1500
 
 _PWMS, _RELAYS = 20, 4
@@ -45,10 +45,10 @@ class OutputGate:
 
     @contextmanager
     def closed_while_disabled(self) -> Iterator[None]:
-        """Keep outputs off within it, if the robot is disabled, e-stopped or without a driver station.
+        """Keep outputs off until the context ends, if the robot is disabled, e-stopped or without a driver station.
 
         These are PWM motor controllers, relays, solenoids and CAN motor controllers. Servos keep their position. An
-        output that is written meanwhile keeps the new value.
+        output that is written in the meantime keeps the new value.
         """
         __tracebackhide__ = True
         if self._closed or modes.is_enabled():
@@ -65,7 +65,7 @@ class OutputGate:
 
 
 class _Channels:
-    """PWM outputs, relays and solenoids: those that the robot has made."""
+    """The PWM outputs, relays and solenoids that the robot has created."""
 
     def __init__(self) -> None:
         self._pwms = [sim.PWMSim(channel) for channel in range(_PWMS)]
@@ -74,25 +74,25 @@ class _Channels:
             *((sim.CTREPCMSim(number), _PCM_CHANNELS) for number in range(MODULES)),
             *((sim.REVPHSim(number), _HUB_CHANNELS) for number in range(MODULES)),
         ]
-        forward = Field("initialized", "InitializedForward", BOOL)
-        reverse = Field("initialized", "InitializedReverse", BOOL)
-        self._devices = MadeDevices(
+        forward = DeviceField("initialized", "InitializedForward", BOOL)
+        reverse = DeviceField("initialized", "InitializedReverse", BOOL)
+        self._devices = CreatedDevices(
             [
                 *(INITIALIZED.slot(pwm) for pwm in self._pwms),
                 *(field.slot(relay) for field in (forward, reverse) for relay in self._relays),
                 *(INITIALIZED.slot(module) for module, _ in self._pneumatics),
             ]
         )
-        self._made: list[bool] | None = None
+        self._created: list[bool] | None = None
         self._motors: list[Any] = []
         self._switches: list[tuple[Callable[[], bool], Callable[[bool], None]]] = []
 
     def turn_off(self) -> Iterator[Restore]:
-        """Turn off what is on."""
-        made = self._devices.made()
-        if made is not self._made:
-            self._made = made
-            self._find(made)
+        """Turn off the outputs that are on."""
+        created = self._devices.created()
+        if created is not self._created:
+            self._created = created
+            self._find(created)
         for motor in self._motors:
             speed = motor.getSpeed()
             if speed and not _drives_servo(motor):
@@ -106,20 +106,20 @@ class _Channels:
                 put(False)
                 yield partial(_restore, get, put, False, True)
 
-    def _find(self, made: list[bool]) -> None:
-        made_next = iter(made)
-        self._motors = [pwm for pwm in self._pwms if next(made_next)]
-        self._switches = [(relay.getForward, relay.setForward) for relay in self._relays if next(made_next)]
-        self._switches += [(relay.getReverse, relay.setReverse) for relay in self._relays if next(made_next)]
+    def _find(self, created: list[bool]) -> None:
+        is_created = iter(created)
+        self._motors = [pwm for pwm in self._pwms if next(is_created)]
+        self._switches = [(relay.getForward, relay.setForward) for relay in self._relays if next(is_created)]
+        self._switches += [(relay.getReverse, relay.setReverse) for relay in self._relays if next(is_created)]
         for module, channels in self._pneumatics:
-            if next(made_next):
+            if next(is_created):
                 for channel in range(channels):
                     get, put = partial(module.getSolenoidOutput, channel), partial(module.setSolenoidOutput, channel)
                     self._switches.append((get, put))
 
 
 def _drives_servo(pwm: sim.PWMSim) -> bool:
-    """Whether the pulses are a servo's: of 600 to 2400 microseconds, with no deadband in the middle."""
+    """Return whether the pulses are for a servo: 600 to 2400 microseconds, without a deadband in the middle."""
     return abs(600 + 1800 * pwm.getPosition() - pwm.getPulseMicrosecond()) <= 1
 
 

@@ -1,7 +1,7 @@
-"""The language of places in `hal_data`: ``joysticks[0].axes[1]``, ``CAN["SPARK MAX [3]"].Velocity``.
+"""Paths of values in `hal_data`: ``joysticks[0].axes[1]``, ``CAN["SPARK MAX [3]"].Velocity``.
 
-A key that is a plain name follows a dot, an index or number stands in brackets, and any other key is a quoted
-string (as in JSON) in brackets. `format_path` and `parse_path` are each other's inverse.
+A key that is a plain name follows a dot, an index or number is in brackets, and any other key is a quoted string (as in
+JSON) in brackets. `format_path` and `parse_path` are inverse functions.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ _BRACKET = re.compile(
 
 @lru_cache(maxsize=4096)
 def parse_path(path: str) -> tuple[Segment, ...]:
-    """The keys and indices that `path` names, in order. Raises ValueError, which shows the wrong part."""
+    """Return the keys and indices in `path`, in order.
+
+    :raises ValueError: when it is not a path; the error shows the wrong part
+    """
     segments: list[Segment] = []
     position = 0
     while position < len(path):
@@ -66,7 +69,7 @@ def _wrong(path: str, position: int) -> WrongPath:
 
 
 def format_path(segments: Iterable[Segment]) -> str:
-    """The path to `segments`, as `parse_path` reads it."""
+    """Return the path of `segments`, in the form that `parse_path` reads."""
     path = ""
     for segment in segments:
         path = join(path, segment)
@@ -74,7 +77,7 @@ def format_path(segments: Iterable[Segment]) -> str:
 
 
 def join(path: str, segment: object) -> str:
-    """`path` with one more key or index."""
+    """Return `path` with one more key or index."""
     if isinstance(segment, str):
         if _NAME.fullmatch(segment):
             return f"{path}.{segment}" if path else segment

@@ -1,7 +1,7 @@
-"""`CAN`: every SimDevice by name, as vendors and WPILib's gyros make them; `robot`: older names for some.
+"""`CAN`: every SimDevice by name, as created by vendors and WPILib's gyros; `robot`: older names for some.
 
-WPILib offers no notice of a new SimDevice in Python, so names are looked up when asked for: that costs a
-tenth of a microsecond.
+In Python, WPILib does not report new SimDevices, so names are looked up on each access, which takes a tenth of a
+microsecond.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Signature = tuple[tuple[str, int, tuple[str, ...]], ...]
 
 
 class SimDevice(LiveDict):
-    """The values of one SimDevice. A value that the robot adds later, and a device made anew, are found."""
+    """The values of one SimDevice. Values that the robot adds later, and a device that is created again, are found."""
 
     def __init__(self, name: str) -> None:
         super().__init__(join("CAN", name), dict)
@@ -30,7 +30,7 @@ class SimDevice(LiveDict):
         self._handle = 0
 
     def refresh(self) -> None:
-        """Look at the device's values again."""
+        """Read the list of the device's values again."""
         self._handle = hs.getSimDeviceHandle(self._name)
         self._getters.clear()
         found: dict[str, Slot] = {}
@@ -98,11 +98,11 @@ class SimDevices(LiveDict):
 
     def __getitem__(self, key: Any) -> SimDevice:
         if key not in self:
-            raise self._unknown(key, None if len(self) else "a SimDevice appears when the robot makes it")
+            raise self._unknown(key, None if len(self) else "a SimDevice appears when the robot creates it")
         return self.device(key)
 
     def device(self, name: str) -> SimDevice:
-        """The dict of a device, whether it is there or not."""
+        """Return the dict of a device, which need not exist."""
         return self._devices.get(name) or self._devices.setdefault(name, SimDevice(name))
 
     def __setitem__(self, key: Any, value: Any) -> None:
@@ -115,7 +115,7 @@ class SimDevices(LiveDict):
         return iter(SimDeviceSim.enumerateDevices(""))
 
     def signature(self) -> Signature:
-        """What there is: it differs when a device or a value came or went. Refreshes what differs."""
+        """Return a value that differs after a device or a value was added or removed; refresh the changed devices."""
         now = []
         for name in SimDeviceSim.enumerateDevices(""):
             values = tuple([value for value, _readonly in SimDeviceSim(name).enumerateValues()])
@@ -128,11 +128,11 @@ class SimDevices(LiveDict):
 
 
 class Bridge(NamedTuple):
-    """The names that `robot` has for a kind of SimDevice.
+    """The names in `robot` for a kind of SimDevice.
 
-    :param device: matches the SimDevice's name; its first group is the port
-    :param keys:   the beginnings of the keys, with ``{}`` for the port
-    :param things: the end of a key and the value it stands for
+    :param device: a pattern for the SimDevice's name; its first group is the port
+    :param keys: the beginnings of the keys, with ``{}`` for the port
+    :param things: the end of each key, and the value that it stands for
     """
 
     device: re.Pattern[str]
@@ -141,7 +141,7 @@ class Bridge(NamedTuple):
 
 
 _AXES = {axis: axis for axis in "xyz"}
-# Degrees and degrees per second about the vertical axis, which is z unless the robot says otherwise.
+# Degrees and degrees per second about the vertical axis, which is z unless the robot sets another one.
 _ADIS = {
     "angle": "gyro_angle_z",
     "rate": "gyro_rate_z",
@@ -172,7 +172,7 @@ BRIDGES = (
 
 
 def bridged(name: str, values: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """The keys that `robot` has for the SimDevice `name`, each with the value it stands for."""
+    """Return the keys in `robot` for the SimDevice `name`, each with the value that it stands for."""
     there = set(values)
     for bridge in BRIDGES:
         if match := bridge.device.fullmatch(name):
@@ -183,10 +183,10 @@ def bridged(name: str, values: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 class RobotDict(LiveDict):
-    """Free keys for devices, such as ``adxrs450_spi_0_angle`` (degrees); `get` gives 0 for a missing one.
+    """Free keys for devices, such as ``adxrs450_spi_0_angle`` (degrees); `get` returns 0 for a missing one.
 
-    A key that stands for a value of a SimDevice is that value, both ways. Written before the robot makes the
-    device, it is kept and applied when the device is found: by the next access to the key, `sync`, or
+    A key for a value of a SimDevice reads and writes that value. If it is written before the robot creates the device,
+    the value is stored, and written when the device is found: by the next access to the key, by `sync`, or by a
     recording.
     """
 
@@ -199,11 +199,11 @@ class RobotDict(LiveDict):
 
     @property
     def waits_for_devices(self) -> bool:
-        """Whether there is a value or a listener that a device, once it is made, may be meant to have."""
+        """Whether there is a value or a listener that may be meant for a device that does not exist yet."""
         return bool(self._free or self._watches)
 
     def sync(self, signature: Signature | None = None) -> None:
-        """Find new devices and hand them what was written for them."""
+        """Find new devices, and write the values that were stored for them."""
         signature = self._devices.signature() if signature is None else signature
         if signature == self._signature:
             return
@@ -237,7 +237,7 @@ class RobotDict(LiveDict):
 
     def __setitem__(self, key: Any, value: Any) -> None:
         if not isinstance(key, str):
-            raise UnknownKey(f"a key of robot is a text, not {key!r}", where=join("robot", key))
+            raise UnknownKey(f"a key of robot is a string, not {key!r}", where=join("robot", key))
         if bridge := self._bridge(key):
             bridge[0][bridge[1]] = value
             return
@@ -251,7 +251,7 @@ class RobotDict(LiveDict):
         del self._free[key]
 
     def clear(self) -> None:
-        """Remove what no device of the robot stands for."""
+        """Remove the keys that do not stand for a device's value."""
         self._free.clear()
 
     def __contains__(self, key: object) -> bool:
@@ -262,11 +262,11 @@ class RobotDict(LiveDict):
         return iter([*self._free, *self._bridged])
 
     def get(self, key: Any, default: Any = 0) -> Any:
-        """The value at `key`, 0 where it is missing."""
+        """Return the value at `key`, or 0 if it is missing."""
         return super().get(key, default)
 
     def register(self, key: Any, callback: Callable[[Any, Any], object], notify: bool = False) -> None:
-        """As for every dict; a key that nothing has set yet may be listened to as well."""
+        """Register a listener, as for every dict, but also for a key that was never set."""
         if bridge := self._bridge(key):
             bridge[0].register(bridge[1], lambda _key, value: callback(key, value), notify)
             return

@@ -1,7 +1,7 @@
-"""WPILib's simulated FPGA clock and driver-station packets: the two things the runtime drives.
+"""WPILib's simulated FPGA clock and driver-station packets, which the runtime drives.
 
-The functions are bound here when this module is imported, before the runtime patches the names that tests
-and robot code call (`wpilib.simulation.stepTiming` and its kin), so they always reach the HAL itself.
+The functions are bound when this module is imported, before the runtime patches the names that tests and robot code
+call (such as `wpilib.simulation.stepTiming`), so they always reach the HAL itself.
 """
 
 from __future__ import annotations
@@ -15,22 +15,22 @@ from hal.simulation import (
     stepTiming,
 )
 
-#: Advance HAL time by so many microseconds, waking the notifiers of C++ code that come due.
+#: Advance HAL time by this many microseconds; wake the notifiers of C++ code that become due.
 step_us = stepTiming
 
-#: Hand the robot what the driver station has been set to, as the next packet.
+#: Deliver the driver station's current data to the robot as the next packet.
 deliver_packet = notifyDriverStationNewData
 
-#: All sensors and outputs back to what they are in a HAL that was never used.
+#: Reset all sensors and outputs to their initial values.
 forget_inputs = resetAllSimData
 
 
 def stop_and_zero() -> None:
-    """From now on HAL time stands still at 0 and moves only by `step_us`."""
+    """Stop HAL time at 0; from now on it advances only by `step_us`."""
     pauseTiming()
     restartTiming()
 
 
 def run_freely() -> None:
-    """HAL time follows the wall clock again."""
+    """Let HAL time follow the wall clock again."""
     resumeTiming()
