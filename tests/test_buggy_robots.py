@@ -83,7 +83,7 @@ def project(name: str, make_project) -> Any:
 
 
 def commands_while_disabled(trace: Path) -> Iterator[float]:
-    """What motors are told anew, once the robot has had half a second to stop them."""
+    """Commands to motors after the half second that the robot has to stop them."""
     disabled_at = 0.0
     enabled = False
     for now, changes in changes_in(trace):

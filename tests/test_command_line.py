@@ -152,17 +152,17 @@ def ask(make_project, shell: str, words: list[str], incomplete: str) -> list[str
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_commands_are_completed(shell: str, make_project) -> None:
-    told = "\n".join(ask(make_project, shell, ["pyfrc"], "dep"))
-    assert "deploy" in told
-    assert "deploy-info" in told
-    assert "test" not in told
+    printed = "\n".join(ask(make_project, shell, ["pyfrc"], "dep"))
+    assert "deploy" in printed
+    assert "deploy-info" in printed
+    assert "test" not in printed
 
 
 @pytest.mark.parametrize("shell", SHELLS)
 def test_options_and_their_choices_are_completed(shell: str, make_project, tmp_path: Path) -> None:
-    told = "\n".join(ask(make_project, shell, ["pyfrc", "test", "--isolation"], "sp"))
-    assert "spawn" in told
-    assert "fork" not in told
+    printed = "\n".join(ask(make_project, shell, ["pyfrc", "test", "--isolation"], "sp"))
+    assert "spawn" in printed
+    assert "fork" not in printed
 
 
 def test_powershell_completes_files_itself(make_project) -> None:
@@ -170,8 +170,8 @@ def test_powershell_completes_files_itself(make_project) -> None:
 
 
 def test_powershell_completes_options_and_shows_their_help(make_project) -> None:
-    (told,) = ask(make_project, "powershell", ["pyfrc", "config", "show"], "--j")
-    assert told.startswith("--json\tAs JSON")
+    (printed,) = ask(make_project, "powershell", ["pyfrc", "config", "show"], "--j")
+    assert printed.startswith("--json\tPrint JSON")
 
 
 @pytest.mark.parametrize("shell", SHELLS)
@@ -212,8 +212,8 @@ from pyfrc_cli.main import run
 run()
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    *told, modules = done.stdout.splitlines()
-    assert told, done.stderr
+    *printed, modules = done.stdout.splitlines()
+    assert printed, done.stderr
     loaded = set(json.loads(modules))
     assert not HEAVY & loaded
     commands = {module for module, _ in COMMANDS.values()} - {"pyfrc_cli.completion"}

@@ -1,4 +1,4 @@
-"""`pyfrc coverage`: a line counts wherever it runs, the figures are coverage.py's, and what never ran is told."""
+"""`pyfrc coverage`: lines count wherever they run, the figures are coverage.py's, and unused functions are listed."""
 
 from __future__ import annotations
 

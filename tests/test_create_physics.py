@@ -24,7 +24,7 @@ FILES = ["physics.py", "sim/config.json"]
 
 
 def create(project: RobotProject) -> str:
-    """Run the command, which must succeed; answers what it printed."""
+    """Run the command, which must succeed; return its output."""
     result = project.run("create-physics")
     assert result.code == 0, result.output
     return result.stdout
@@ -73,7 +73,7 @@ from wpimath.geometry import Transform2d
 
 
 def drive(control, hal_data, physics_controller, sticks):
-    """Push the sticks for a second, then let go; answers how the robot has moved."""
+    """Push the sticks for a second, then release them; return how the robot has moved."""
     start = physics_controller.get_pose()
     control.step_timing(seconds=0.5, autonomous=False, enabled=True)
     assert physics_controller.get_pose() == start
@@ -265,9 +265,9 @@ def test_mecanum(make_project: MakeProject, names: tuple[str, ...], axes: dict[s
     project = make_project(
         {"robot.py": MECANUM.format(*names, **axes), "tests/test_ways.py": MECANUM_TEST.format(**axes)}
     )
-    told = create(project)
-    assert f"front left: PWM 3 ({names[0]})\n  rear left: PWM 0 ({names[1]})" in told
-    assert f"front right: PWM 2 ({names[2]}), forward at -1" in told
+    printed = create(project)
+    assert f"front left: PWM 3 ({names[0]})\n  rear left: PWM 0 ({names[1]})" in printed
+    assert f"front right: PWM 2 ({names[2]}), forward at -1" in printed
     run_tests(project)
 
 
@@ -277,8 +277,8 @@ def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
     assert project.run("init").code == 0
     (project.path / "physics.py").unlink()
     shutil.rmtree(project.path / "sim")
-    told = create(project)
-    assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in told
+    printed = create(project)
+    assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in printed
     project.write(
         {
             "tests/test_physics.py": """
@@ -317,8 +317,8 @@ def test_every_sample_robot_runs_with_it(make_project: MakeProject, robot: str) 
         path = project.path / name
         shutil.rmtree(path, ignore_errors=True)
         path.unlink(missing_ok=True)
-    told = create(project)
-    assert "wrote physics.py\nwrote sim/config.json" in told
+    printed = create(project)
+    assert "wrote physics.py\nwrote sim/config.json" in printed
     run_tests(project, "--builtin", "--", "-k", "operator")
 
 
@@ -363,10 +363,10 @@ def test_a_lift_moves_its_encoder(make_project: MakeProject) -> None:
             """,
         }
     )
-    told = create(project)
-    assert "no drivetrain recognised" in told
-    assert "four_motor_swerve_drivetrain" in told
-    assert "PWM 4 (lift.motor) with lift.encoder (DIO 8, 9)" in told
+    printed = create(project)
+    assert "no drivetrain recognised" in printed
+    assert "four_motor_swerve_drivetrain" in printed
+    assert "PWM 4 (lift.motor) with lift.encoder (DIO 8, 9)" in printed
     assert "Not simulated, since their purpose is unknown: PWM 5 (spare)." in (
         project.path / "physics.py"
     ).read_text().replace("\n# ", " ")
@@ -409,14 +409,14 @@ def test_names_and_inversion_tell_where_no_stick_does(make_project: MakeProject)
             """,
         }
     )
-    told = create(project)
-    assert "left: PWM 2 (motors[left]), forward at -1\n  right: PWM 3 (motors[right])\nnote: No stick moved" in told
-    assert "encoder: lift" not in told
+    printed = create(project)
+    assert "left: PWM 2 (motors[left]), forward at -1\n  right: PWM 3 (motors[right])\nnote: No stick moved" in printed
+    assert "encoder: lift" not in printed
     run_tests(project)
 
 
 def test_what_is_on_the_can_bus_is_named_by_its_number(make_project: MakeProject) -> None:
-    """Where the vendor's object tells the number. Motors whose output cannot be seen are told of."""
+    """Where the vendor's object has the number. Motors with an unknown output are listed."""
     project = make_project(
         {
             "vendor.py": """
@@ -565,11 +565,11 @@ def test_files_are_named_from_the_current_directory(make_project: MakeProject, o
     below = project.path / "src"
     if not options:
         project.write({"pyproject.toml": '[tool.pyfrc]\nmain = "src/robot.py"\n'})
-    told = project.run("create-physics", *options).stdout
-    assert "\nwrote src/physics.py\nwrote src/sim/config.json\n" in told
-    assert "at the top of src/physics.py to" in told
-    told = project.run("create-physics", *(options and ["--main", "robot.py"]), cwd=below).stdout
-    assert "unchanged: physics.py (exists)\n" in told
+    printed = project.run("create-physics", *options).stdout
+    assert "\nwrote src/physics.py\nwrote src/sim/config.json\n" in printed
+    assert "at the top of src/physics.py to" in printed
+    printed = project.run("create-physics", *(options and ["--main", "robot.py"]), cwd=below).stdout
+    assert "unchanged: physics.py (exists)\n" in printed
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
@@ -651,7 +651,7 @@ def test_verbose_shows_where_the_robot_failed(make_project: MakeProject) -> None
 
 
 def test_a_robot_that_fails_when_driven_still_gets_its_files(make_project: MakeProject) -> None:
-    """What its names tell is enough then."""
+    """Then the names are enough."""
     project = make_project(
         {
             "robot.py": """
@@ -742,16 +742,18 @@ class MyRobot(wpilib.TimedRobot):
 
 
 def test_names_that_partly_contradict_the_sticks(make_project: MakeProject) -> None:
-    told = create(make_project({"robot.py": BOTH_DRIVE}))
-    assert "left: PWM 0 (fl), PWM 1 (rl), PWM 4 (l)\n  right: PWM 2 (fr), PWM 3 (rr), PWM 5 (r), forward at -1" in told
-    assert "names, unlike the others: PWM 1 (rl), PWM 3 (rr)." in told
-    assert "note: The motors' sides were derived from their names.\n" in told
+    printed = create(make_project({"robot.py": BOTH_DRIVE}))
+    assert (
+        "left: PWM 0 (fl), PWM 1 (rl), PWM 4 (l)\n  right: PWM 2 (fr), PWM 3 (rr), PWM 5 (r), forward at -1" in printed
+    )
+    assert "names, unlike the others: PWM 1 (rl), PWM 3 (rr)." in printed
+    assert "note: The motors' sides were derived from their names.\n" in printed
 
 
 def test_names_that_contradict_the_sticks_and_do_not_help(make_project: MakeProject) -> None:
     """Three on the left and one on the right make no drivetrain."""
     names = "self.left_1, self.left_2, self.left_3, self.right_1, self.a, self.b"
-    told = create(
+    printed = create(
         make_project(
             {
                 "robot.py": re.sub("self.fl, self.rl.*self.r =", f"{names} =", BOTH_DRIVE)
@@ -760,8 +762,8 @@ def test_names_that_contradict_the_sticks_and_do_not_help(make_project: MakeProj
             }
         )
     )
-    assert told.startswith("no drivetrain recognised\n")
-    assert "unlike the others: " in told
+    assert printed.startswith("no drivetrain recognised\n")
+    assert "unlike the others: " in printed
 
 
 def test_mecanum_with_followers(make_project: MakeProject) -> None:
@@ -774,8 +776,8 @@ def test_mecanum_with_followers(make_project: MakeProject) -> None:
         self.drive =""",
     )
     project = make_project({"robot.py": robot, "tests/test_ways.py": MECANUM_TEST.format(**axes)})
-    told = create(project)
-    assert "mecanum drive\n  front left: PWM 3 (fl), PWM 13 (f[0])\n  rear left: PWM 0 (rl), PWM 10 (f[1])\n" in told
+    printed = create(project)
+    assert "mecanum drive\n  front left: PWM 3 (fl), PWM 13 (f[0])\n  rear left: PWM 0 (rl), PWM 10 (f[1])\n" in printed
     run_tests(project)
 
 
@@ -802,16 +804,16 @@ class Module:
 """
     head = "class MyRobot(wpilib.TimedRobot):\n    def robotInit(self):"
     project = make_project({"robot.py": f"import wpilib\n\n{module}\n\n{head}{init}"})
-    told = create(project)
-    assert told.startswith("swerve drive, which you need to complete\n  drive: PWM 0 (")
-    assert "\n  steering: PWM 4 (" in told
-    assert "drivetrains.four_motor_swerve_drivetrain()" in told
-    assert "docs/physics.md" in told
-    assert "  left" not in told
+    printed = create(project)
+    assert printed.startswith("swerve drive, which you need to complete\n  drive: PWM 0 (")
+    assert "\n  steering: PWM 4 (" in printed
+    assert "drivetrains.four_motor_swerve_drivetrain()" in printed
+    assert "docs/physics.md" in printed
+    assert "  left" not in printed
 
 
 def test_a_single_encoder_of_the_drivetrain(make_project: MakeProject) -> None:
-    told = create(
+    printed = create(
         make_project(
             {
                 "robot.py": """
@@ -825,4 +827,4 @@ def test_a_single_encoder_of_the_drivetrain(make_project: MakeProject) -> None:
             }
         )
     )
-    assert "note: The encoder was assigned to the left side.\n" in told
+    assert "note: The encoder was assigned to the left side.\n" in printed

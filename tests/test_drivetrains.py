@@ -1,4 +1,4 @@
-"""The simple drivetrains: both generations of callers, and WPILib's own kinematics as the judge."""
+"""The simple drivetrains: both generations of callers, with WPILib's own kinematics as the reference."""
 
 from __future__ import annotations
 
@@ -216,9 +216,9 @@ def test_measures_may_be_quantities() -> None:
 def test_tank_agrees_with_wpilib_and_with_itself(left: float, right: float, width: float, speed: float) -> None:
     two, four = TwoMotorDrivetrain(width, speed), FourMotorDrivetrain(width, speed)
     chassis = two.calculate(left, -right)
-    judge = DifferentialDriveKinematics(width * METRES)
-    assert close(axes(judge.toChassisSpeeds(two.wheelSpeeds)), axes(chassis))
-    wheels = judge.toWheelSpeeds(chassis)
+    reference = DifferentialDriveKinematics(width * METRES)
+    assert close(axes(reference.toChassisSpeeds(two.wheelSpeeds)), axes(chassis))
+    wheels = reference.toWheelSpeeds(chassis)
     assert close((wheels.left, wheels.right), (left * speed * METRES, right * speed * METRES))
     assert close(axes(two.kinematics.toChassisSpeeds(two.wheelSpeeds)), axes(chassis))
 
@@ -235,13 +235,13 @@ def test_mecanum_agrees_with_wpilib_and_with_itself(
     drivetrain = MecanumDrivetrain(x, y, speed)
     chassis = drivetrain.calculate(lf, lr, -rf, -rr)
     half_x, half_y = x / 2 * METRES, y / 2 * METRES
-    judge = MecanumDriveKinematics(
+    reference = MecanumDriveKinematics(
         Translation2d(half_y, half_x),
         Translation2d(half_y, -half_x),
         Translation2d(-half_y, half_x),
         Translation2d(-half_y, -half_x),
     )
-    for kinematics in (judge, drivetrain.kinematics):
+    for kinematics in (reference, drivetrain.kinematics):
         assert close(axes(kinematics.toChassisSpeeds(drivetrain.wheelSpeeds)), axes(chassis))
     assert close(as_metres(drivetrain.get_vector(lr, rr, lf, rf)), axes(chassis))
 
@@ -257,7 +257,7 @@ def test_mecanum_wheels_that_agree_give_back_the_motion_they_were_made_for(
     assert close(as_metres(drivetrain.get_vector(*motor)), (vx, vy, omega))
 
 
-def swerve_judge(x: float, y: float) -> SwerveDrive4Kinematics:
+def swerve_reference(x: float, y: float) -> SwerveDrive4Kinematics:
     """In the order of our parameters: left rear, right rear, left front, right front."""
     half_x, half_y = x / 2 * METRES, y / 2 * METRES
     return SwerveDrive4Kinematics(
@@ -282,14 +282,14 @@ def test_swerve_agrees_with_wpilib(motor: Any, angle: Any, x: float, y: float, s
         SwerveModuleState(value * speed * METRES, Rotation2d(-math.radians(clockwise)))
         for value, clockwise in zip(motor, angle, strict=True)
     )
-    assert close(axes(swerve_judge(x, y).toChassisSpeeds(states)), as_metres(answer))  # type: ignore[arg-type]
+    assert close(axes(swerve_reference(x, y).toChassisSpeeds(states)), as_metres(answer))  # type: ignore[arg-type]
 
 
 @given(vx=st.floats(-3, 3), vy=st.floats(-3, 3), omega=st.floats(-1, 1), x=lengths, y=lengths)
 def test_swerve_wheels_that_agree_give_back_the_motion_they_were_made_for(
     vx: float, vy: float, omega: float, x: float, y: float
 ) -> None:
-    states = swerve_judge(x, y).toSwerveModuleStates(ChassisSpeeds(vx, vy, omega))
+    states = swerve_reference(x, y).toSwerveModuleStates(ChassisSpeeds(vx, vy, omega))
     assume(all(state.speed > 1e-5 for state in states))  # below, WPILib takes any direction for forward
     motor = [state.speed / 20 for state in states]
     angle = [-state.angle.degrees() for state in states]

@@ -1,4 +1,4 @@
-"""Robots that cannot be imported, and files with no robot class or with two: told once, before any test runs."""
+"""Robots that cannot be imported, and files with no robot class or with two: reported once, before any test runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""`pyfrc fuzz`: what it finds and keeps, that it repeats itself, and that what it keeps fails until it is repaired."""
+"""`pyfrc fuzz`: what it finds and saves, that it repeats itself, and that its scripts fail until the robot is repaired.
+"""
 
 from __future__ import annotations
 
@@ -117,7 +118,7 @@ def test_in_a_robot_without_a_fault_nothing_is_found(make_project) -> None:
     assert not kept(project)
 
 
-#: What robots must not do: what it is called, the code of `autonomousPeriodic`, and what is told.
+#: Misbehavior: its kind, the code of `autonomousPeriodic`, and the message.
 FAULTS = {
     "slow_loops": (
         "wpilib.wait(0.05)",
@@ -156,19 +157,19 @@ FAULTY = """
 
 @pytest.mark.parametrize("kind", FAULTS)
 def test_what_is_a_failure(kind: str, make_project) -> None:
-    code, told = FAULTS[kind]
+    code, message = FAULTS[kind]
     slow = "hang_seconds = 0.2"
     project = make_project({"robot.py": FAULTY.format(code), "pyproject.toml": SHORT_MATCHES.format(6, slow)})
     result = project.run("fuzz", "--runs", "2")
     assert result.code == 1, result.output
     line = project.line("robot.py", "def autonomousPeriodic" if kind == "hangs" else code)
-    assert told.format(line) in result.stdout, result.output
+    assert message.format(line) in result.stdout, result.output
     (file,) = (project.path / "tests/fuzz").iterdir()
     assert file.name.startswith(kind.lower())
     assert sum(len(step.writes) for step in load_script(file).steps) <= 2
     replayed = project.run("replay", file)
     assert replayed.code == 1
-    assert ("the robot code hangs here" if kind == "hangs" else f"then {told.format(line)}") in replayed.output
+    assert ("the robot code hangs here" if kind == "hangs" else f"then {message.format(line)}") in replayed.output
     if kind in ("hal_errors", "not_a_number", "process_ended", "stuck_modes"):
         assert project.run("test").code == 1
 
@@ -240,7 +241,7 @@ def test_where_processes_cannot_be_forked_new_ones_find_the_same(make_project) -
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "message"),
     [
         (("--time", "5", "--runs", "5"), "mutually exclusive"),
         (("--runs", "0"), "0 is not in the range"),
@@ -248,10 +249,10 @@ def test_where_processes_cannot_be_forked_new_ones_find_the_same(make_project) -
         (("--project", "nowhere"), "there is no directory nowhere"),
     ],
 )
-def test_wrong_usage(arguments: tuple[str, ...], told: str, make_project) -> None:
+def test_wrong_usage(arguments: tuple[str, ...], message: str, make_project) -> None:
     result = make_project({"robot.py": FAULTY.format("pass")}).run("fuzz", *arguments)
     assert result.code == 2
-    assert told in result.stderr
+    assert message in result.stderr
     assert "Traceback" not in result.output
 
 
@@ -315,7 +316,7 @@ EXITING = """
 
 
 @pytest.mark.parametrize(
-    ("isolation", "where", "code", "told", "name"),
+    ("isolation", "where", "code", "message", "name"),
     [
         ("auto", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
         ("spawn", 2, "exit()", "exit() was called", "systemexit-robot-autonomousinit"),
@@ -325,7 +326,7 @@ EXITING = """
     ],
 )
 def test_a_robot_that_exits_has_failed(
-    isolation: str, where: int, code: str, told: str, name: str, make_project
+    isolation: str, where: int, code: str, message: str, name: str, make_project
 ) -> None:
     lines = ["pass", "pass", "pass"]
     lines[where] = code
@@ -334,11 +335,11 @@ def test_a_robot_that_exits_has_failed(
     place = project.place("robot.py", code)
     result = project.run("fuzz", "--runs", "2", "--seed", "1")
     assert result.code == 1, result.output
-    assert f"{place}: {told}\n" in result.stdout, result.output
+    assert f"{place}: {message}\n" in result.stdout, result.output
     assert f"pyfrc replay tests/fuzz/{name}.jsonl\n" in result.stdout, result.output
     assert "2 matches, " in result.stdout
     replayed = project.run("replay", f"tests/fuzz/{name}.jsonl")
-    assert (replayed.code, replayed.stdout.splitlines()[-1]) == (1, f"then {place}: {told}"), replayed.output
+    assert (replayed.code, replayed.stdout.splitlines()[-1]) == (1, f"then {place}: {message}"), replayed.output
 
 
 @pytest.mark.skipif(not FORK_IS_SAFE, reason="this is about forks")
@@ -417,7 +418,7 @@ def test_a_match_that_goes_on_from_another_is_the_same_until_then(make_project) 
 
 
 class Imagined(MatchExecutor):
-    """Robots that fail when, of what they are told, these come together."""
+    """An executor whose robot fails when a script writes all of these targets."""
 
     def __init__(self, needed: frozenset[str]) -> None:
         super().__init__(Project(Path("robot.py")), 1, Path())
@@ -430,11 +431,11 @@ class Imagined(MatchExecutor):
     def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
         for task in tasks:
             assert isinstance(task, ReplayTask)
-            told: set[str] = set()
+            written: set[str] = set()
             failure, end_us = None, task.script.end_us
             for step in task.script.steps:
-                told |= step.writes.keys()
-                if self._needed <= told:
+                written |= step.writes.keys()
+                if self._needed <= written:
                     failure, end_us = (
                         FuzzFailure("KeyError", "robot.py:3", "f", "robot.py:3: KeyError: 3"),
                         step.at_us + 20_000,
@@ -476,7 +477,7 @@ def test_simpler_values_can_be_and_are_shorter(kind: Kind, value: float) -> None
         assert len(json.dumps(each)) < len(json.dumps(value))
 
 
-# -- what is told ----------------------------------------------------------------------------------------------------
+# -- descriptions ------------------------------------------------------------------------------------------------------
 
 
 def test_the_story_is_one_that_people_tell() -> None:

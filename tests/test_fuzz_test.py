@@ -1,4 +1,4 @@
-"""The ready-made fuzz test: what it mashes, that it repeats itself, and what it leaves behind when a robot fails."""
+"""The ready-made fuzz test: its inputs, that it is repeatable, and the script that it saves when a robot fails."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ EVERYTHING = """
             wpilib.SmartDashboard.putNumber("Gain", 0.5)
     """
 
-#: A test of the user's that mashes matches of 20 s and writes down what was written, for each seed.
-MASH = """
+#: A user's test that fuzzes matches of 20 s and records the writes, for each seed.
+FUZZ_TEST = """
     import json, random
     from pathlib import Path
     import pytest
@@ -55,7 +55,7 @@ MASH = """
     from pyfrc_core.runtime.scripts.targets import Targets
 
     @pytest.mark.parametrize("seed", range(SEEDS))
-    def test_mash(seed, control, fake_time, hal_data, robot):
+    def test_fuzz_matches(seed, control, fake_time, hal_data, robot):
         run = fake_time.run
         generator = InputGenerator(
             random.Random(seed), run, seconds=20, physics_inputs=frozenset(PHYSICS), game_messages=("LRL", "RLR")
@@ -89,10 +89,10 @@ MASH = """
 Written = list[tuple[int, str, object]]
 
 
-def mash(make_project, seeds: int, physics: tuple[str, ...] = (), robot: str = EVERYTHING, **env: str) -> list[Written]:
-    """What the generator wrote in matches from the seeds 0, 1, ..."""
-    test = MASH.replace("SEEDS", str(seeds)).replace("PHYSICS", repr(physics))
-    project = make_project({"robot.py": robot, "tests/test_mash.py": test})
+def fuzz(make_project, seeds: int, physics: tuple[str, ...] = (), robot: str = EVERYTHING, **env: str) -> list[Written]:
+    """Return what the generator wrote in matches from the seeds 0, 1, ..."""
+    test = FUZZ_TEST.replace("SEEDS", str(seeds)).replace("PHYSICS", repr(physics))
+    project = make_project({"robot.py": robot, "tests/test_fuzz_matches.py": test})
     result = project.run("test", env=env)
     assert result.code == 0, result.output
     files = [project.path / f"written-{seed}.json" for seed in range(seeds)]
@@ -102,10 +102,10 @@ def mash(make_project, seeds: int, physics: tuple[str, ...] = (), robot: str = E
 @pytest.fixture(scope="module")
 def matches(make_shared_project) -> list[Written]:
     """What was written in twelve matches of a robot with one of everything."""
-    return mash(make_shared_project, 12)
+    return fuzz(make_shared_project, 12)
 
 
-# -- what is mashed --------------------------------------------------------------------------------------------------
+# -- which inputs are written -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -134,12 +134,12 @@ def matches(make_shared_project) -> list[Written]:
         "nt:/SmartDashboard/Gain",
     ],
 )
-def test_everything_that_the_robot_has_is_mashed(target: str, matches: list[Written]) -> None:
+def test_every_input_of_the_robot_is_written(target: str, matches: list[Written]) -> None:
     assert any(target == written for match in matches for _, written, _ in match)
 
 
 @pytest.mark.parametrize("target", ["dio[1].value", "dio[2].value", "dio[5].value", "analog_in[0].voltage"])
-def test_what_nobody_reads_is_not_mashed(target: str, matches: list[Written]) -> None:
+def test_inputs_without_a_device_are_not_written(target: str, matches: list[Written]) -> None:
     """An output, an encoder's wire, a channel that the robot has not made, a gyro's wire."""
     assert all(target != written for match in matches for _, written, _ in match)
 
@@ -234,7 +234,7 @@ def test_modes_come_as_from_a_driver_station(matches: list[Written]) -> None:
         "import commands2.button; self.stick = commands2.button.CommandXboxController(3)",
     ],
 )
-def test_the_joysticks_that_the_robot_has_made_are_mashed_most(where: str, make_project) -> None:
+def test_the_joysticks_of_the_robot_are_used_most(where: str, make_project) -> None:
     robot = f"""
     import wpilib
 
@@ -242,7 +242,7 @@ def test_the_joysticks_that_the_robot_has_made_are_mashed_most(where: str, make_
         def robotInit(self):
             {where}
     """
-    matches = mash(make_project, 4, robot=robot)
+    matches = fuzz(make_project, 4, robot=robot)
     ports = [target.partition(".")[0] for match in matches for _, target, _ in match if target.startswith("joysticks")]
     assert ports.count("joysticks[3]") > 0.8 * len(ports)
 
@@ -251,7 +251,7 @@ def test_the_joysticks_that_the_robot_has_made_are_mashed_most(where: str, make_
 
 
 def test_the_same_seed_writes_the_same_whatever_python_hashes(make_shared_project, matches) -> None:
-    again = mash(make_shared_project, 3, PYTHONHASHSEED="77")
+    again = fuzz(make_shared_project, 3, PYTHONHASHSEED="77")
     assert again == matches[:3]
     assert again[0] != again[1] != again[2]
 
@@ -291,8 +291,8 @@ SIMULATED = """
 
 
 def test_inputs_that_physics_drives_are_left_to_it(make_project) -> None:
-    """Also those that nobody has named."""
-    for match in mash(make_project, 3, robot=SIMULATED):
+    """Also sensors that the test has not named."""
+    for match in fuzz(make_project, 3, robot=SIMULATED):
         targets = {target for _, target, _ in match}
         assert "encoder[1].count" in targets
         assert not targets & {"encoder[0].count", "encoder[0].rate"}
@@ -300,7 +300,7 @@ def test_inputs_that_physics_drives_are_left_to_it(make_project) -> None:
 
 def test_inputs_that_are_said_to_be_driven_are_never_written(make_shared_project) -> None:
     named = ("encoder[0].count", "analog_in[2].voltage")
-    for match in mash(make_shared_project, 3, named):
+    for match in fuzz(make_shared_project, 3, named):
         assert not {target for _, target, _ in match} & {*named, "encoder[0].rate"}
 
 
@@ -319,7 +319,7 @@ CHORD = """
         def teleopPeriodic(self):
             self.motor.set(self.stick.getY() * random.uniform(0.5, 1))
             if self.stick.getRawButton(2) and self.stick.getRawButton(3) and not self.switch.get():
-                raise RuntimeError(f"nobody thought of this {random.random()}")
+                raise RuntimeError(f"an untested combination {random.random()}")
     """
 
 
@@ -327,7 +327,7 @@ def test_the_shortest_way_to_a_failure_is_kept_and_replayed(make_project) -> Non
     project = make_project({"robot.py": CHORD, "tests/fuzz_test.py": "from pyfrc.tests.fuzz_test import *\n"})
     result = project.run("test", "--seed", "3")
     assert result.code == 1
-    assert re.search(r"robot\.py:13: RuntimeError: nobody thought of this [\d.]+", result.output), result.output
+    assert re.search(r"robot\.py:13: RuntimeError: an untested combination [\d.]+", result.output), result.output
     assert "random seed: 3" in result.output
     file = re.search(r"pyfrc replay (\S+)", result.output)
     assert file is not None, result.output
@@ -341,11 +341,11 @@ def test_the_shortest_way_to_a_failure_is_kept_and_replayed(make_project) -> Non
         "dio[3].value": False,
     }
     assert re.search(r"at [\d.]+ s in teleoperated: .*", result.output), result.output
-    told = re.search(r"at [\d.]+ s: (robot\.py:13: RuntimeError: .*)", result.output)
-    assert told is not None, result.output
+    failed = re.search(r"at [\d.]+ s: (robot\.py:13: RuntimeError: .*)", result.output)
+    assert failed is not None, result.output
     replayed = project.run("replay", file[1])
     assert replayed.code == 1
-    assert f"then {told[1]}\n" in replayed.output  # with the very number
+    assert f"then {failed[1]}\n" in replayed.output  # with the very number
     assert (project.path / ".pyfrc/.gitignore").read_text() == "*\n"
 
 
@@ -361,7 +361,7 @@ def test_where_processes_cannot_be_forked_the_whole_match_is_kept(make_project) 
         }
     )
     result = project.run("test", "--seed", "3")
-    failure = re.search(r"robot\.py:13: RuntimeError: nobody thought of this [\d.]+", result.output)
+    failure = re.search(r"robot\.py:13: RuntimeError: an untested combination [\d.]+", result.output)
     assert failure is not None, result.output
     assert "cannot be forked here" in result.output
     at = re.search(r"at ([\d.]+) s of a match", result.output)
@@ -376,7 +376,9 @@ def test_the_replay_of_what_was_written_does_the_same(name: str, make_project) -
     """The traces of a match and of its replay are equal."""
     files = {path.relative_to(ROBOTS / name).as_posix(): path.read_text() for path in (ROBOTS / name).rglob("*.py")}
     files = {path: text for path, text in files.items() if not path.startswith("tests/")}
-    project = make_project(files | {"tests/test_mash.py": MASH.replace("SEEDS", "1").replace("PHYSICS", "()")})
+    project = make_project(
+        files | {"tests/test_fuzz_matches.py": FUZZ_TEST.replace("SEEDS", "1").replace("PHYSICS", "()")}
+    )
     result = project.run("test", "--trace", "traces")
     assert result.code == 0, result.output
     (trace,) = (project.path / "traces").iterdir()

@@ -1,4 +1,4 @@
-"""A project's physics.py: found, told which generation it is, run with the robot; and what is said of a wrong one."""
+"""A project's physics.py: its discovery, its generation, its run with the robot, and messages about invalid ones."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ SLOW_ROBOT = """
 
 
 def profile(project: RobotProject, *command: str, options: tuple[str, ...] = ()) -> tuple[Result, dict[str, Any]]:
-    """Profile a command that passes, and answer what was written as JSON as well."""
+    """Profile a command that passes, and return the JSON report."""
     result = project.run("profile", "--json", "profile.json", *options, *command)
     assert result.code == 0, result.output
     return result, json.loads((project.path / "profile.json").read_text("utf-8"))

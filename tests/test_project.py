@@ -1,4 +1,4 @@
-"""Where the robot is: found from anywhere in the project, told by options or settings, made by `pyfrc init`."""
+"""Where the robot is: found from anywhere in the project, chosen by options or settings, created by `pyfrc init`."""
 
 from __future__ import annotations
 

@@ -169,19 +169,19 @@ def test_a_deploy_and_its_kin(robot: Roborio, make_project: MakeProject) -> None
     code, plan, errors = quiet("deploy", "--dry-run")
     assert (code, plan.splitlines()[0], errors) == (0, "+ robot.py", "")
     assert quiet("deploy") == (0, "", "")
-    code, told, errors = quiet("deploy-info")
-    assert (code, told[:10], errors) == (0, "robot     ", "")
+    code, printed, errors = quiet("deploy-info")
+    assert (code, printed[:10], errors) == (0, "robot     ", "")
     project.write({"tests/test_it.py": failing.format(True)})
-    code, told, errors = quiet("deploy")
+    code, printed, errors = quiet("deploy")
     assert (code, errors.startswith("error: not deployed: the tests failed")) == (1, True)
-    assert "the words of a test" in told
+    assert "the words of a test" in printed
     project.write({"robot.py": ROBOT + DIES})
-    code, told, errors = quiet("deploy", "--skip-tests")
+    code, printed, errors = quiet("deploy", "--skip-tests")
     assert (code, errors.startswith("error: the new program ended after ")) == (3, True)
-    assert all(line.startswith("  | ") for line in told.splitlines())
-    assert "RuntimeError: no such gyro" in told
+    assert all(line.startswith("  | ") for line in printed.splitlines())
+    assert "RuntimeError: no such gyro" in printed
     assert quiet("deploy", "--rollback") == (0, "", "")
-    code, told, errors = quiet("deploy", "--rollback", "1", "--json")
-    assert [line.split('"')[3] for line in told.splitlines()] == ["result"]
+    code, printed, errors = quiet("deploy", "--rollback", "1", "--json")
+    assert [line.split('"')[3] for line in printed.splitlines()] == ["result"]
     assert quiet("undeploy", "--yes") == (0, "", "")
     assert not os.path.lexists(robot.home / "py")

@@ -59,7 +59,7 @@ def text(*lines: object, header: object = HEADER) -> str:
 
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in ROBOTS.glob("*/robot.py")))
 def test_a_recordings_replay_does_the_same(name: str, make_project) -> None:
-    """Of each sample robot, the one of its own tests that tells it most; but no whole match."""
+    """For each sample robot, the one of its own tests with the most inputs, but not a whole match."""
     project = make_project({})
     shutil.copytree(ROBOTS / name, project.path, dirs_exist_ok=True)
     result = project.run("test", "--record", "recordings", "--", "--ignore=tests/pyfrc_test.py", "-k", "not match")
@@ -345,7 +345,7 @@ EXITING = """
 
 
 @pytest.mark.parametrize(
-    ("code", "told"),
+    ("code", "message"),
     [
         ("exit()", "exit() was called"),
         ("sys.exit(5)", "exit(5) was called"),
@@ -353,12 +353,12 @@ EXITING = """
         ("raise KeyboardInterrupt", "KeyboardInterrupt"),
     ],
 )
-def test_a_robot_that_exits_has_failed(code: str, told: str, make_project) -> None:
+def test_a_robot_that_exits_has_failed(code: str, message: str, make_project) -> None:
     script = text({"t": 0, "set": {"mode": "autonomous"}})
     project = make_project({"robot.py": EXITING.format(code), "script.jsonl": script})
     result = project.run("replay", "script.jsonl")
     assert result.code == 1, result.output
-    assert result.stdout.splitlines()[-1] == f"then {project.place('robot.py', code)}: {told}"
+    assert result.stdout.splitlines()[-1] == f"then {project.place('robot.py', code)}: {message}"
 
 
 def test_a_robot_that_exits_at_its_end_has_failed(make_project) -> None:

@@ -39,7 +39,7 @@ def measured(l_kv: float = 0.9, l_ka: float = 0.2, r_kv: float = 1.0, r_ka: floa
 
 
 class Track:
-    """Composes what `get_distance` answers: x forward and y to the right of the first pose, angle clockwise."""
+    """Compose the results of `get_distance`: x forward and y to the right of the first pose, angle clockwise."""
 
     def __init__(self, model: TankModel) -> None:
         self.model, self.x, self.y, self.angle = model, 0.0, 0.0, 0.0

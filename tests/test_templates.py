@@ -112,8 +112,8 @@ def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, templat
 
 
 @pytest.mark.parametrize("project", ["timed", "command", "magic"], indirect=True)
-def test_mashing_everything_finds_nothing(project: RobotProject) -> None:
-    """In a robot of each kind; a match of the others is mashed among their own tests."""
+def test_fuzzing_finds_no_failure(project: RobotProject) -> None:
+    """For a robot of each kind; the others are fuzzed for one match by their own tests."""
     result = project.run("fuzz", "--runs", "1", "--seed", "7", "--jobs", "1")
     assert result.code == 0, result.output
     assert "Nothing was found." in result.stdout

@@ -1,4 +1,4 @@
-"""Wrong settings, wrong options, the wrong directory: told in a sentence, with what to do."""
+"""Wrong settings, wrong options, the wrong directory: each gives one sentence and a remedy."""
 
 from __future__ import annotations
 
