@@ -1,5 +1,4 @@
-"""`pyfrc fuzz`: what it finds and saves, that it repeats itself, and that its scripts fail until the robot is repaired.
-"""
+"""`pyfrc fuzz`: what it finds and saves, that it repeats itself, and that its scripts fail until the repair."""
 
 from __future__ import annotations
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from typing import Any
 
 import ntcore
 
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.targets import NETWORK
 from .inputs import Input
-from .values import draw
+from .values import Value, draw
 
 _DASHBOARD_TABLES = ("/SmartDashboard/", "/Shuffleboard/")
 
@@ -58,7 +57,7 @@ class DashboardGenerator:
                 entry = ntcore.NetworkTableInstance.getDefault().getEntry(each.target.removeprefix(NETWORK))
                 self._numbers[each.target] = entry.getDouble(0.0)
 
-    def write(self, now_us: int, found: dict[str, Any]) -> None:
+    def write(self, now_us: int, found: dict[str, Value]) -> None:
         """Add the writes of this time: a choice for each new chooser, and a random change now and then."""
         rng = self._rng
         for each in self._inputs:
@@ -69,5 +68,5 @@ class DashboardGenerator:
             self._choose(rng.choice(self._inputs), found)
         self.next_us = now_us + PACKET_US + round(rng.expovariate(1 / _PAUSE) * 50) * PACKET_US
 
-    def _choose(self, each: Input, found: dict[str, Any]) -> None:
-        found[each.target] = draw(each.kind, self._rng, each.options, self._numbers.get(each.target))
+    def _choose(self, each: Input, found: dict[str, Value]) -> None:
+        found[each.target] = draw(each.kind, self._rng, each.options, self._numbers.get(each.target, 0.0))

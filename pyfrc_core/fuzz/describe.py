@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
 
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.script import InputScript
 from ..runtime.scripts.targets import MATCH_TIME, MODE, NETWORK
 from .failure import FuzzFailure
-from .values import NOT_PRESSED
+from .values import NOT_PRESSED, Value
 
 _MODES = {
     "disabled": "disabled",
@@ -38,7 +37,7 @@ def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
     """Return a line for each moment of the script; the last line describes the failure."""
     lines = []
     mode = "disabled"
-    held: dict[str, Any] = {}
+    held: dict[str, Value] = {}
     for step in script.steps:
         mode = step.writes.get(MODE, mode)
         name = _MODES.get(mode, mode)
@@ -55,7 +54,7 @@ def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
     return (*lines, f"at {failed_us / 1e6:.2f} s: {failure.text.partition(chr(10))[0]}")
 
 
-def _still_held(held: Mapping[str, Any], now: Mapping[str, Any]) -> str:
+def _still_held(held: Mapping[str, Value], now: Mapping[str, Value]) -> str:
     """Return the controls that are held and not changed at this moment."""
     sticks = {_stick(target) for target in now} - {None}
     found = []
@@ -73,7 +72,7 @@ def _stick(target: str) -> str | None:
     return control[1] if control is not None else None
 
 
-def _described(target: str, value: Any) -> str:
+def _described(target: str, value: Value) -> str:
     control = _CONTROL.fullmatch(target)
     if control is not None:
         stick, sort, number = control.groups()
@@ -90,5 +89,5 @@ def _described(target: str, value: Any) -> str:
     return f"{_NAMES.get(target, target)} {value!r}"
 
 
-def _number(value: Any) -> str:
+def _number(value: Value) -> str:
     return f"{value:g}" if isinstance(value, float | int) else repr(value)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import wpilib
 
@@ -18,6 +18,7 @@ from .inputs import Input, find_controls, find_sensors
 from .joystick_generator import JoystickGenerator
 from .match_plan import plan_match
 from .sensor_generator import SensorGenerator
+from .values import Value
 
 if TYPE_CHECKING:
     from ..runtime.robot import RobotRun
@@ -86,9 +87,9 @@ class InputGenerator:
         """Return whether the match is over."""
         return now_us >= self._end_us
 
-    def writes(self, now_us: int) -> Mapping[str, Any]:
+    def writes(self, now_us: int) -> Mapping[str, Value]:
         """Return what to write before the packet of this time, by target; often nothing."""
-        found: dict[str, Any] = {}
+        found: dict[str, Value] = {}
         if now_us < self._next_us:
             return found
         while self._planned < len(self._plan) and self._plan[self._planned].at_us <= now_us:
@@ -110,13 +111,13 @@ class InputGenerator:
         self._next_us = min(self._find_us, self._check_us, plan, *(part.next_us for part in parts))
         return found
 
-    def _apply_event(self, now_us: int, event: Mapping[str, Any], found: dict[str, Any]) -> None:
+    def _apply_event(self, now_us: int, event: Mapping[str, Value], found: dict[str, Value]) -> None:
         found |= event
         for target, value in event.items():
             if target == MODE:
-                self._enter(value, now_us)
+                self._enter(str(value), now_us)
             elif target == "control.dsAttached":
-                self._attached = value
+                self._attached = bool(value)
             elif (stick := _PLUGGED.fullmatch(target)) is not None:
                 (self._sticks.plug_in if value else self._sticks.unplug)(int(stick[1]))
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from wpilib.simulation import SimDeviceSim
 
@@ -30,7 +29,7 @@ class Input:
     target: str
     kind: Kind
     device: str = ""
-    options: tuple[Any, ...] = ()
+    options: tuple[str, ...] = ()
 
 
 # -- joysticks -------------------------------------------------------------------------------------------------------

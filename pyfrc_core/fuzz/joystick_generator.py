@@ -9,12 +9,11 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
 from .inputs import Input
-from .values import NOT_PRESSED, Kind, draw
+from .values import NOT_PRESSED, Kind, Value, draw
 
 #: Packets come 50 times a second, and hands move no faster.
 _STEP_US = 2 * PACKET_US
@@ -28,7 +27,7 @@ _KNOWN, _OTHERS = 100, 1
 _BUTTONS = (0, 0, 1, 1, 2, 2, 2, 3, 3, 4)
 _AXES = (0, 0, 1, 1, 1, 2, 2, 2, 4)
 
-_RELEASED: dict[Kind, Any] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": NOT_PRESSED}
+_RELEASED: dict[Kind, float] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": NOT_PRESSED}
 
 
 class JoystickGenerator:
@@ -42,7 +41,7 @@ class JoystickGenerator:
         self._ports: list[tuple[list[Input], list[Input], list[Input]]] = [([], [], []) for _ in range(JOYSTICKS)]
         self._weights: tuple[int, ...] = _UNKNOWN
         self._pose_until_us = 0
-        self._held: dict[Input, Any] = {}
+        self._held: dict[Input, float] = {}
         #: Taps: the time, the button, and whether it is pressed or released.
         self._taps: list[tuple[int, Input, bool]] = []
         #: Axes in motion: the time and value at the start, and the value at the end of the pose.
@@ -77,7 +76,7 @@ class JoystickGenerator:
         """Begin another pose now."""
         self._pose_until_us = self.next_us = now_us
 
-    def write(self, now_us: int, found: dict[str, Any]) -> None:
+    def write(self, now_us: int, found: dict[str, Value]) -> None:
         """Add the writes of this time."""
         if now_us >= self._pose_until_us:
             self._pose(now_us, found)
@@ -93,7 +92,7 @@ class JoystickGenerator:
         step = [now_us + _STEP_US] if self._moving or self._trembling is not None else []
         self.next_us = min([self._pose_until_us, *step, *(at for at, _, _ in self._taps)])
 
-    def _pose(self, now_us: int, found: dict[str, Any]) -> None:
+    def _pose(self, now_us: int, found: dict[str, Value]) -> None:
         rng = self._rng
         self._finish(found)
         for control in [control for control in self._held if rng.random() < 0.75]:
@@ -110,7 +109,7 @@ class JoystickGenerator:
         for port in dict.fromkeys(ports):
             self._press(*self._ports[port], now_us, found)
 
-    def _finish(self, found: dict[str, Any]) -> None:
+    def _finish(self, found: dict[str, Value]) -> None:
         """Taps end with the pose, and moving sticks arrive where they were going."""
         for _, button, pressed in self._taps:
             if not pressed:
@@ -122,7 +121,7 @@ class JoystickGenerator:
         self._taps, self._moving, self._trembling = [], {}, None
 
     def _press(
-        self, buttons: list[Input], axes: list[Input], povs: list[Input], now_us: int, found: dict[str, Any]
+        self, buttons: list[Input], axes: list[Input], povs: list[Input], now_us: int, found: dict[str, Value]
     ) -> None:
         rng = self._rng
         for button in _some(rng, buttons, rng.choice(_BUTTONS)):
@@ -148,7 +147,7 @@ class JoystickGenerator:
                     ]
         self._taps.sort()
 
-    def _set(self, control: Input, value: Any, found: dict[str, Any]) -> None:
+    def _set(self, control: Input, value: float, found: dict[str, Value]) -> None:
         released = _RELEASED[control.kind]
         if value == self._held.get(control, released):
             return

@@ -5,12 +5,12 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from ..config.settings import MatchSettings
 from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.targets import MATCH_TIME, MODE, plugged
+from .values import Value
 
 _STATIONS = ("red1", "red2", "red3", "blue1", "blue2", "blue3")
 
@@ -30,7 +30,7 @@ class MatchEvent:
     """
 
     at_us: int
-    writes: dict[str, Any]
+    writes: dict[str, Value]
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class _Planner:
         #: When the field sends the game message: before the match, with autonomous, with teleoperated (2020), or never.
         self._message_with = rng.choice(("at once", "autonomous", "autonomous", "autonomous", "teleop", "never"))
 
-    def add(self, at: float, writes: dict[str, Any]) -> None:
+    def add(self, at: float, writes: dict[str, Value]) -> None:
         self.events.append(MatchEvent(round(at * 1_000_000 / PACKET_US) * PACKET_US, writes))
 
     def stop_for_good(self, at: float) -> None:
@@ -102,7 +102,7 @@ class _Planner:
     def before(self) -> None:
         """Add the state in which the robot starts."""
         rng = self._rng
-        now: dict[str, Any] = {}
+        now: dict[str, Value] = {}
         station = rng.choice(_STATIONS)
         if rng.random() < 0.1:  # the robot is ready before its driver station
             now |= {"control.dsAttached": False, "alliance_station": "unknown"}
@@ -119,7 +119,7 @@ class _Planner:
     def period(self, start: float, period: _Period) -> None:
         """Add one period and its disturbances."""
         rng, enabled = self._rng, period.mode in _BEFORE
-        now: dict[str, Any] = {MODE: period.mode, MATCH_TIME: round(period.seconds, 3) if enabled else 0.0}
+        now: dict[str, Value] = {MODE: period.mode, MATCH_TIME: round(period.seconds, 3) if enabled else 0.0}
         if period.mode == self._message_with:
             late = 0.0 if rng.random() < 0.7 else rng.uniform(0, period.seconds)
             if late:

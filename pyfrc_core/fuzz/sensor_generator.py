@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Iterator
-from typing import Any
 
 from ..hal import HalData
 from ..runtime.clock import PACKET_US
 from .inputs import Input
-from .values import SPANS, can_be, draw, nearest
+from .values import SPANS, Value, can_be, draw, nearest
 
 #: Interval of the updates while a value changes gradually.
 _STEP_US = 3 * PACKET_US
@@ -22,7 +21,7 @@ _PAUSE, _SHORTEST_PAUSE = 1.0, 0.1
 _SELDOM = ("power", "fpga_button", "pdp")
 
 #: Adds the next writes; returns when to call it again, or None when it is finished.
-_Change = Callable[[int, dict[str, Any]], "int | None"]
+_Change = Callable[[int, dict[str, Value]], "int | None"]
 
 
 class SensorGenerator:
@@ -36,7 +35,7 @@ class SensorGenerator:
         self.excluded: set[str] = set()
         self.paused = False
         #: The value of each input when it was last written or read, by target.
-        self._known: dict[str, Any] = {}
+        self._known: dict[str, Value] = {}
         self._inputs: list[Input] = []
         self._devices: dict[str, list[Input]] = {}
         self._names: list[str] = []
@@ -53,9 +52,9 @@ class SensorGenerator:
         self._names = list(self._devices)
         self._weights = [0.25 if name.startswith(_SELDOM) else 1.0 for name in self._names]
 
-    def write(self, now_us: int, found: dict[str, Any]) -> None:
+    def write(self, now_us: int, found: dict[str, Value]) -> None:
         """Add the writes of this time."""
-        now: dict[str, Any] = {}
+        now: dict[str, Value] = {}
         for device, (due_us, go) in list(self._going.items()):
             if device in self.excluded:
                 del self._going[device]
@@ -88,7 +87,7 @@ class SensorGenerator:
                 yield each
             known[each.target] = now
 
-    def _change(self, now_us: int, found: dict[str, Any]) -> None:
+    def _change(self, now_us: int, found: dict[str, Value]) -> None:
         rng = self._rng
         if not self._names or self.paused:
             return
@@ -104,7 +103,7 @@ class SensorGenerator:
         if begun is not None:
             self._going[device] = begun
 
-    def _measure(self, each: Input, now_us: int, found: dict[str, Any]) -> tuple[int, _Change] | None:
+    def _measure(self, each: Input, now_us: int, found: dict[str, Value]) -> tuple[int, _Change] | None:
         rng = self._rng
         before = self._hal_data.read(each.target)
         if each.kind in ("connected", "battery"):  # a loose contact, a heavy load: soon over
@@ -123,14 +122,14 @@ class SensorGenerator:
             return None
         end_us = now_us + round(rng.uniform(0.3, 4) * 50) * PACKET_US
 
-        def go(at_us: int, found: dict[str, Any]) -> int | None:
+        def go(at_us: int, found: dict[str, Value]) -> int | None:
             done = min(1.0, (at_us - now_us) / (end_us - now_us))
             found[each.target] = nearest(each.kind, before + (value - before) * done)
             return at_us + _STEP_US if at_us < end_us else None
 
         return now_us + _STEP_US, go
 
-    def _turn_wheel(self, device: str, now_us: int, found: dict[str, Any]) -> tuple[int, _Change] | None:
+    def _turn_wheel(self, device: str, now_us: int, found: dict[str, Value]) -> tuple[int, _Change] | None:
         """Turn an encoder. Its count continues from the current value, since robots reset it."""
         rng, hal_data = self._rng, self._hal_data
         target, rate_target = f"{device}.count", f"{device}.rate"
@@ -143,7 +142,7 @@ class SensorGenerator:
         end_us = now_us + round(rng.uniform(0.1, 2) * 50) * PACKET_US
         found[rate_target] = nearest("rate", speed * abs(hal_data.read(f"{device}.distance_per_pulse")))
 
-        def go(at_us: int, found: dict[str, Any]) -> int | None:
+        def go(at_us: int, found: dict[str, Value]) -> int | None:
             found[target] = nearest("count", hal_data.read(target) + speed * _STEP_US / 1_000_000)
             if at_us < end_us:
                 return at_us + _STEP_US
@@ -153,8 +152,8 @@ class SensorGenerator:
         return now_us + _STEP_US, go
 
 
-def _back(each: Input, value: Any) -> _Change:
-    def go(at_us: int, found: dict[str, Any]) -> None:
+def _back(each: Input, value: Value) -> _Change:
+    def go(at_us: int, found: dict[str, Value]) -> None:
         found[each.target] = value
 
     return go

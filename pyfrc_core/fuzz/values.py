@@ -7,7 +7,10 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypeAlias
+
+#: The value of an input.
+Value: TypeAlias = bool | int | float | str
 
 #: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes.
 Kind = Literal[
@@ -87,7 +90,7 @@ _FACTORS = (0.5, 1.0, 2.0)
 _DIGITS = 3
 
 
-def draw(kind: Kind, rng: random.Random, options: tuple[Any, ...] = (), now: Any = 0) -> Any:
+def draw(kind: Kind, rng: random.Random, options: tuple[str, ...] = (), now: float = 0) -> Any:
     """Return a random value of this kind.
 
     :param options: the possible values, for kinds with a few values only
@@ -131,7 +134,7 @@ def nearest(kind: Kind, value: float) -> float:
     return round(inside) if span.whole else round(float(inside), _DIGITS)
 
 
-def simpler(kind: Kind, value: Any) -> list[float]:
+def simpler(kind: Kind, value: Value) -> list[float]:
     """Return values of this kind that are shorter to read, the shortest first; for kinds without numbers, none."""
     span = SPANS.get(kind)
     if span is None or isinstance(value, bool) or not isinstance(value, int | float):
@@ -142,7 +145,7 @@ def simpler(kind: Kind, value: Any) -> list[float]:
     return sorted(found, key=lambda each: (len(repr(each)), abs(each - value)))
 
 
-def can_be(kind: Kind, value: Any, options: tuple[Any, ...] = ()) -> bool:
+def can_be(kind: Kind, value: object, options: tuple[str, ...] = ()) -> bool:
     """Return whether an input of this kind can have this value."""
     span = SPANS.get(kind)
     if kind == "pov":
@@ -153,5 +156,6 @@ def can_be(kind: Kind, value: Any, options: tuple[Any, ...] = ()) -> bool:
         return isinstance(value, float)
     if span is None:
         return isinstance(value, bool)
-    right_type = isinstance(value, int) if span.whole else isinstance(value, int | float)
-    return right_type and not isinstance(value, bool) and span.low <= value <= span.high
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return (isinstance(value, int) or not span.whole) and span.low <= value <= span.high

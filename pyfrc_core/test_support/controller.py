@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeVar, cast, overload
 
 from ..config.settings import MatchSettings
 from ..hal import modes
@@ -22,6 +22,13 @@ if TYPE_CHECKING:
     from ..project import Project
 
 OnStep: TypeAlias = Callable[[float], object]
+Instance = TypeVar("Instance")
+
+
+class HasOnStep(Protocol):
+    """An object with a method that is called on each step."""
+
+    def on_step(self, now: float, /) -> object: ...
 
 
 class TestController:
@@ -79,7 +86,14 @@ class TestController:
 
     # -- running with a function ------------------------------------------------------------------------------
 
-    def run_test(self, controller: OnStep | type[Any] | None = None) -> Any:
+    # A class is callable, too: the first form that fits decides.
+    @overload
+    def run_test(self, controller: type[Instance]) -> Instance: ...  # type: ignore[overload-overlap]
+
+    @overload
+    def run_test(self, controller: OnStep | HasOnStep | None = None) -> None: ...
+
+    def run_test(self, controller: type[Instance] | OnStep | HasOnStep | None = None) -> Instance | None:
         """Run the robot code. Call it at most once in a test.
 
         :param controller: a function that takes the robot time in seconds, or a class or an object with such a method
@@ -123,8 +137,10 @@ class TestController:
             run.end()
         return instance
 
-    def _steps(self, controller: OnStep | type[Any] | None) -> tuple[Any, list[OnStep]]:
-        instance = controller() if inspect.isclass(controller) else None
+    def _steps(self, controller: type[Instance] | OnStep | HasOnStep | None) -> tuple[Instance | None, list[OnStep]]:
+        instance: Instance | None = None
+        if inspect.isclass(controller):
+            instance = cast("type[Instance]", controller)()
         steps: list[OnStep] = []
         if self._practice_match is not None:
             steps.append(self._practice_match.on_step)
