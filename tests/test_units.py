@@ -146,7 +146,7 @@ def test_definitions_are_kept_and_read_again(tmp_path: Path, monkeypatch: pytest
     def parses(*_: Any) -> None:
         raise AssertionError("parsed again")
 
-    monkeypatch.setattr(registry, "_build_and_keep", parses)
+    monkeypatch.setattr(registry, "_build_and_cache", parses)
     assert works(registry.build(folder))
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == kept
 
