@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator
 
+import hal
 import pytest
 
 from pyfrc_core.hal import modes, timing
@@ -15,7 +16,13 @@ from .timeline import Timeline
 
 
 @pytest.fixture
-def timeline() -> Generator[Timeline]:
+def _unreported_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Do not report to the HAL that a program has started: it cannot forget that, and other tests expect none."""
+    monkeypatch.setattr(hal, "observeUserProgramStarting", lambda: None)
+
+
+@pytest.fixture
+def timeline(_unreported_start: None) -> Generator[Timeline]:
     """A clock at 0, and its threads; this thread drives it."""
     timeline = Timeline()
     cooperative.scope.threads = Notifier.threads = timeline.threads
@@ -31,7 +38,7 @@ def timeline() -> Generator[Timeline]:
 
 
 @pytest.fixture
-def run() -> Generator[RobotRun]:
+def run(_unreported_start: None) -> Generator[RobotRun]:
     """A run that is open, with no robot yet."""
     run = RobotRun()
     run.open()
