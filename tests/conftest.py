@@ -22,7 +22,7 @@ from hypothesis import HealthCheck, settings
 
 if TYPE_CHECKING:
     from roborio.local import Agents
-    from warm_processes import StartHost, WarmProcesses
+    from warm_processes import StartInterpreter, WarmProcesses
 
     from pyfrc_core.config.sim_file import LoadedSimConfig
 
@@ -156,11 +156,11 @@ def _warm_processes() -> WarmProcesses:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _start_cold() -> StartHost:
-    """Start the hosts of simulations in this process warm, too; the value starts them as users' are started."""
-    from pyfrc_core.sim.engine import host_process
+def _start_cold() -> StartInterpreter:
+    """Start the hosts of simulations in this process warm, too; the value starts processes as users' are started."""
+    from pyfrc_core.processes import spawn
 
-    cold = host_process.start_host
+    cold = spawn.start
     if warm_start.POSSIBLE:
         from warm_processes import start_warm
 
@@ -169,9 +169,9 @@ def _start_cold() -> StartHost:
 
 
 @pytest.fixture
-def cold_hosts(_start_cold: StartHost, monkeypatch: pytest.MonkeyPatch) -> None:
+def cold_hosts(_start_cold: StartInterpreter, monkeypatch: pytest.MonkeyPatch) -> None:
     """Start the hosts of this test's simulations in new interpreters."""
-    monkeypatch.setattr("pyfrc_core.sim.engine.host_process.start_host", _start_cold)
+    monkeypatch.setattr("pyfrc_core.processes.spawn.start", _start_cold)
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ import pytest
 from conftest import MakeProject
 
 from pyfrc_core.errors import RobotCodeError
-from pyfrc_core.fuzz.forked_work import ForkedWork
+from pyfrc_core.processes import fork
+from pyfrc_core.processes.call import ForkedCall
+from pyfrc_core.processes.exit import exit_now
+from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
-from pyfrc_core.runtime import forks
-from pyfrc_core.runtime.forks import FORK_IS_SAFE
-from pyfrc_core.runtime.own_process import exit_now
 
 only_forked = pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork")
 
@@ -69,14 +69,14 @@ def test_failures_after_a_test_has_been_called(isolation: str, make_project: Mak
     assert "1 failed, 2 passed, 3 errors" in result.stdout
 
 
-def finished(work: ForkedWork[object], polled: bool) -> None:
+def finished(work: ForkedCall[object], polled: bool) -> None:
     """Wait until the process has ended; whether or not its answer was read meanwhile."""
     if polled:
         while not work.finished:
-            forks.wait_for_any([work.fileno()])
+            fork.wait_for_any([work.fileno()])
             work.poll()
     else:
-        os.waitid(os.P_PID, work._fork._pid, os.WEXITED | os.WNOWAIT)
+        os.waitid(os.P_PID, work._worker._fork._pid, os.WEXITED | os.WNOWAIT)
         work.poll()
 
 
@@ -84,9 +84,9 @@ def finished(work: ForkedWork[object], polled: bool) -> None:
 @pytest.mark.parametrize("polled", [True, False])
 def test_an_answer_comes_before_the_exit(polled: bool, make_project: MakeProject) -> None:
     project = Project(make_project({"robot.py": ROBOT}).path / "robot.py")
-    work: ForkedWork[object] = ForkedWork(lambda words: "the answer")
+    work: ForkedCall[object] = ForkedCall(lambda words: "the answer")
     finished(work, polled)
-    assert work.answer(project, "meanwhile") == "the answer"
+    assert work.result(project.files, "meanwhile") == "the answer"
     work.close()
 
 
@@ -96,15 +96,15 @@ def test_a_process_that_dies_in_the_middle_of_its_answer(
 ) -> None:
     """As when a thread of the robot's calls `os._exit` meanwhile."""
     project = Project(make_project({"robot.py": ROBOT}).path / "robot.py")
-    write_all = forks.write_all
+    write_all = fork.write_all
 
     def cut(descriptor: int, data: bytes) -> None:
         write_all(descriptor, data[: len(data) // 2])
         exit_now(5)
 
-    monkeypatch.setattr(forks, "write_all", cut)
-    work: ForkedWork[object] = ForkedWork(lambda words: "the answer" * 1000)
+    monkeypatch.setattr(fork, "write_all", cut)
+    work: ForkedCall[object] = ForkedCall(lambda words: "the answer" * 1000)
     finished(work, polled=True)
     with pytest.raises(RobotCodeError, match="exit code 5, in the middle of the match"):
-        work.answer(project, "in the middle of the match")
+        work.result(project.files, "in the middle of the match")
     work.close()

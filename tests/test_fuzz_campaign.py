@@ -25,8 +25,8 @@ from pyfrc_core.fuzz.match_executor import MatchExecutor
 from pyfrc_core.fuzz.seed_schedule import SeedScheduler
 from pyfrc_core.fuzz.shrink import Shrinker
 from pyfrc_core.fuzz.values import SPANS, Kind, can_be, nearest, simpler
+from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork, wait_for_any
 from pyfrc_core.project import Project
-from pyfrc_core.runtime.forks import FORK_IS_SAFE, Fork, wait_for_any
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
 ROBOTS = Path(__file__).parent / "robots"

@@ -14,8 +14,8 @@ import pytest
 from conftest import MakeProject
 from sim_robots import PATIENCE, wait
 
+from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
-from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine import output_pipe, processes, robot_channel
 from pyfrc_core.sim.engine.messages import Failed

@@ -18,8 +18,8 @@ from conftest import RobotProject
 from sim_robots import FILES, PATIENCE, wait
 
 from pyfrc_core.interruption import ending_like_ctrl_c
+from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
-from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.sim import SimOptions, Simulation
 
 SIGNALS = [

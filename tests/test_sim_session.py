@@ -18,8 +18,8 @@ import pytest
 from sim_robots import FILES, PATIENCE, run, settle, wait
 
 from pyfrc_core.errors import UsageError
+from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
-from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script, parse_script
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine.watch import Watch

@@ -26,8 +26,8 @@ if missing_tkinter():  # some imports below need it
 
 from pyfrc_core.errors import SettingsError, UsageError
 from pyfrc_core.interruption import ending_like_ctrl_c
+from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
-from pyfrc_core.runtime.forks import FORK_IS_SAFE
 from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine.scene import Tag, Target

@@ -12,11 +12,11 @@ import warm_start
 from conftest import MakeProject, RobotProject
 from sim_robots import settle, wait
 
+from pyfrc_core.processes.spawn import Interpreter
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine import host_process
 from pyfrc_core.sim.engine.host import Hosting
-from pyfrc_core.sim.engine.host_process import HostProcess
 
 pytestmark = pytest.mark.skipif(not warm_start.POSSIBLE, reason="here all hosts start cold")
 
@@ -75,12 +75,12 @@ ROBOT = """
 
 
 @pytest.fixture
-def started(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[HostProcess]]:
+def started(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Interpreter]]:
     """The hosts that a test starts."""
-    hosts: list[HostProcess] = []
+    hosts: list[Interpreter] = []
     start_host = host_process.start_host
 
-    def noted(hosting: Hosting, output: int) -> HostProcess:
+    def noted(hosting: Hosting, output: int) -> Interpreter:
         hosts.append(start_host(hosting, output))
         return hosts[-1]
 
@@ -88,7 +88,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[HostProcess]]:
     return hosts
 
 
-def started_warm(host: HostProcess) -> bool:
+def started_warm(host: Interpreter) -> bool:
     return type(host).__name__ != "Popen"
 
 
@@ -110,7 +110,7 @@ def found_by(project: RobotProject) -> dict[str, object]:
 
 
 def test_a_robot_finds_what_it_finds_where_hosts_start_cold(
-    make_project: MakeProject, started: list[HostProcess], request: pytest.FixtureRequest
+    make_project: MakeProject, started: list[Interpreter], request: pytest.FixtureRequest
 ) -> None:
     project = make_project({"robot.py": ROBOT})
     warm = found_by(project)
@@ -121,7 +121,7 @@ def test_a_robot_finds_what_it_finds_where_hosts_start_cold(
 
 @pytest.mark.parametrize("cold", [False, True])
 def test_the_end_of_a_host_is_reported(
-    cold: bool, make_project: MakeProject, started: list[HostProcess], request: pytest.FixtureRequest
+    cold: bool, make_project: MakeProject, started: list[Interpreter], request: pytest.FixtureRequest
 ) -> None:
     if cold:
         request.getfixturevalue("cold_hosts")
@@ -143,7 +143,7 @@ def test_it_starts_cold_where_a_fork_would_differ(
     make_project: MakeProject,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    started: list[HostProcess],
+    started: list[Interpreter],
 ) -> None:
     (tmp_path / "modules").mkdir()
     (tmp_path / "modules" / module).touch()
@@ -152,9 +152,7 @@ def test_it_starts_cold_where_a_fork_would_differ(
         monkeypatch.setenv(variable, "1")
     read, write = os.pipe()
     try:
-        hosting = Hosting(
-            str(tmp_path / "nothing"), b"", [str(tmp_path / "modules")], str(tmp_path), True, str(tmp_path)
-        )
+        hosting = Hosting(str(tmp_path / "nothing"), b"", True, str(tmp_path))
         host = host_process.start_host(hosting, write)
         assert not started_warm(host)
         host.wait()

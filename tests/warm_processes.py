@@ -1,6 +1,6 @@
 """Processes of commands and simulations that start warm: forked from one that has imported what they import.
 
-These are the hosts of simulated robots, and what `pyfrc_core.runtime.apart` starts. One process forks them, for pytest
+These are the hosts of simulated robots, and what `pyfrc_core.processes.call` starts. One process forks them, for pytest
 and for the commands that `warm_start` starts. A fork becomes what a new interpreter would have become; where it would
 not become the same, a new interpreter is started.
 """
@@ -13,7 +13,6 @@ import gc
 import importlib
 import json
 import os
-import pickle
 import secrets
 import select
 import signal
@@ -28,11 +27,9 @@ from typing import NamedTuple
 
 from warm_start import LARGEST, READ_AT_START, end_like_python
 
-from pyfrc_core.runtime import apart
+from pyfrc_core.processes import spawn
 from pyfrc_core.sim.engine import host_process
 from pyfrc_core.sim.engine.host import Hosting
-from pyfrc_core.sim.engine.host import main as be_a_host
-from pyfrc_core.sim.engine.host_process import HostProcess
 
 #: Measuring begins before most imports.
 _MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
@@ -40,7 +37,7 @@ _MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
 #: May differ: what a fork can be given after its start, and what is read no more when the path is set.
 _NOT_COMPARED = {"PYTHONDONTWRITEBYTECODE", "PYTHONPATH", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
 
-StartHost = Callable[[Hosting, int], HostProcess]
+StartInterpreter = Callable[[spawn.Start], spawn.Interpreter]
 
 
 class WarmProcesses:
@@ -60,39 +57,31 @@ class WarmProcesses:
                 pass_fds=[listener.fileno()],
                 stdin=subprocess.PIPE,  # closed when this process ends, and the other ends then
                 stdout=subprocess.PIPE,  # as a host has one
-                cwd=host_process.DIRECTORY,
+                cwd=spawn.DIRECTORY,
                 env={**environment, **host_process.ENVIRONMENT},
             )
         atexit.register(process.communicate)
 
 
 def start_warm(address: Callable[[], str]) -> None:
-    """Have this process's simulations ask for their hosts, and `run_apart` for its processes.
+    """Have this process's simulations ask for their hosts, and `run_in_subprocess` for its processes.
 
     :param address: returns where, when the first is asked for
     """
-    host_process.start_host = functools.partial(_start_host, address, host_process.start_host)
-    apart.run_interpreter = functools.partial(_run_apart, address, apart.run_interpreter)
+    spawn.start = functools.partial(_start, address, spawn.start)
 
 
-def _start_host(address: Callable[[], str], cold: StartHost, hosting: Hosting, output: int) -> HostProcess:
-    if not hosting.fork:  # the robot's own process: it has imported nothing before
-        return cold(hosting, output)
-    environment = os.environ | host_process.ENVIRONMENT
-    warm = _ask(address(), "host", hosting.path, environment, pickle.dumps(hosting), output)
-    return warm or cold(hosting, output)
-
-
-def _run_apart(address: Callable[[], str], cold: Callable[[apart.Job], int], job: apart.Job) -> int:
+def _start(address: Callable[[], str], cold: StartInterpreter, how: spawn.Start) -> spawn.Interpreter:
+    hosting = how.call.args[0] if isinstance(how.call, functools.partial) else None
+    is_host = isinstance(hosting, Hosting)
+    # A robot's own process has imported nothing before, nor has a test's, which has the same environment as pytest.
+    if not hosting.fork if isinstance(hosting, Hosting) else how.environment is None:
+        return cold(how)
+    environment = {**os.environ, **(how.environment or {})}
     with Path(os.devnull).open("wb") as unread:
-        warm = _ask(address(), "apart", job.path, os.environ | apart.ENVIRONMENT, pickle.dumps(job), unread.fileno())
-    if warm is None:
-        return cold(job)
-    try:
-        return warm.wait()
-    except BaseException:  # interrupted
-        warm.kill()
-        raise
+        output = how.stdout if is_host and isinstance(how.stdout, int) else unread.fileno()
+        warm = _ask(address(), "host" if is_host else "call", sys.path, environment, how.job(), output)
+    return warm or cold(how)
 
 
 def _ask(
@@ -212,7 +201,7 @@ def _hides(directories: Iterable[str], modules: set[str]) -> bool:
 
 
 def _become(request: _Request) -> None:
-    """Be what Python is after `host_process.start_host`, or `apart.run_interpreter`."""
+    """Be what Python is after `spawn.start`."""
     if request.kind == "host":
         os.setsid()
     stdin, output = request.streams
@@ -221,12 +210,9 @@ def _become(request: _Request) -> None:
     os.environ.clear()
     os.environ.update(request.environment)
     sys.dont_write_bytecode = bool(os.environ.get("PYTHONDONTWRITEBYTECODE"))
-    if request.kind == "host":
-        sys.orig_argv[1:] = ["-c", "from pyfrc_core.sim.engine.host import main; main()"]
-        sys.argv[:] = ["-c"]
-    else:
-        sys.orig_argv[1:] = ["-m", apart.__name__]
-        sys.argv[:] = [apart.__file__]
+    sys.orig_argv[1:] = spawn.ARGUMENTS
+    sys.argv[:] = spawn.ARGUMENTS[:1]
+    if request.kind != "host":
         for stream in (sys.stdin, sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
     sys.modules["__main__"] = types.ModuleType("__main__")
@@ -234,7 +220,7 @@ def _become(request: _Request) -> None:
     request.asking.send(str(os.getpid()).encode())
     request.asking.detach()
     os.closerange(3, os.sysconf("SC_OPEN_MAX"))
-    be_a_host() if request.kind == "host" else apart.main()
+    spawn.main()
     end_like_python(0)
 
 

@@ -32,7 +32,7 @@ POSSIBLE = hasattr(os, "pidfd_open") and "PYFRC_COLD_STARTS" not in os.environ
 READ_AT_START = ("PYTHON", "LC_", "LANG", "LD_", "COVERAGE_")
 
 #: What most commands import, sooner or later; but nothing that takes a name that measuring has to replace before
-#: (`exit_now`, in `pyfrc_core.fuzz.forked_work` and `pyfrc_core.test_support.isolation`).
+#: (what `pyfrc_core.measure.user_functions` does).
 _IMPORTED = (
     "wpilib.drive",
     "wpilib.simulation",

@@ -9,14 +9,14 @@ import threading
 from typing import IO, TYPE_CHECKING
 
 from ..errors import PyfrcError, RobotCodeError
+from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
-from ..runtime.apart import run_apart
 from ..runtime.loading import load_robot
 from .errors import RefusedError
 from .progress import Questions
 
 if TYPE_CHECKING:
-    from ..runtime.own_process import LastWords
+    from ..processes.crash_report import CrashLog
 
 
 def refuse_other_main_files(project: Project, nonstandard: bool) -> None:
@@ -70,14 +70,14 @@ class ImportCheck:
 
     def _run(self) -> None:
         try:
-            run_apart(_load, self._project, "while it was imported")
+            run_in_subprocess(_load, self._project, "while it was imported")
         except PyfrcError as error:
             self._error = error
         except Exception as error:
             self._error = RobotCodeError(f"the robot program cannot be imported: {error}")
 
 
-def _load(project: Project, words: LastWords) -> None:
+def _load(project: Project, log: CrashLog) -> None:
     load_robot(project)
 
 

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 from ..config.robotpy import load_robot_packages
 from ..errors import PyfrcError, SettingsError
+from ..processes.call import run_in_subprocess
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_libraries
-from ..runtime.apart import run_apart
 from ..runtime.loading import load_robot
 from ..runtime.misspelled_methods import MisspelledMethod, find_misspelled_methods
 from .findings import Finding, hint, ok, problem
 from .installed import Installed, fits
 
 if TYPE_CHECKING:
-    from ..runtime.own_process import LastWords
+    from ..processes.crash_report import CrashLog
 
 
 def examine_project(project: Project, installed: Installed) -> Iterator[Finding]:
@@ -92,7 +92,7 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[Finding]:
 
 def _robot_class(project: Project) -> Iterator[Finding]:
     try:
-        name, misspelled = run_apart(_look_at_class, project, "while it was imported")
+        name, misspelled = run_in_subprocess(_look_at_class, project, "while it was imported")
     except (PyfrcError, OSError) as error:
         yield problem_of("program", error, "Correct that line; pyfrc test shows more of it.")
     except Exception as error:  # what the other process could not tell
@@ -103,7 +103,7 @@ def _robot_class(project: Project) -> Iterator[Finding]:
             yield problem("program", str(method), method.remedy)
 
 
-def _look_at_class(project: Project, words: LastWords) -> tuple[str, list[MisspelledMethod]]:
+def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[MisspelledMethod]]:
     return load_robot(project).__name__, find_misspelled_methods(project)
 
 

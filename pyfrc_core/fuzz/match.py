@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..physics.construct import construct
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
+from ..runtime.crash_moment import CrashMoment
 from ..runtime.exceptions import TestEnded, TestRanTooLong
 from ..runtime.hang_detector import HangDetector
 from ..runtime.loading import load_robot
@@ -30,7 +31,7 @@ from .oracle import attach_oracle
 from .seed_schedule import SeedSchedule
 
 if TYPE_CHECKING:
-    from ..runtime.own_process import LastWords
+    from ..processes.crash_report import CrashLog
 
 #: The seed of the robot's own random generators. It is the default seed of tests, so that a script has the same effect
 #: there.
@@ -81,14 +82,14 @@ class MatchResult:
     inputs: dict[str, Input] = field(default_factory=dict)
 
 
-def play(project: Project, task: Task, words: LastWords) -> MatchResult:
+def play(project: Project, task: Task, log: CrashLog) -> MatchResult:
     """Run one task in this process, which must end afterwards.
 
-    :param words: where to write a crash report when the robot's code cannot be stopped
+    :param log: where to write a crash report when the robot's code cannot be stopped
     """
     if isinstance(task, ReplayTask):
-        return _replay(project, task, words)
-    return _fuzz(project, task, words)
+        return _replay(project, task, log)
+    return _fuzz(project, task, log)
 
 
 @lru_cache(maxsize=1)
@@ -112,12 +113,12 @@ def load(project: Project) -> type[Any]:
     return robot_class
 
 
-def _fuzz(project: Project, task: FuzzTask, words: LastWords) -> MatchResult:
+def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
     lines = robot_lines(project)
     seconds = project.settings.fuzz.match_seconds
     rng = task.schedule.rng()
     before_us = 0
-    with _robot(project, words, ROBOT_SEED) as run, ExitStack() as closing:
+    with _robot(project, log, ROBOT_SEED) as run, ExitStack() as closing:
         generator = InputGenerator(
             rng,
             run,
@@ -152,9 +153,9 @@ def _fuzz(project: Project, task: FuzzTask, words: LastWords) -> MatchResult:
         )
 
 
-def _replay(project: Project, task: ReplayTask, words: LastWords) -> MatchResult:
+def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:
     script = task.script
-    with _robot(project, words, script.seed, task.use_oracle) as run:
+    with _robot(project, log, script.seed, task.use_oracle) as run:
         failure = None
         try:
             construct(project, run, load(project))
@@ -171,15 +172,15 @@ def _replay(project: Project, task: ReplayTask, words: LastWords) -> MatchResult
 
 
 @contextmanager
-def _robot(project: Project, words: LastWords, seed: int, use_oracle: bool = True) -> Iterator[RobotRun]:
+def _robot(project: Project, log: CrashLog, seed: int, use_oracle: bool = True) -> Iterator[RobotRun]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
     load(project)  # before robot time begins
     run = RobotRun()
     settings = project.settings.fuzz
-    hang_detector = HangDetector(run, project.files, settings.hang_seconds, words.write, words.descriptor)
+    hang_detector = HangDetector(run, project.files, settings.hang_seconds, log.write, log.descriptor)
     with hang_detector.watching():
         run.open()
-        words.follow(run)
+        CrashMoment(log, run)
         LoopLimit(run, project.files, project.settings)
         with attach_oracle(run, project.files, settings) if use_oracle else nullcontext():
             seed_generators(seed)

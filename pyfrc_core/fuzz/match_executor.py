@@ -19,14 +19,14 @@ from pathlib import Path
 from typing import TypeVar
 
 from ..errors import RobotCodeError
+from ..processes.call import ForkedCall, run_in_subprocess
+from ..processes.crash_report import CrashLog
+from ..processes.fork import FORK_IS_SAFE, wait_for_any
 from ..project import Project
-from ..runtime.apart import run_apart
 from ..runtime.clock import to_us
-from ..runtime.forks import FORK_IS_SAFE, reasons_not_to_fork, wait_for_any
-from ..runtime.own_process import LastWords
+from ..runtime.fork_obstacles import reasons_not_to_fork
 from ..runtime.scripts.script import InputScript
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
-from .forked_work import ForkedWork
 from .fuzz_run import read_journal
 from .lines import Line
 from .match import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task, play, robot_lines
@@ -137,14 +137,15 @@ class SpawnedMatchExecutor(MatchExecutor):
 
     @property
     def lines(self) -> frozenset[Line]:
-        return run_apart(_all_lines, self.project, "while it was imported")
+        return run_in_subprocess(_all_lines, self.project, "while it was imported")
 
     def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
         with ThreadPoolExecutor(self.jobs) as pool:
             waiting: deque[tuple[Task, Future[MatchResult]]] = deque()
             try:
                 for task in map(self._with_journal, tasks):
-                    waiting.append((task, pool.submit(run_apart, partial(_play, task=task), self.project, _MEANWHILE)))
+                    work = partial(_play, task=task)
+                    waiting.append((task, pool.submit(run_in_subprocess, work, self.project, _MEANWHILE)))
                     if len(waiting) >= self.jobs:
                         yield self._result(*waiting.popleft())
                 while waiting:
@@ -165,11 +166,11 @@ class SpawnedMatchExecutor(MatchExecutor):
                 return self._died(task, str(ended))
 
 
-def _play(project: Project, words: LastWords, task: Task) -> MatchResult:
-    return play(project, task, words)
+def _play(project: Project, log: CrashLog, task: Task) -> MatchResult:
+    return play(project, task, log)
 
 
-def _all_lines(project: Project, words: LastWords) -> frozenset[Line]:
+def _all_lines(project: Project, log: CrashLog) -> frozenset[Line]:
     return robot_lines(project).all()
 
 
@@ -178,7 +179,7 @@ class ForkedMatchExecutor(MatchExecutor):
 
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
-        self._running: list[ForkedWork[MatchResult]] = []
+        self._running: list[ForkedCall[MatchResult]] = []
 
         def survey() -> tuple[bool, frozenset[Line]]:
             lines = robot_lines(project).all()
@@ -195,7 +196,7 @@ class ForkedMatchExecutor(MatchExecutor):
         return self._lines
 
     def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
-        waiting: deque[tuple[Task, ForkedWork[MatchResult]]] = deque()
+        waiting: deque[tuple[Task, ForkedCall[MatchResult]]] = deque()
         left = map(self._with_journal, tasks)
         try:
             more = True
@@ -225,23 +226,23 @@ class ForkedMatchExecutor(MatchExecutor):
         for work in self._running:
             work.close()
 
-    def _begin(self, task: Task) -> ForkedWork[MatchResult]:
-        work = ForkedWork(lambda words: play(self.project, task, words))
+    def _begin(self, task: Task) -> ForkedCall[MatchResult]:
+        work = ForkedCall(lambda log: play(self.project, task, log))
         self._running.append(work)
         return work
 
-    def _result(self, task: Task, work: ForkedWork[MatchResult]) -> MatchResult:
+    def _result(self, task: Task, work: ForkedCall[MatchResult]) -> MatchResult:
         self._running.remove(work)
         with self._journal(task), closing(work):
             try:
-                return work.answer(self.project, _MEANWHILE)
+                return work.result(self.project.files, _MEANWHILE)
             except RobotCodeError as ended:
                 return self._died(task, str(ended))
 
     def _do(self, what: Callable[[], Answer]) -> Answer:
-        work = ForkedWork(lambda words: what())
+        work = ForkedCall(lambda log: what())
         with closing(work):
             while not work.finished:
                 wait_for_any([work.fileno()])
                 work.poll()
-            return work.answer(self.project, "while it was imported")
+            return work.result(self.project.files, "while it was imported")

@@ -11,25 +11,18 @@ import json
 import os
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, NoReturn
+from typing import Any
 
-from ..runtime import own_process
-from ..runtime.forks import Fork
-from .replacements import Replacements
+from ..processes.exit import before_every_exit, exit_now
+from ..processes.fork import Fork
 
 #: How processes that are started anew hear of it: an environment variable with the settings as JSON, for each kind.
 _KINDS = {"coverage": "PYFRC_COVERAGE", "profile": "PYFRC_PROFILE"}
 
 #: How long a process that is ended may take to keep what it has measured, in seconds.
 _PATIENCE = 0.8
-
-_savers: list[Callable[[], object]] = []
-_replaced = Replacements()
-_exit_now = own_process.exit_now
-_kill = Fork.kill
 
 
 @contextmanager
@@ -46,11 +39,11 @@ def announced(kind: str, settings: dict[str, Any]) -> Iterator[None]:
             yield
         finally:
             save()
-            _savers.remove(save)
+            before_every_exit.remove(save)
     finally:
         del os.environ[_KINDS[kind]]
-        if not _savers:
-            _replaced.undo()
+        if not before_every_exit:
+            Fork.grace_seconds = 0.0
 
 
 def is_announced(kind: str) -> bool:
@@ -63,38 +56,12 @@ def measure_here() -> None:
     for kind, variable in _KINDS.items():
         if variable in os.environ:
             _begin(kind, json.loads(os.environ[variable]))
-    if _savers and threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, lambda number, frame: _save_and_exit(128 + number))
-
-
-def save_here() -> None:
-    """Keep what was measured in this process, if anything was."""
-    for save in _savers:
-        save()
+    if before_every_exit and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, lambda number, frame: exit_now(128 + number))
 
 
 def _begin(kind: str, settings: dict[str, Any]) -> Callable[[], object]:
-    # Before those who end processes so bind its name.
-    _replaced.replace(own_process, "exit_now", _save_and_exit)
-    _replaced.replace(Fork, "kill", _end_gently)
+    Fork.grace_seconds = _PATIENCE
     save: Callable[[], object] = importlib.import_module(f".{kind}", __package__).begin(settings)
-    _savers.append(save)
+    before_every_exit.append(save)
     return save
-
-
-def _save_and_exit(status: int) -> NoReturn:
-    try:
-        save_here()
-    finally:
-        _exit_now(status)
-
-
-def _end_gently(fork: Fork) -> None:
-    """`Fork.kill`, for a process that may have something to keep."""
-    until = time.monotonic() + _PATIENCE
-    if not fork.finished:
-        os.kill(fork._pid, signal.SIGTERM)
-    while not fork.finished and time.monotonic() < until:
-        fork.poll()
-        time.sleep(0.001)
-    _kill(fork)

@@ -25,7 +25,7 @@ import wpiutil
 from wpiutil.log import DataLog, IntegerLogEntry, StringLogEntry
 
 from ..disk_space import check_disk_space
-from . import own_process
+from ..processes.exit import before_sudden_exit
 from .clock import KICKOFF, OBSERVE, PACKET_US, Clock, to_us
 
 #: Where logs are kept, in the robot project; those of tests are in its subdirectory.
@@ -193,7 +193,7 @@ class DataLogs:
         _EVERY_LOG.append(writer)
         log = _Log(writer, file)
         self._logs.append(log)
-        own_process.before_sudden_end["data logs"] = self.close
+        before_sudden_exit["data logs"] = self.close
         period_us = max(PACKET_US, to_us(period))
 
         def flush() -> None:

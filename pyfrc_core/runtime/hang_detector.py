@@ -21,6 +21,7 @@ from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from ..processes.exit import EXIT_HANGS, call_before_sudden_exit
 from .exceptions import TestFroze
 
 if TYPE_CHECKING:
@@ -33,9 +34,6 @@ BLOCKED_SECONDS = 60.0
 #: How many times `hang_seconds`, in wall time, no Python code at all may run. Even a busy machine lets a thread run
 #: once in a minute.
 STUCK_FACTOR = 6
-
-#: The exit code of a process whose robot code could not be stopped otherwise.
-EXIT_HANGS = 86
 
 _SIGNAL = getattr(signal, "SIGVTALRM", None)  # not on Windows
 _wait, _wall, _cpu = time.sleep, time.monotonic, time.process_time
@@ -210,8 +208,6 @@ class HangDetector:
         """The code swallowed the interruption, or never came to see it."""
         if self._last_words is None:
             return
-        from .own_process import call_before_sudden_end
-
         self._last_words(self._explain(ident, busy=True))
-        call_before_sudden_end()
+        call_before_sudden_exit()
         _exit(EXIT_HANGS)

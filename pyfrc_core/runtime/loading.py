@@ -11,12 +11,12 @@ from typing import Any
 
 from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, RobotCodeError, text_of
+from ..processes.crash_report import reported_exit
 from ..project import Project
 from ..project.hidden_libraries import LIBRARIES, find_hidden_by_any_name
 from .exceptions import TestFroze
 from .hang_detector import importing
 from .keyboard_input import refuse_keyboard_input
-from .own_process import explained_exit
 from .robot_class import choose_robot_class
 
 #: Part of Python's messages about a file that it cannot decode.
@@ -50,7 +50,7 @@ def import_file(project: Project, file: Path) -> ModuleType:
     sys.modules[name] = module
     refuse_keyboard_input(project.files)
     try:
-        with importing(project.files, project.settings.test.hang_seconds), explained_exit(project.files):
+        with importing(project.files, project.settings.test.hang_seconds), reported_exit(project.files):
             specification.loader.exec_module(module)
     except (SyntaxError, UnicodeDecodeError, ValueError) as error:
         del sys.modules[name]

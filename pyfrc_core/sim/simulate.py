@@ -115,7 +115,7 @@ def _echo(say: Callable[[str], object], text: str) -> None:
 
 def _end_without_display(simulation: Simulation, files: OutputFiles, say: Callable[[str], object]) -> None:
     """Write the files of a simulation whose display has gone, and end the process. Nothing may be drawn here."""
-    from ..runtime.own_process import exit_now
+    from ..processes.exit import exit_now
 
     with suppress(KeyboardInterrupt):
         simulation.close()

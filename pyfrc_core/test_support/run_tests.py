@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 
 from ..errors import PyfrcError, UsageError
+from ..processes.fork import FORK_IS_SAFE
+from ..processes.prefork import PreforkedProcess
 from ..project import Project
-from ..runtime.forks import FORK_IS_SAFE, reasons_not_to_fork
+from ..runtime.fork_obstacles import reasons_not_to_fork
 from .isolation.loop import IsolatedTests
-from .isolation.spare import Spare
 from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
 from .summary import SummaryPlugin, warn_of_misspelled_methods
@@ -61,24 +62,24 @@ def run_tests(
         )
         if not imports_late:
             plugin.robot_class()  # an import error is reported once, and not by every test
-            if spare is not None and (reasons := reasons_not_to_fork()):
-                status = spare.take_over("; ".join(reasons))
-                warn_of_misspelled_methods(project)  # the spare process has not imported them
+            if preforked is not None and (reasons := reasons_not_to_fork()):
+                status = preforked.take_over("; ".join(reasons))
+                warn_of_misspelled_methods(project)  # the other process has not imported them
                 return status
         plugins = [plugin, IsolatedTests(plugin), SummaryPlugin(project), _NoUnusedHypothesis()]
         return int(pytest.main(args, plugins=plugins))
 
-    spare = None
+    preforked: PreforkedProcess | None = None
     if FORK_IS_SAFE and options.isolation in ("auto", "fork"):
-        spare = Spare(session)
+        preforked = PreforkedProcess(session)
     # SIGTERM, from an IDE or a CI system, ends a run like Ctrl-C: with the processes it has started.
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return session()
     finally:
         signal.signal(signal.SIGTERM, before)
-        if spare is not None:
-            spare.dismiss()
+        if preforked is not None:
+            preforked.dismiss()
 
 
 def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> list[str]:

@@ -53,9 +53,9 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
 def _save(project: Project, script: InputScript, generator: InputGenerator, error: Exception) -> None:
     """Shrink the script, and save it where a run with the same seed finds it, outside version control."""
     from ..fuzz.failure import failure_of
-    from ..fuzz.shrink_apart import shrunk_apart
+    from ..fuzz.shrink_in_subprocess import shrink_in_subprocess
 
-    shrunk = shrunk_apart(project, script, failure_of(error, project.files), generator.inputs, _MOST_RUNS)
+    shrunk = shrink_in_subprocess(project, script, failure_of(error, project.files), generator.inputs, _MOST_RUNS)
     file = project.root / _SCRIPTS / f"seed-{script.seed}.jsonl"
     (shrunk.script or script).save(file)
     ignored = project.root / _SCRIPTS.parts[0] / ".gitignore"

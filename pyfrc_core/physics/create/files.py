@@ -9,8 +9,8 @@ from pathlib import Path
 from ...config.sim_file import SIM_CONFIG, load_sim_config
 from ...config.sim_schema import sim_config_schema
 from ...errors import PyfrcError, SettingsError, UsageError
+from ...processes.call import run_in_subprocess
 from ...project import Project
-from ...runtime.apart import run_apart
 from ...text_files import write_whole
 from .config_file import SCHEMA_NAME
 from .proposal import propose
@@ -52,7 +52,7 @@ def create_physics(project: Project) -> Created:
     if len(done.unchanged) == 2:
         return done
     _check_places(physics, config)
-    proposal = run_apart(propose, project, "while pyfrc was searching for its devices")
+    proposal = run_in_subprocess(propose, project, "while pyfrc was searching for its devices")
     texts = {physics: proposal.physics, config: proposal.config}
     if config not in done.unchanged:
         texts[schema] = sim_config_schema() + "\n"

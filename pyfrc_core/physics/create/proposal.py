@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...processes.crash_report import CrashLog
 from ...project import Project
-from ...runtime.own_process import LastWords
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Proposal:
     problem: str | None
 
 
-def propose(project: Project, last_words: LastWords) -> Proposal:
+def propose(project: Project, log: CrashLog) -> Proposal:
     """Start the robot program and return a proposal; write nothing.
 
     :raises RobotCodeError: when the robot's code fails before it can be driven
@@ -40,7 +40,7 @@ def propose(project: Project, last_words: LastWords) -> Proposal:
     from .report import advice, summary
     from .survey import survey
 
-    found = survey(project, last_words)
+    found = survey(project, log)
     layout = find_layout(found)
     return Proposal(
         physics_text(found, layout),

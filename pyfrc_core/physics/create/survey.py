@@ -14,12 +14,12 @@ from wpilib.simulation import SimDeviceSim
 
 from ...errors import PyfrcError, RobotCodeError
 from ...hal import HalData
+from ...processes.crash_report import CrashLog
 from ...project import Project
 from ...runtime.exceptions import TestEnded, TestRanTooLong
 from ...runtime.failures import as_robot_code_error, leave_out_pyfrc
 from ...runtime.hang_detector import HangDetector
 from ...runtime.loading import load_robot
-from ...runtime.own_process import LastWords
 from ...runtime.patches import patches
 from ...runtime.robot import RobotRun
 from .names import Name, NamedDevice, Place, find_devices, one_line
@@ -130,17 +130,17 @@ class Survey:
     problem: str | None = None
 
 
-def survey(project: Project, last_words: LastWords) -> Survey:
+def survey(project: Project, log: CrashLog) -> Survey:
     """Start the robot program, find its devices, then drive it to find the motors that react.
 
-    :param last_words: the crash report of this process, which ends when the robot's code hangs and cannot be stopped
+    :param log: where this process, which ends when the robot's code hangs and cannot be stopped, reports it
     :raises RobotCodeError: when the robot's code fails before it can be driven, with the user's line
     """
     patches.install(project.files)
     robot_class = load_robot(project)
     run = RobotRun()
     hang_seconds = project.settings.test.hang_seconds
-    with HangDetector(run, project.files, hang_seconds, last_words.write, last_words.descriptor).watching():
+    with HangDetector(run, project.files, hang_seconds, log.write, log.descriptor).watching():
         try:
             run.open()
             run.clock.limit_us = _LIMIT_US

@@ -1,13 +1,12 @@
 """Makes robots' processes: one that has imported everything, and has none of WPILib's threads, forks them.
 
-`main` runs in a new interpreter, with what it needs pickled on standard input. It listens to the `Simulation` over a
-connection and ends with it. Where processes cannot be forked, it becomes the first robot's process itself.
+`main` runs in a new interpreter. It listens to the `Simulation` over a connection and ends with it. Where processes
+cannot be forked, it becomes the first robot's process itself.
 """
 
 from __future__ import annotations
 
 import importlib
-import os
 import pickle
 import shutil
 import signal
@@ -20,6 +19,8 @@ from multiprocessing.connection import Client, Connection, wait
 from pathlib import Path
 from typing import Any
 
+from ...processes.crash_report import CrashLog
+from ...processes.exit import call_before_sudden_exit, end_child_processes, exit_now
 from .commands import Quit
 
 _LOOK_SECONDS = 0.2
@@ -38,16 +39,12 @@ class Hosting:
     """What a host is told.
 
     :param address: where the simulation listens; likewise `key`
-    :param path: `sys.path`
-    :param directory: the current one
     :param fork: whether to fork robots' processes
     :param temporary: the simulation's directory, to tidy away when it has been killed itself
     """
 
     address: Any
     key: bytes
-    path: list[str]
-    directory: str
     fork: bool
     temporary: str
 
@@ -58,12 +55,12 @@ class Launch:
 
     :param number: by which the process introduces itself
     :param job: the pickled `Job`
-    :param words: where the process leaves word
+    :param crash_log: the file that its `CrashLog` writes to
     """
 
     number: int
     job: bytes
-    words: Path
+    crash_log: Path
 
 
 @dataclass(frozen=True)
@@ -86,11 +83,8 @@ class Exited:
     status: int
 
 
-def main() -> None:
+def main(hosting: Hosting) -> None:
     """The process."""
-    hosting: Hosting = pickle.load(sys.stdin.buffer)
-    sys.path[:] = hosting.path
-    os.chdir(hosting.directory)
     from ...measure.processes import measure_here
 
     measure_here()
@@ -118,7 +112,7 @@ class _Forks:
 
     def serve(self) -> None:
         """Do what the simulation says until it is gone."""
-        from ...runtime.forks import Fork
+        from ...processes.fork import Fork
 
         while True:
             if self._fork is None:
@@ -172,37 +166,34 @@ def _preload(modules: Sequence[str]) -> None:
 
 def _end_robot(signum: int, frame: object) -> None:
     """Complete the robot's data logs and end its process, wherever its code is."""
-    from ...runtime import own_process
-
-    own_process.call_before_sudden_end()
-    own_process.end_processes_of_the_robot()
-    own_process.exit_now(128 + signum)
+    call_before_sudden_exit()
+    end_child_processes()
+    exit_now(128 + signum)
 
 
 def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
     """Never returns."""
-    from ...runtime.own_process import LastWords, end_processes_of_the_robot, exit_now
     from .robot_channel import close_in_forks, end_of_output
     from .robot_side.robot_process import run_robot
 
     status = 1
-    with launch.words.open("w+b", buffering=0) as file:
-        words = LastWords(file.fileno())
-        words.leave_on_crash()
+    with launch.crash_log.open("w+b", buffering=0) as file:
+        log = CrashLog(file.fileno())
+        log.enable()
         signal.signal(signal.SIGTERM, _end_robot)
         try:
             connection = Client(hosting.address, authkey=hosting.key)
             close_in_forks(connection)
             connection.send(launch.number)
-            run_robot(pickle.loads(launch.job), connection, words)
+            run_robot(pickle.loads(launch.job), connection, log)
             end_of_output(connection)
             status = 0
         except BaseException:
             import traceback
 
-            words.write(traceback.format_exc())
+            log.write(traceback.format_exc())
         finally:
-            end_processes_of_the_robot()
+            end_child_processes()
             sys.stdout.flush()
             sys.stderr.flush()
             exit_now(status)

@@ -15,11 +15,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ...runtime.forks import FORK_IS_SAFE
+from ...processes.fork import FORK_IS_SAFE
+from ...processes.spawn import Interpreter
 from . import host_process
 from .commands import Quit
 from .host import Exited, Hosting, Kill, Launch, Preload
-from .host_process import HostProcess
 from .messages import Failed, Job, Message
 from .output_pipe import OutputPipe
 from .robot_channel import RobotChannel
@@ -36,7 +36,7 @@ class RobotProcesses:
     The functions are called from threads of this object's.
 
     :param on_message: what a robot's process says, with the number of its launch
-    :param on_exit: it has ended: the launch's number, the exit code, its last words
+    :param on_exit: it has ended: the launch's number, the exit code, its crash log's contents
     :param on_output: what robots print
     :param fork: whether to fork them; where that is not safe, each is a new interpreter
     """
@@ -44,7 +44,7 @@ class RobotProcesses:
     def __init__(
         self,
         on_message: Callable[[int, Message], object],
-        on_exit: Callable[[int, int, str], object],
+        on_exit: Callable[[int, int, bytes], object],
         on_output: Callable[[str], object],
         fork: bool | None = None,
     ) -> None:
@@ -59,7 +59,7 @@ class RobotProcesses:
         except OSError:  # a file system without sockets, or a name that is too long
             self._listener = Listener(("127.0.0.1", 0), authkey=self._key)
         self._number = 0
-        self._host: HostProcess | None = None
+        self._host: Interpreter | None = None
         self._host_connection: Connection | None = None
         self._host_reader: threading.Thread | None = None
         self._robot: Connection | None = None
@@ -88,7 +88,7 @@ class RobotProcesses:
             self._ended = threading.Event()
             if self._host is None or self._host.poll() is not None:
                 self._begin_host()
-            self._tell_host(Launch(self._number, pickle.dumps(job), self._words(self._number)))
+            self._tell_host(Launch(self._number, pickle.dumps(job), self._crash_log(self._number)))
             return self._number
 
     def send(self, command: object) -> None:
@@ -145,9 +145,7 @@ class RobotProcesses:
         if self._output is not None:
             _thread(self._output.close, "pyfrc sim: end of output")
         self._output = output = OutputPipe(self._on_output)
-        hosting = Hosting(
-            self._listener.address, self._key, sys.path, str(Path.cwd()), self._forks, self._temporary.name
-        )
+        hosting = Hosting(self._listener.address, self._key, self._forks, self._temporary.name)
         self._host = host = host_process.start_host(hosting, output.writing_end)
         _thread(self._wait_for, "pyfrc sim: end", host, self._number)
 
@@ -215,7 +213,7 @@ class RobotProcesses:
                 if isinstance(message, Exited):
                     self._exited(message.number, message.status)
 
-    def _wait_for(self, host: HostProcess, number: int) -> None:
+    def _wait_for(self, host: Interpreter, number: int) -> None:
         """Report the robot's exit where it comes with the host's: always where nothing is forked."""
         status = host.wait()
         self._all_accepted()
@@ -258,7 +256,7 @@ class RobotProcesses:
         self._flush_output()
         if number == self._number:
             self._ended.set()
-        self._on_exit(number, status, self._last_words(number))
+        self._on_exit(number, status, self._crash_report(number))
 
     def _flush_output(self) -> None:
         """What a robot has printed comes before its end."""
@@ -273,13 +271,13 @@ class RobotProcesses:
         with suppress(Exception):
             Client(self._listener.address, authkey=self._key).close()
 
-    def _words(self, number: int) -> Path:
-        return Path(self._temporary.name, f"words-{number}")
+    def _crash_log(self, number: int) -> Path:
+        return Path(self._temporary.name, f"crash-{number}")
 
-    def _last_words(self, number: int) -> str:
+    def _crash_report(self, number: int) -> bytes:
         with suppress(OSError):
-            return self._words(number).read_bytes().decode(errors="surrogateescape")
-        return ""
+            return self._crash_log(number).read_bytes()
+        return b""
 
 
 def _address(directory: str) -> str | None:
@@ -300,7 +298,7 @@ def introduced(connection: Connection) -> object:
     return connection.recv()
 
 
-def _end_group(host: HostProcess) -> None:
+def _end_group(host: Interpreter) -> None:
     """End a host, with whatever the robot has started."""
     if os.name == "posix":
         with suppress(ProcessLookupError, PermissionError):

@@ -12,8 +12,8 @@ from types import TracebackType
 from typing import Any
 
 from ...errors import PyfrcError, UsageError
+from ...processes.crash_report import describe_exit, moment_of
 from ...project import Project
-from ...runtime.own_process import explain_end, moment_of
 from ...runtime.robot_time import PACKET_US, to_us
 from ...runtime.scripts.script import InputScript, Step
 from .changes import ChangeCursor, RunChanges
@@ -326,13 +326,13 @@ class Simulation(Controls):
         if isinstance(message, Failed):
             self._echo_failure(message.failure)
 
-    def _on_exit(self, launch: int, status: int, words: str) -> None:
+    def _on_exit(self, launch: int, status: int, report: bytes) -> None:
         with self._changed:
             if launch != self._launch or self._status.state in ("failed", "closed"):
                 return
-            text = explain_end(words, status, self.project.files, "while it was simulated")
+            text = describe_exit(report, status, self.project.files, "while it was simulated")
             headline, _, details = text.partition("\n\n")
-            moment = moment_of(words)
+            moment = moment_of(report)
             seconds = self._recording.length_us / 1_000_000 if moment is None else moment.seconds
             failure = Failure(headline, details, seconds)
             self._fail(failure)

@@ -19,13 +19,15 @@ from typing import Any
 
 import pytest
 
+from ...processes.fork import FORK_IS_SAFE
+from ...processes.worker import wait_for_any
 from ...project.robot_files import RobotFiles
 from ...runtime.failures import headline_is_the_robots
-from ...runtime.forks import FORK_IS_SAFE, reasons_not_to_fork
+from ...runtime.fork_obstacles import reasons_not_to_fork
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
-from .messages import decode, replay
-from .processes import ForkedTest, SpawnedTest, TestProcess, wait_for_any
+from .messages import replay
+from .processes import TestProcess, forked_test, spawned_test
 
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
 _ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})
@@ -54,7 +56,7 @@ class IsolatedTests:
             self._run_all(session)
         finally:
             for process in self._running.values():
-                process.kill()
+                process.worker.kill()
             self._running.clear()
         return True
 
@@ -91,7 +93,7 @@ class IsolatedTests:
             waiting.append(item)
             if len(waiting) == 1:
                 self._announce(item)
-            self._running[item] = (ForkedTest if forked else SpawnedTest)(item, self._plugin)
+            self._running[item] = (forked_test if forked else spawned_test)(item, self._plugin)
         self._finish(session, waiting, down_to=0)
         _tear_down_shared(session, previous, None)
 
@@ -99,9 +101,10 @@ class IsolatedTests:
         """Report tests, in their order, until no more than `down_to` are running."""
         while len(waiting) > down_to:
             process = self._running[waiting[0]]
-            if not process.finished:
-                wait_for_any(list(self._running.values()))
-                if not process.finished and sum(not each.finished for each in self._running.values()) <= down_to:
+            if not process.worker.finished:
+                workers = [each.worker for each in self._running.values()]
+                wait_for_any(workers)
+                if not process.worker.finished and sum(not worker.finished for worker in workers) <= down_to:
                     return
                 continue
             item = waiting.pop(0)
@@ -173,9 +176,9 @@ def _stop_if_asked(session: pytest.Session) -> None:
 
 
 def _report(item: pytest.Item, process: TestProcess, files: RobotFiles, seed: tuple[str, str]) -> None:
-    """Replay here what the test's process told, and what it can no longer tell."""
+    """Report what the test's process has sent, and why it has sent no more."""
     done, phases, failed = False, [], False
-    for message in decode(process.output()):
+    for message in process.worker.messages():
         if message[0] == "done":
             done = True
         elif (report := replay(item, message)) is not None:
@@ -183,7 +186,7 @@ def _report(item: pytest.Item, process: TestProcess, files: RobotFiles, seed: tu
             failed = failed or (report.failed and report.when == "setup")
     if done:
         return
-    crash = process.explain_crash()
+    crash = process.worker.describe_exit(files, "in the middle of the test")
     # After the call's report (or a setup that failed) came the teardown; it may have been reported itself.
     crashed = "teardown" if "call" in phases or failed else "call"
     for phase in ("setup", "call", "teardown"):

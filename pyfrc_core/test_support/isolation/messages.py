@@ -1,45 +1,25 @@
-"""What a test's own process tells the one that reports: pytest's reports and warnings, as pickled pairs.
+"""What a test's own process sends to the one that reports: pytest's reports and warnings, as pairs.
 
-One form for forked and spawned processes: a stream of frames, each a length and a pickle, so that whatever arrived
-before a crash can be read.
+Each is sent as soon as it is made, so that what came before a crash can be reported.
 """
 
 from __future__ import annotations
 
-import pickle
-import struct
 import warnings
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Generator
 from typing import Any
 
 import pytest
 
-_LENGTH = struct.Struct("<I")
+from ...processes.worker import Send
 
 Message = tuple[str, Any]
 
 
-def encode(kind: str, content: Any) -> bytes:
-    payload = pickle.dumps((kind, content))
-    return _LENGTH.pack(len(payload)) + payload
+class ReportSender:
+    """Runs one test in its own process and sends everything that a report needs."""
 
-
-def decode(stream: bytes) -> Iterator[Message]:
-    """The whole messages in `stream`; one that was cut off is left out."""
-    at = 0
-    while at + _LENGTH.size <= len(stream):
-        (length,) = _LENGTH.unpack_from(stream, at)
-        at += _LENGTH.size
-        if at + length > len(stream):
-            return
-        yield pickle.loads(stream[at : at + length])
-        at += length
-
-
-class Teller:
-    """Runs one test in its own process and tells everything that a report needs."""
-
-    def __init__(self, send: Callable[[bytes], None]) -> None:
+    def __init__(self, send: Send) -> None:
         self._send = send
         self._listening = False
 
@@ -48,22 +28,22 @@ class Teller:
 
         :param shares: whether what the test shares with others is torn down by the other side
         """
-        # On registering, pytest tells the warnings recorded so far again: those the other side knows.
-        item.config.pluginmanager.register(self, "pyfrc.teller")
+        # On registering, pytest calls the hook again for each warning so far: those the other side knows.
+        item.config.pluginmanager.register(self, "pyfrc.report_sender")
         self._listening = True
         try:
             # With the item's parent for the next item, what the test shares with others is not torn down here.
             item.ihook.pytest_runtest_protocol(item=item, nextitem=item.parent if shares else None)
         except pytest.exit.Exception as leaving:
-            self.tell("exit", (leaving.msg, leaving.returncode))
+            self.send("exit", (leaving.msg, leaving.returncode))
         except KeyboardInterrupt:
-            self.tell("interrupted", None)
+            self.send("interrupted", None)
         if item.session.shouldstop:
-            self.tell("stop", item.session.shouldstop)
-        self.tell("done", None)
+            self.send("stop", item.session.shouldstop)
+        self.send("done", None)
 
-    def tell(self, kind: str, content: Any) -> None:
-        self._send(encode(kind, content))
+    def send(self, kind: str, content: Any) -> None:
+        self._send((kind, content))
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: Any) -> bool:
@@ -76,7 +56,7 @@ class Teller:
     def pytest_runtest_makereport(self, item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
         """Send each report as soon as it is made: the next phase may end the process."""
         report = yield
-        self.tell("report", item.config.hook.pytest_report_to_serializable(config=item.config, report=report))
+        self.send("report", item.config.hook.pytest_report_to_serializable(config=item.config, report=report))
         return report
 
     def pytest_warning_recorded(
@@ -91,13 +71,13 @@ class Teller:
             "lineno": warning_message.lineno,
         }
         try:
-            self.tell("warning", (plain, when, nodeid, location))
+            self.send("warning", (plain, when, nodeid, location))
         except Exception:  # a category that cannot be pickled, being local to a function
-            self.tell("warning", (plain | {"category": UserWarning}, when, nodeid, location))
+            self.send("warning", (plain | {"category": UserWarning}, when, nodeid, location))
 
 
 def replay(item: pytest.Item, message: Message) -> pytest.TestReport | None:
-    """Report here what the test's process told; answers the report, if it was one."""
+    """Report here what the test's process has sent; return the report, if it is one."""
     kind, content = message
     hook: Any = item.ihook
     if kind == "report":

@@ -1,27 +1,46 @@
-"""The other end of `processes.SpawnedTest`: collect the tests again in this new interpreter, run one, tell of it.
-
-Run as ``python -m pyfrc_core.test_support.isolation.spawned``, with its job pickled on standard input.
-"""
+"""One test in a new interpreter: collects the tests again, runs one, and sends its reports."""
 
 from __future__ import annotations
 
 import os
-import pickle
-import sys
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import pytest
 
-from ...measure.processes import measure_here, save_here
+from ...measure.processes import measure_here
+from ...processes.crash_report import CrashLog
+from ...processes.worker import Send
+from ..options import TestOptions
+
+if TYPE_CHECKING:
+    from ..pytest_plugin import PyFrcPlugin
+
+
+@dataclass(frozen=True)
+class TestJob:
+    """Which test to run, and how pytest was called.
+
+    :param args: pytest's arguments
+    :param directory: where pytest was called
+    """
+
+    __test__ = False  # pytest: not a test class, for all its name
+
+    args: list[str]
+    directory: str
+    nodeid: str
+    main_file: Path
+    class_name: str | None
+    options: TestOptions
 
 
 class OnlyOneTest:
     """Runs the one test of the job, silently, through the same protocol as a forked test."""
 
-    def __init__(self, job: dict[str, Any], plugin: Any) -> None:
-        self._job = job
-        self._plugin = plugin
+    def __init__(self, job: TestJob, plugin: PyFrcPlugin, send: Send, log: CrashLog) -> None:
+        self._job, self._plugin, self._send, self._log = job, plugin, send, log
 
     @pytest.hookimpl(trylast=True)
     def pytest_configure(self, config: pytest.Config) -> None:
@@ -33,36 +52,24 @@ class OnlyOneTest:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        from .messages import Teller
-        from .processes import leave_word_on_crash
+        from .messages import ReportSender
+        from .processes import report_crashes
 
-        with (
-            Path(self._job["output"]).open("wb", buffering=0) as output,
-            Path(self._job["last_words"]).open("w+b", buffering=0) as last_words,
-        ):
-            leave_word_on_crash(self._plugin, last_words.fileno())
-            for item in session.items:
-                if item.nodeid == self._job["nodeid"]:
-                    Teller(output.write).run(item, shares=False)  # type: ignore[arg-type]
+        report_crashes(self._plugin, self._log)
+        for item in session.items:
+            if item.nodeid == self._job.nodeid:
+                ReportSender(self._send).run(item, shares=False)
         return True
 
 
-def main() -> None:
-    job = pickle.load(sys.stdin.buffer)
-    sys.path[:] = job["path"]
-    os.chdir(job["directory"])
+def run_in_interpreter(job: TestJob, send: Send, log: CrashLog) -> int:
+    """Run the test, and return pytest's exit code."""
+    os.chdir(job.directory)
     measure_here()
     from ...project import Project
     from ..pytest_plugin import PyFrcPlugin
 
-    project = Project(Path(job["main_file"]), job["class_name"])
+    project = Project(job.main_file, job.class_name)
     _ = project.settings  # before pytest reads the same pyproject.toml, which may begin with a byte-order mark
-    plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=job["options"])
-    status = pytest.main(job["args"], plugins=[plugin, OnlyOneTest(job, plugin)])
-    save_here()
-    sys.stdout.flush()
-    os._exit(int(status))  # without waiting for what the robot left running
-
-
-if __name__ == "__main__":
-    main()
+    plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=job.options)
+    return int(pytest.main(job.args, plugins=[plugin, OnlyOneTest(job, plugin, send, log)]))

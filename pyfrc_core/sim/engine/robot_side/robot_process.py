@@ -18,15 +18,16 @@ import hal
 
 from ....errors import PyfrcError
 from ....physics.engine import load_physics
+from ....processes.crash_report import CrashLog
+from ....processes.exit import before_sudden_exit
 from ....project import Project
 from ....project.robot_files import is_pyfrc
-from ....runtime import own_process
+from ....runtime.crash_moment import CrashMoment
 from ....runtime.data_logs import LogPlace
 from ....runtime.failures import as_robot_code_error, leave_out_pyfrc
 from ....runtime.hang_detector import HangDetector
 from ....runtime.loading import load_robot
 from ....runtime.misspelled_methods import find_misspelled_methods
-from ....runtime.own_process import LastWords
 from ....runtime.patches import patches
 from ....runtime.robot import RobotRun
 from ....runtime.seeds import seed_generators
@@ -42,23 +43,23 @@ from .wpilog import WpiLog
 _INSTALLED = ("site-packages", "dist-packages")
 
 
-def run_robot(job: Job, connection: Connection, words: LastWords) -> None:
+def run_robot(job: Job, connection: Connection, log: CrashLog) -> None:
     """Run a robot until the other end of `connection` is closed, or the robot fails: which is told there.
 
-    :param words: where to leave word when the process ends by itself
+    :param log: written to when the process ends by itself
     """
     load_extensions(job.extensions)
     if WINDOW not in job.extensions:
-        _run(job, connection, words)
+        _run(job, connection, log)
         return
-    robot = threading.Thread(target=_run, name="robot", args=(job, connection, words), daemon=True)
+    robot = threading.Thread(target=_run, name="robot", args=(job, connection, log), daemon=True)
     robot.start()
     hal.runMain()  # until the user closes the window
     with suppress(OSError):
         connection.send(WindowClosed())
 
 
-def _run(job: Job, connection: Connection, words: LastWords) -> None:
+def _run(job: Job, connection: Connection, log: CrashLog) -> None:
     project, files = job.project, job.project.files
     run = RobotRun(LogPlace.of_run(project.root))
     loaded = False
@@ -68,13 +69,13 @@ def _run(job: Job, connection: Connection, words: LastWords) -> None:
         robot_class = load_robot(project)
         physics = load_physics(project) if project.physics_file.is_file() else None
         loaded = True
-        hang_detector = HangDetector(run, files, project.settings.test.hang_seconds, words.write, words.descriptor)
+        hang_detector = HangDetector(run, files, project.settings.test.hang_seconds, log.write, log.descriptor)
         with hang_detector.watching(), ExitStack() as closing:
             run.open()
             closing.callback(run.data_logs.close)
             seed_generators(job.script.seed)
             session = Session(run, job, connection)
-            words.follow(run)
+            CrashMoment(log, run)
 
             def construct() -> None:
                 if physics is not None:
@@ -123,7 +124,7 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
 @contextmanager
 def _logged(run: RobotRun, file: Path) -> Iterator[None]:
     log = WpiLog(file)
-    own_process.before_sudden_end["--wpilog"] = log.close
+    before_sudden_exit["--wpilog"] = log.close
     before: dict[str, Any] = {}
 
     def look(now: float) -> None:
@@ -137,7 +138,7 @@ def _logged(run: RobotRun, file: Path) -> Iterator[None]:
     try:
         yield
     finally:
-        del own_process.before_sudden_end["--wpilog"]
+        del before_sudden_exit["--wpilog"]
         log.close()
 
 

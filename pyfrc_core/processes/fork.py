@@ -1,4 +1,4 @@
-"""Forks of this process, which has imported everything: the work each does, and the bytes it sends."""
+"""Forks of this process: the work each does, and the bytes that it sends."""
 
 from __future__ import annotations
 
@@ -12,49 +12,33 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 
-from ..hal import devices_exist, existing_devices
-from .own_process import exit_now, write_all
+from .crash_report import write_all
+from .exit import exit_now
+from .owner import end_with
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
 FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
 
-# How long to wait before looking whether a process is gone without a word. Decides nothing else.
+# Seconds between two looks at whether a process has ended while another one holds its pipe open. Decides nothing else.
 _LOOK_SECONDS = 0.05
-_NAMED_DEVICES = 3
 
 
 @contextlib.contextmanager
 def forking_quietly() -> Iterator[None]:
-    """Python warns of forking where other threads are; the ones here (numpy's) are made for it."""
+    """Suppress Python's warning of forks where there are other threads; the ones here (numpy's) are made for it."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
         yield
 
 
-def reasons_not_to_fork() -> list[str]:
-    """Return what the project's code has made in this process and a fork of it would lack: threads and devices."""
-    from .cooperative import threads_of_the_project  # with which comes WPILib
-
-    reasons = [f"{line} starts {_described(thread)}" for thread, line in threads_of_the_project()]
-    if devices_exist():
-        devices = existing_devices()
-        more = f" and {len(devices) - _NAMED_DEVICES} more" if len(devices) > _NAMED_DEVICES else ""
-        reasons.append(f"devices are made: {', '.join(devices[:_NAMED_DEVICES])}{more}")
-    return reasons
-
-
-def _described(thread: threading.Thread) -> str:
-    target = getattr(thread, "_target", None) or type(thread)
-    name = getattr(target, "__qualname__", type(thread).__qualname__)
-    module = getattr(target, "__module__", None)
-    return f"the thread {thread.name!r}, which runs {module}.{name}" if module else f"the thread {thread.name!r}"
-
-
 class Fork:
     """A fork of this process.
 
-    :param work: what it does; it is given a function that sends bytes to this process, and must not return
+    :param work: called there with a function that sends bytes to this process; must end the process
     """
+
+    #: Seconds that `kill` leaves to a process between SIGTERM and SIGKILL; more than 0 while measurements are saved.
+    grace_seconds = 0.0
 
     def __init__(self, work: Callable[[Callable[[bytes], None]], object]) -> None:
         self.message = b""
@@ -65,10 +49,13 @@ class Fork:
         os.set_blocking(self._pipe, False)
         sys.stdout.flush()
         sys.stderr.flush()
+        owner = os.getpid() if threading.current_thread() is threading.main_thread() else None
         with forking_quietly():
             self._pid = os.fork()
         if self._pid == 0:
             try:
+                if owner is not None:  # another thread may end before its process
+                    end_with(owner)
                 work(lambda data: write_all(writing_end, data))
             finally:  # what is further out on the stack is for the process that was forked to unwind
                 exit_now(1)
@@ -80,6 +67,8 @@ class Fork:
 
     def poll(self) -> None:
         """Take in what has come, and see whether the process has ended."""
+        if self.finished:
+            return
         # Asked before the pipe is read to its end: what an ended process wrote is there by now.
         ended = self._reap(os.WNOHANG)
         while True:
@@ -97,22 +86,22 @@ class Fork:
 
     def kill(self) -> None:
         """End the process without waiting for its work."""
-        if not self.finished:
-            os.kill(self._pid, signal.SIGKILL)
-            self._reap(0)
-            self.finished = True
-            os.close(self._pipe)
+        self.terminate(self.grace_seconds)
 
     def terminate(self, seconds: float) -> None:
-        """End the process by SIGTERM; when it has not ended after some wall seconds, `kill` it."""
-        if not self.finished:
+        """End the process by SIGTERM; when it has not ended after some wall seconds, by SIGKILL."""
+        if seconds and not self.finished:
             os.kill(self._pid, signal.SIGTERM)
             deadline = time.monotonic() + seconds
             while not self.finished and time.monotonic() < deadline:
                 # The pipe, if nothing else holds it open, is closed when the process ends.
                 wait_for_any([self._pipe])
                 self.poll()
-        self.kill()
+        if not self.finished:
+            os.kill(self._pid, signal.SIGKILL)
+            self._reap(0)
+            self.finished = True
+            os.close(self._pipe)
 
     def _reap(self, how: int) -> bool:
         pid, status = os.waitpid(self._pid, how)

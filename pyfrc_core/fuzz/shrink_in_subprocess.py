@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 
 from ..errors import PyfrcError
+from ..processes.call import run_in_subprocess
+from ..processes.crash_report import CrashLog
+from ..processes.fork import FORK_IS_SAFE
 from ..project import Project
-from ..runtime.apart import run_apart
-from ..runtime.forks import FORK_IS_SAFE
-from ..runtime.own_process import LastWords
 from ..runtime.scripts.script import InputScript
 from .describe import story_of
 from .failure import FuzzFailure
@@ -33,7 +33,7 @@ class Shrunk:
     why_not: str = ""
 
 
-def shrunk_apart(
+def shrink_in_subprocess(
     project: Project, script: InputScript, failure: FuzzFailure, inputs: Mapping[str, Input], most_runs: int
 ) -> Shrunk:
     """Make a script short, which has made a robot raise something in this process.
@@ -44,14 +44,14 @@ def shrunk_apart(
         return Shrunk(None, why_not="making it short takes hundreds of processes, and they cannot be forked here")
     work = partial(_shrink, script=script, failure=failure, inputs=dict(inputs), most_runs=most_runs)
     try:
-        return run_apart(work, project, "while a script was made shorter")
+        return run_in_subprocess(work, project, "while a script was made shorter")
     except PyfrcError as wrong:
         return Shrunk(None, why_not=f"it could not be made short ({wrong})")
 
 
 def _shrink(
     project: Project,
-    words: LastWords,
+    log: CrashLog,
     script: InputScript,
     failure: FuzzFailure,
     inputs: dict[str, Input],

@@ -1,0 +1,116 @@
+"""One function's call in another process: its result, its error, or how that process ended instead."""
+
+from __future__ import annotations
+
+import os
+import signal
+import traceback
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from ..errors import PyfrcError, RobotCodeError, text_of
+from .crash_report import CrashLog
+from .worker import ForkedWorker, Send, SpawnedWorker, Worker
+
+if TYPE_CHECKING:
+    from ..project import Project
+    from ..project.robot_files import RobotFiles
+
+Answer = TypeVar("Answer")
+
+#: Its output is never read: no letter of it is an error.
+ENVIRONMENT = {"PYTHONIOENCODING": "utf-8:backslashreplace"}
+
+
+class _FailedThere(Exception):
+    """The traceback of an error in the other process."""
+
+    def __str__(self) -> str:
+        return f"\n{self.args[0]}"
+
+
+def run_in_subprocess(work: Callable[[Project, CrashLog], Answer], project: Project, meanwhile: str) -> Answer:
+    """Call a function in a new interpreter, and return what it returns; nothing that is printed there is shown.
+
+    :param work: a function of a module, whose result can be pickled
+    :param meanwhile: what robot code interrupts when it ends the process, such as "in the middle of the test"
+    :raises RobotCodeError: when the process ends without a result, naming the user's line
+    :raises PyfrcError: as the function raises it, or `OSError`
+    """
+    # A copy, without what the project has read already.
+    worker = SpawnedWorker(partial(_send_result, partial(work, replace(project))), environment=ENVIRONMENT)
+    try:
+        worker.wait()
+        result: Answer = _result_of(worker, project.files, meanwhile)
+        return result
+    finally:
+        worker.close()
+
+
+class ForkedCall(Generic[Answer]):
+    """A function that a fork of this process calls; nothing that is printed there is shown.
+
+    :param call: its result can be pickled
+    """
+
+    def __init__(self, call: Callable[[CrashLog], Answer]) -> None:
+        self._worker = ForkedWorker(partial(_call_quietly, call))
+
+    @property
+    def finished(self) -> bool:
+        return self._worker.finished
+
+    def fileno(self) -> int:
+        number = self._worker.fileno()
+        assert number is not None
+        return number
+
+    def poll(self) -> None:
+        """See whether it has finished."""
+        self._worker.poll()
+
+    def close(self) -> None:
+        """End the process, if it has not ended."""
+        self._worker.close()
+
+    def result(self, files: RobotFiles, meanwhile: str) -> Answer:
+        """Return what the function has returned.
+
+        :param meanwhile: see `run_in_subprocess`, which raises the same
+        """
+        result: Answer = _result_of(self._worker, files, meanwhile)
+        return result
+
+
+def _result_of(worker: Worker, files: RobotFiles, meanwhile: str) -> Any:
+    for result, error, stack in worker.messages():
+        if stack:
+            raise (error or RuntimeError("a mistake in pyfrc itself")) from _FailedThere(stack)
+        return result
+    raise RobotCodeError(worker.describe_exit(files, meanwhile))
+
+
+# -- on the other side -----------------------------------------------------------------------------------------------
+
+
+def _call_quietly(call: Callable[[CrashLog], object], send: Send, log: CrashLog) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for descriptor in (0, 1, 2):
+        os.dup2(nowhere, descriptor)
+    _send_result(call, send, log)
+
+
+def _send_result(call: Callable[[CrashLog], object], send: Send, log: CrashLog) -> None:
+    """Send the result, the error if the other process can make something of it, and the traceback."""
+    try:
+        send((call(log), None, ""))
+    except (PyfrcError, OSError) as error:
+        send((None, error, traceback.format_exc()))
+    except Exception:
+        send((None, None, traceback.format_exc()))
+    except BaseException as error:  # not for the process that asks to be ended by
+        send((None, RobotCodeError(text_of(error)), traceback.format_exc()))

@@ -1,0 +1,179 @@
+"""What a process leaves behind when it ends too early, and how that end is described to the user."""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import mmap
+import os
+import re
+import signal
+import struct
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import takewhile
+
+from ..project.robot_files import RobotFiles, is_pyfrc
+from .exit import EXIT_HANGS, call_before_sudden_exit, exit_now
+
+_FAULT_LINE = re.compile(r'File "([^"]+)", line (\d+)')
+
+#: What a crash log begins with: this, then the robot time in microseconds, then the name of the mode.
+#: A process that is killed has no time to write; what it has written to memory that is mapped to a file stays.
+_MAGIC = b"\0moment\n"
+_MOMENT = struct.Struct("=8sq32s")
+_MODE_OFFSET = 16
+_NOT_STARTED = -1
+
+_os_exit = os._exit
+
+
+@dataclass(frozen=True)
+class Moment:
+    """When a robot's process ended.
+
+    :param seconds: robot time
+    :param mode: one of `pyfrc_core.hal.modes.MODES`
+    """
+
+    seconds: float
+    mode: str
+
+    def __str__(self) -> str:
+        return f"at {self.seconds:.2f} s in {self.mode} mode"
+
+
+class CrashLog:
+    """Where this process writes what another one gives to `describe_exit`.
+
+    :param descriptor: that of a file open for reading and writing, empty
+    """
+
+    def __init__(self, descriptor: int) -> None:
+        self.descriptor = descriptor
+        #: One 64-bit integer, mapped to the file: the robot time in microseconds. None before `enable`, and where
+        #: files cannot be mapped.
+        self.time_us: memoryview | None = None
+        self._mode: memoryview | None = None
+
+    def write(self, text: str) -> None:
+        write_all(self.descriptor, text.encode())
+
+    def set_mode(self, name: str) -> None:
+        """Note the mode of the robot, which counts when `time_us` is set."""
+        if self._mode is not None:
+            self._mode[:] = name.encode()[: len(self._mode)].ljust(len(self._mode), b"\0")
+
+    def enable_fault_handler(self) -> None:
+        """Have a fault in C code write its stack here, and nowhere else."""
+        faulthandler.enable(self.descriptor, all_threads=False)
+
+    def enable(self) -> None:
+        """From now on, write where a fault in C code, or `os._exit`, has ended this process."""
+        write_all(self.descriptor, _MOMENT.pack(_MAGIC, _NOT_STARTED, b""))
+        with suppress(OSError, ValueError):
+            mapped = memoryview(mmap.mmap(self.descriptor, _MOMENT.size))
+            self.time_us, self._mode = mapped[len(_MAGIC) : _MODE_OFFSET].cast("q"), mapped[_MODE_OFFSET:]
+        self.enable_fault_handler()
+
+        def exit_with_report(status: int) -> None:
+            frame = sys._getframe(1)
+            self.write(
+                f'os._exit({status}) was called:\n  File "{frame.f_code.co_filename}", line {frame.f_lineno}'
+                f" in {frame.f_code.co_name}\n"
+            )
+            call_before_sudden_exit()
+            exit_now(status)
+
+        os._exit = exit_with_report  # type: ignore[assignment]
+
+
+@contextlib.contextmanager
+def reported_exit(files: RobotFiles) -> Iterator[None]:
+    """While robot code is imported in this process, print the line that calls `os._exit`, and the stack of a fault.
+
+    A process with a `CrashLog` does this already.
+    """
+    if os._exit is not _os_exit:
+        yield
+        return
+
+    def exit_with_line(status: int) -> None:
+        frame = sys._getframe(1)
+        place = f"{files.relative(frame.f_code.co_filename)}:{frame.f_lineno}"
+        print(f"error: {place}: os._exit({status}) was called while the robot's code was imported", file=sys.stderr)
+        sys.stderr.flush()
+        call_before_sudden_exit()
+        exit_now(status or 1)
+
+    faults = not faulthandler.is_enabled()
+    if faults:
+        with suppress(OSError, ValueError, AttributeError):  # standard error is no file
+            faulthandler.enable(all_threads=False)
+    os._exit = exit_with_line  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        os._exit = _os_exit
+        if faults:
+            faulthandler.disable()
+
+
+def describe_exit(report: bytes, status: int, files: RobotFiles, meanwhile: str) -> str:
+    """Return why a process ended too early: the user's line first, where it is known.
+
+    :param report: the contents of its crash log
+    :param status: its exit code; a signal's number, negative
+    :param meanwhile: when that was, such as "in the middle of the test"
+    """
+    moment = moment_of(report)
+    text = report[_MOMENT.size if report.startswith(_MAGIC) else 0 :].decode(errors="replace").strip()
+    if status == EXIT_HANGS and text:
+        return text
+    if text.startswith("Timeout"):
+        what = "the robot code hangs here, in a call that lets nothing else of Python run"
+    elif status < 0:
+        what = f"the robot's process was ended by signal {-status} ({_signal_name(-status)})"
+    else:
+        what = f"the robot's process ended itself with exit code {status}, {meanwhile}"
+    if moment is not None:
+        what += f", {moment}"
+    line = _line_of_crash(text, files)
+    # Below the user's code, the stack is pyfrc's and pytest's: of no interest.
+    text = "\n".join(takewhile(lambda line: not re.search(r"pyfrc_core|_pytest", line), text.splitlines()))
+    return f"{line}: {what}\n\n{text}".strip() if line else f"{what}\n\n{text}".strip()
+
+
+def moment_of(report: bytes) -> Moment | None:
+    """Return when the process with this crash log ended; None when its robot had not started."""
+    if not report.startswith(_MAGIC) or len(report) < _MOMENT.size:
+        return None
+    _, time_us, mode = _MOMENT.unpack_from(report)
+    return None if time_us == _NOT_STARTED else Moment(time_us / 1_000_000, mode.rstrip(b"\0").decode())
+
+
+def write_all(descriptor: int, data: bytes) -> None:
+    """Write all of `data`, also where one call of the system takes only a part."""
+    while data:
+        data = data[os.write(descriptor, data) :]
+
+
+def _line_of_crash(text: str, files: RobotFiles) -> str | None:
+    for stack in re.split(r"^(?=\w*\s?[Tt]hread )", text, flags=re.MULTILINE):
+        lines = _FAULT_LINE.findall(stack)
+        if not lines or is_pyfrc(lines[0][0]):
+            continue  # a thread that only waits for its turn
+        for filename, number in lines:
+            if files.is_project_file(filename):
+                return f"{files.relative(filename)}:{number}"
+    return None
+
+
+def _signal_name(number: int) -> str:
+    try:
+        name = signal.Signals(number).name
+    except ValueError:
+        return "unknown"
+    return f"{name}, segmentation fault" if name == "SIGSEGV" else name

@@ -1,0 +1,40 @@
+"""Objects in a stream of bytes: each a length and a pickle, in the order in which they were sent."""
+
+from __future__ import annotations
+
+import pickle
+import struct
+from collections.abc import Iterator
+from typing import Any
+
+_LENGTH = struct.Struct("<Q")
+
+#: The most bytes of one object: a length beyond it is no length.
+MOST_BYTES = 1 << 30
+
+
+class FrameTooLargeError(ValueError):
+    """An object has more than `MOST_BYTES` when it is pickled."""
+
+
+def encode(content: object) -> bytes:
+    """Return an object as a frame.
+
+    :raises FrameTooLargeError: when it is too large to be sent
+    """
+    payload = pickle.dumps(content)
+    if len(payload) > MOST_BYTES:
+        raise FrameTooLargeError(f"{len(payload)} bytes are more than the {MOST_BYTES} that one message may have")
+    return _LENGTH.pack(len(payload)) + payload
+
+
+def decode(stream: bytes) -> Iterator[Any]:
+    """Return the objects in `stream`, up to a frame that was cut off, or is too large to be one."""
+    at = 0
+    while at + _LENGTH.size <= len(stream):
+        (length,) = _LENGTH.unpack_from(stream, at)
+        at += _LENGTH.size
+        if length > MOST_BYTES or at + length > len(stream):
+            return
+        yield pickle.loads(stream[at : at + length])
+        at += length

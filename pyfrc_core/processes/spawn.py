@@ -1,0 +1,107 @@
+"""New interpreters, which import everything anew: where processes cannot be forked, or must not be."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Protocol
+
+from .owner import end_with
+
+#: Where no module of the user's is in Python's way, and where this package is found.
+DIRECTORY = Path(__file__).resolve().parents[2]
+
+#: What an interpreter is started with, after its own name.
+ARGUMENTS = ("-c", f"from {__name__} import main; main()")
+
+
+class Interpreter(Protocol):
+    """A process that was started; with methods of `subprocess.Popen`."""
+
+    @property
+    def pid(self) -> int: ...
+
+    def poll(self) -> int | None: ...
+
+    def wait(self, timeout: float | None = None) -> int: ...
+
+    def terminate(self) -> None: ...
+
+    def kill(self) -> None: ...
+
+
+@dataclass(frozen=True)
+class Start:
+    """How to start a new interpreter.
+
+    :param call: what it does: a function that can be pickled
+    :param stdout, stderr: files or descriptors, as for `subprocess.Popen`
+    :param environment: variables that differ from this process's
+    :param own_session: whether it leads a session of its own, on POSIX
+    :param ends_with_owner: whether it is killed when this process ends; only for threads that wait for it
+    """
+
+    call: Callable[[], object]
+    stdout: int | IO[bytes] = subprocess.DEVNULL
+    stderr: int | IO[bytes] = subprocess.DEVNULL
+    environment: Mapping[str, str] | None = None
+    own_session: bool = False
+    ends_with_owner: bool = True
+
+    def job(self) -> bytes:
+        """Return what the interpreter reads from its standard input."""
+        owner = os.getpid() if self.ends_with_owner else None
+        return pickle.dumps(_Job(sys.path, str(Path.cwd()), owner, pickle.dumps(self.call)))
+
+
+@dataclass(frozen=True)
+class _Job:
+    """What a new interpreter is to do.
+
+    :param path: `sys.path`
+    :param directory: the current one
+    :param owner: the process that it is to end with
+    :param call: pickled by itself, since unpickling it needs `path`
+    """
+
+    path: list[str]
+    directory: str
+    owner: int | None
+    call: bytes
+
+
+def start(how: Start) -> Interpreter:
+    """Start a new interpreter.
+
+    Always called as an attribute of this module, so that tests can replace it by a function that starts faster.
+    """
+    process = subprocess.Popen(
+        [sys.executable, *ARGUMENTS],
+        stdin=subprocess.PIPE,
+        stdout=how.stdout,
+        stderr=how.stderr,
+        cwd=DIRECTORY,
+        env={**os.environ, **(how.environment or {})},
+        start_new_session=how.own_session and os.name == "posix",
+    )
+    assert process.stdin is not None
+    with suppress(OSError), process.stdin as stdin:  # an error: it has ended already
+        stdin.write(how.job())
+    return process
+
+
+def main() -> None:
+    """Run the job on standard input: what a new interpreter does."""
+    job: _Job = pickle.load(sys.stdin.buffer)
+    if job.owner is not None:
+        end_with(job.owner)
+    sys.path[:] = job.path
+    os.chdir(job.directory)
+    call: Callable[[], object] = pickle.loads(job.call)
+    call()

@@ -1,0 +1,204 @@
+"""Processes that send objects to this one: the messages of each in their order, then its exit."""
+
+from __future__ import annotations
+
+import contextlib
+import subprocess
+import sys
+import tempfile
+import traceback
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import IO, Any, NoReturn
+
+from ..project.robot_files import RobotFiles
+from . import fork, spawn
+from .crash_report import CrashLog, describe_exit
+from .exit import end_child_processes, exit_now
+from .frames import decode, encode
+
+#: Sends an object to the process that has started this one.
+Send = Callable[[object], object]
+
+#: What a worker does, in its own process: it sends messages, and returns the exit code, or None for 0.
+Work = Callable[[Send, CrashLog], int | None]
+
+
+class Worker(ABC):
+    """A process that works for this one.
+
+    :ivar finished: whether it has ended, and all its messages are here
+    :ivar status: its exit code when it has finished; a signal's number, negative
+    """
+
+    def __init__(self) -> None:
+        self.finished = False
+        self.status = 0
+        self._received = b""
+
+    @abstractmethod
+    def poll(self) -> None:
+        """Take in what has come, and see whether the process has ended."""
+
+    @abstractmethod
+    def kill(self) -> None:
+        """End the process without waiting for its work."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """End the process, if it has not ended, and remove what it has left."""
+
+    def fileno(self) -> int | None:
+        """Return what becomes readable when there is something to `poll`, if there is such a descriptor."""
+        return None
+
+    def messages(self) -> Iterator[Any]:
+        """Return what the process has sent until now, as far as it has come."""
+        return decode(self._received)
+
+    def describe_exit(self, files: RobotFiles, meanwhile: str) -> str:
+        """Return why the process has ended too early: the user's line first, where it is known.
+
+        :param meanwhile: when that was, such as "in the middle of the test"
+        """
+        return describe_exit(self._crash_report(), self.status, files, meanwhile)
+
+    @abstractmethod
+    def _crash_report(self) -> bytes:
+        """Return what is in its crash log."""
+
+
+class ForkedWorker(Worker):
+    """A fork of this process, where everything is imported already."""
+
+    def __init__(self, work: Work) -> None:
+        super().__init__()
+        self._crash_log: IO[bytes] = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115 - closed by `close`
+        self._fork = fork.Fork(lambda send: work_and_exit(work, send, self._crash_log.fileno()))
+
+    def fileno(self) -> int | None:
+        return self._fork.fileno()
+
+    def poll(self) -> None:
+        self._fork.poll()
+        self._take_over()
+
+    def kill(self) -> None:
+        self._fork.kill()
+        self._take_over()
+
+    def close(self) -> None:
+        self.kill()
+        self._crash_log.close()
+
+    def _take_over(self) -> None:
+        self.finished, self.status, self._received = self._fork.finished, self._fork.status, self._fork.message
+
+    def _crash_report(self) -> bytes:
+        self._crash_log.seek(0)
+        return self._crash_log.read()
+
+
+class SpawnedWorker(Worker):
+    """A new interpreter; its messages are in a file, and read when it has ended.
+
+    :param work: can be pickled
+    :param stdout, stderr, environment: see `spawn.Start`
+    """
+
+    def __init__(
+        self,
+        work: Work,
+        stdout: int | IO[bytes] = subprocess.DEVNULL,
+        stderr: int | IO[bytes] = subprocess.DEVNULL,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        super().__init__()
+        self._directory = tempfile.TemporaryDirectory(prefix="pyfrc-process-")
+        call = partial(_work_in_new_interpreter, work, Path(self._directory.name))
+        self._process = spawn.start(spawn.Start(call, stdout, stderr, environment))
+
+    def poll(self) -> None:
+        if not self.finished and (status := self._process.poll()) is not None:
+            self._end(status)
+
+    def wait(self) -> None:
+        """Wait until it has ended; when that is interrupted, end it."""
+        try:
+            self._end(self._process.wait())
+        except BaseException:
+            self.kill()
+            raise
+
+    def kill(self) -> None:
+        if not self.finished:
+            self._process.kill()
+            self._end(self._process.wait())
+
+    def close(self) -> None:
+        self.kill()
+        self._directory.cleanup()
+
+    def _end(self, status: int) -> None:
+        self.status = status
+        self._received = _contents(_messages_in(Path(self._directory.name)))
+        self.finished = True
+
+    def _crash_report(self) -> bytes:
+        return _contents(_crash_log_in(Path(self._directory.name)))
+
+
+def wait_for_any(workers: Sequence[Worker]) -> None:
+    """Return when at least one of these has something new, or may have ended."""
+    running = [worker for worker in workers if not worker.finished]
+    numbers = [worker.fileno() for worker in running]
+    fork.wait_for_any([number for number in numbers if number is not None])
+    for worker in running:
+        worker.poll()
+
+
+# -- on the other side -----------------------------------------------------------------------------------------------
+
+
+def work_and_exit(work: Work, send: Callable[[bytes], object], crash_log: int) -> NoReturn:
+    """Do the work in this process, which is its own, and end it.
+
+    :param send: takes frames
+    :param crash_log: the descriptor of an empty file, open for reading and writing
+    """
+    status = 1
+    try:
+        log = CrashLog(crash_log)
+        log.enable()
+        try:
+            status = work(lambda content: send(encode(content)), log) or 0
+        except BaseException:
+            log.write(traceback.format_exc())
+    finally:
+        end_child_processes()
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError, ValueError, AttributeError):  # its reader has gone, or it is closed
+                stream.flush()
+        exit_now(status)  # without waiting for what the work has left running
+
+
+def _work_in_new_interpreter(work: Work, directory: Path) -> NoReturn:
+    with (
+        _messages_in(directory).open("wb", buffering=0) as messages,
+        _crash_log_in(directory).open("w+b", buffering=0) as crash_log,
+    ):
+        work_and_exit(work, messages.write, crash_log.fileno())
+
+
+def _messages_in(directory: Path) -> Path:
+    return directory / "messages"
+
+
+def _crash_log_in(directory: Path) -> Path:
+    return directory / "crash"
+
+
+def _contents(file: Path) -> bytes:
+    return file.read_bytes() if file.is_file() else b""
