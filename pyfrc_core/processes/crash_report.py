@@ -141,8 +141,8 @@ def describe_exit(report: bytes, status: int, files: RobotFiles, meanwhile: str)
     if moment is not None:
         what += f", {moment}"
     line = _line_of_crash(text, files)
-    # Below the user's code, the stack is pyfrc's and pytest's: of no interest.
-    text = "\n".join(takewhile(lambda line: not re.search(r"pyfrc_core|_pytest", line), text.splitlines()))
+    if not text.startswith("Traceback"):  # below the user's code, the stack is pyfrc's and pytest's: of no interest
+        text = "\n".join(takewhile(lambda line: not re.search(r"pyfrc_core|_pytest", line), text.splitlines()))
     return f"{line}: {what}\n\n{text}".strip() if line else f"{what}\n\n{text}".strip()
 
 

@@ -1,0 +1,408 @@
+"""Child processes: messages in their order, before the exit; how crashes are described; what ends with its owner."""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pyfrc_core.errors import RobotCodeError, UsageError
+from pyfrc_core.processes import exit as process_exit
+from pyfrc_core.processes import frames
+from pyfrc_core.processes.call import ForkedCall, run_in_subprocess
+from pyfrc_core.processes.crash_report import CrashLog
+from pyfrc_core.processes.exit import before_every_exit, before_sudden_exit, call_before_sudden_exit, exit_now
+from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
+from pyfrc_core.processes.frames import FrameTooLargeError, decode, encode
+from pyfrc_core.processes.prefork import PreforkedProcess
+from pyfrc_core.processes.worker import ForkedWorker, Send, SpawnedWorker, Work, Worker, wait_for_any
+from pyfrc_core.project import Project
+from pyfrc_core.project.robot_files import RobotFiles
+
+only_forked = pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork")
+only_linux = pytest.mark.skipif(sys.platform != "linux", reason="where processes end with their owner")
+
+#: Wall seconds, for what takes a hundredth of that.
+PATIENCE = 60
+
+#: This file counts as the project's.
+FILES = RobotFiles(Path(__file__).parent)
+
+BOTH = [pytest.param(ForkedWorker, marks=only_forked), SpawnedWorker]
+
+
+def finish(worker: Worker) -> list[Any]:
+    """Poll a worker until it has finished, and return its messages."""
+    deadline = time.monotonic() + PATIENCE
+    while not worker.finished:
+        assert time.monotonic() < deadline
+        wait_for_any([worker])
+    return list(worker.messages())
+
+
+@pytest.fixture
+def begin() -> Iterator[Callable[[type[Worker], Work], Worker]]:
+    """Start workers, which end with the test."""
+    started: list[Worker] = []
+
+    def begin(kind: Any, work: Work) -> Worker:
+        started.append(kind(work))
+        return started[-1]
+
+    yield begin
+    for worker in started:
+        worker.close()
+
+
+Begin = Callable[[Any, Work], Worker]
+
+
+# -- frames ------------------------------------------------------------------------------------------------------------
+
+
+def test_objects_come_in_their_order_however_a_stream_is_cut() -> None:
+    sent = [None, "text", {"key": [1.5, b"\0"]}, ()]
+    each = [encode(content) for content in sent]
+    stream = b"".join(each)
+    for cut in range(len(stream) + 1):
+        whole = sum(sum(map(len, each[: count + 1])) <= cut for count in range(len(each)))
+        assert list(decode(stream[:cut])) == sent[:whole]
+
+
+def test_an_object_that_is_too_large_is_refused_and_a_length_that_is_too_large_is_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    small, large = encode("small"), encode("large" * 100)
+    monkeypatch.setattr(frames, "MOST_BYTES", 100)
+    with pytest.raises(FrameTooLargeError, match="100"):
+        encode("large" * 100)
+    assert list(decode(small + large + small)) == ["small"]
+
+
+# -- workers: messages, then the exit ----------------------------------------------------------------------------------
+
+
+def send_three(send: Send, log: CrashLog) -> int:
+    for number in range(3):
+        send(number)
+    return 7
+
+
+@pytest.mark.parametrize("kind", BOTH)
+def test_messages_then_the_exit_code(kind: type[Worker], begin: Begin) -> None:
+    worker = begin(kind, send_three)
+    assert finish(worker) == [0, 1, 2]
+    assert worker.status == 7
+
+
+@only_forked
+def test_a_process_that_ended_before_anything_was_read(begin: Begin) -> None:
+    worker = begin(ForkedWorker, send_three)
+    assert isinstance(worker, ForkedWorker)
+    os.waitid(os.P_PID, worker._fork._pid, os.WEXITED | os.WNOWAIT)
+    assert not worker.finished
+    worker.poll()
+    assert worker.finished
+    assert list(worker.messages()) == [0, 1, 2]
+
+
+@only_forked
+def test_messages_are_there_before_the_exit(begin: Begin) -> None:
+    """Each when it was sent: the process waits until the one before was read."""
+    reading, writing = os.pipe()
+
+    def send_in_turn(send: Send, log: CrashLog) -> None:
+        for number in range(3):
+            send(number)
+            os.read(reading, 1)
+
+    worker = begin(ForkedWorker, send_in_turn)
+    for number in range(3):
+        while number not in worker.messages():
+            assert not worker.finished
+            wait_for_any([worker])
+        os.write(writing, b".")
+    assert finish(worker) == [0, 1, 2]
+    os.close(reading)
+    os.close(writing)
+
+
+@only_forked
+def test_a_process_left_behind_does_not_hold_up_the_exit(begin: Begin) -> None:
+    def leave_a_process(send: Send, log: CrashLog) -> None:
+        child = os.fork()
+        if child == 0:
+            signal.pause()
+        send(child)
+
+    worker = begin(ForkedWorker, leave_a_process)
+    (child,) = finish(worker)
+    os.kill(child, signal.SIGKILL)
+
+
+@only_forked
+def test_a_message_larger_than_a_pipe(begin: Begin) -> None:
+    def send_much(send: Send, log: CrashLog) -> None:
+        send(b"much" * (1 << 20))
+        send("more")
+
+    much, more = finish(begin(ForkedWorker, send_much))
+    assert much == b"much" * (1 << 20)
+    assert more == "more"
+
+
+@only_forked
+def test_a_message_that_is_too_large(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(frames, "MOST_BYTES", 100)
+
+    def send_too_much(send: Send, log: CrashLog) -> None:
+        send("before")
+        send("too much" * 100)
+
+    worker = begin(ForkedWorker, send_too_much)
+    assert finish(worker) == ["before"]
+    assert worker.status == 1
+    assert "FrameTooLargeError" in worker.describe_exit(FILES, "meanwhile")
+
+
+# -- ends --------------------------------------------------------------------------------------------------------------
+
+
+def send_and_exit(send: Send, log: CrashLog) -> None:
+    send("before")
+    os._exit(3)
+
+
+def send_and_die(send: Send, log: CrashLog) -> None:
+    send("before")
+    assert log.time_us is not None
+    log.time_us[0] = 1_520_000
+    log.set_mode("disabled autonomous")
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def send_and_raise(send: Send, log: CrashLog) -> None:
+    send("before")
+    raise LookupError("the worker's")
+
+
+@pytest.mark.parametrize("kind", BOTH)
+def test_an_exit_in_the_middle_names_its_line(kind: type[Worker], begin: Begin) -> None:
+    worker = begin(kind, send_and_exit)
+    assert finish(worker) == ["before"]
+    line = send_and_exit.__code__.co_firstlineno + 2
+    assert worker.describe_exit(FILES, "meanwhile").startswith(
+        f"test_processes.py:{line}: the robot's process ended itself with exit code 3, meanwhile\n\nos._exit(3) was"
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals")
+@pytest.mark.parametrize("kind", BOTH)
+def test_the_moment_of_a_process_that_is_killed(kind: type[Worker], begin: Begin) -> None:
+    worker = begin(kind, send_and_die)
+    assert finish(worker) == ["before"]
+    assert worker.status == -signal.SIGKILL
+    assert (
+        worker.describe_exit(FILES, "meanwhile")
+        == "the robot's process was ended by signal 9 (SIGKILL), at 1.52 s in disabled autonomous mode"
+    )
+
+
+@only_forked
+def test_an_error_of_the_work_is_in_the_crash_log(begin: Begin) -> None:
+    worker = begin(ForkedWorker, send_and_raise)
+    assert finish(worker) == ["before"]
+    assert worker.status == 1
+    assert "LookupError: the worker's" in worker.describe_exit(FILES, "meanwhile")
+
+
+@only_forked
+def test_a_worker_that_is_killed_has_finished(begin: Begin) -> None:
+    worker = begin(ForkedWorker, lambda send, log: signal.pause())
+    worker.kill()
+    assert worker.finished
+    assert worker.status == -signal.SIGKILL
+    worker.poll()
+    worker.kill()
+
+
+@only_forked
+def test_a_kill_leaves_time_to_save_measurements(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
+    def save_when_terminated(send: Send, log: CrashLog) -> None:
+        def save(signum: int, frame: object) -> None:
+            send("saved")
+            exit_now(0)
+
+        signal.signal(signal.SIGTERM, save)
+        send("ready")
+        signal.pause()
+
+    monkeypatch.setattr(Fork, "grace_seconds", float(PATIENCE))
+    worker = begin(ForkedWorker, save_when_terminated)
+    while not list(worker.messages()):
+        wait_for_any([worker])
+    worker.kill()
+    assert list(worker.messages()) == ["ready", "saved"]
+    assert worker.status == 0
+
+
+@only_forked
+def test_what_is_called_at_each_exit(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also when the one before fails; each once."""
+
+    def exit_with_calls(send: Send, log: CrashLog) -> None:
+        before_sudden_exit.update(first=lambda: 1 / 0, second=partial(send, "sudden"))
+        call_before_sudden_exit()
+        before_every_exit.append(partial(send, "measured"))
+
+    assert finish(begin(ForkedWorker, exit_with_calls)) == ["sudden", "measured"]
+
+
+def test_an_exit_is_not_prevented(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended: list[int] = []
+    monkeypatch.setattr(process_exit, "_exit", ended.append)
+    monkeypatch.setattr(process_exit, "before_every_exit", [lambda: 1 / 0])
+    with suppress(ZeroDivisionError):
+        exit_now(5)
+    assert ended == [5]
+
+
+# -- nothing outlives its owner ----------------------------------------------------------------------------------------
+
+OWNER = """
+import os, signal, sys
+from functools import partial
+from pyfrc_core.processes import fork, spawn
+
+held = int(sys.argv[2])
+def stay(send):
+    os.write(held, b"x")
+    signal.pause()
+
+if sys.argv[1] == "fork":
+    fork.Fork(stay)
+else:
+    spawn.start(spawn.Start(partial(exec, "import signal; print(1, flush=True); signal.pause()"), stdout=held))
+signal.pause()
+"""
+
+
+@only_linux
+@pytest.mark.parametrize("way", ["fork", "spawn"])
+def test_a_process_ends_when_its_owner_is_killed(way: str) -> None:
+    reading, writing = os.pipe()
+    owner = subprocess.Popen([sys.executable, "-c", OWNER, way, str(writing)], pass_fds=[writing])
+    os.close(writing)
+    try:
+        assert os.read(reading, 1)  # it runs
+    finally:
+        owner.kill()
+        owner.wait()
+    while select.select([reading], [], [], PATIENCE)[0]:
+        if not os.read(reading, 100):  # the last process that could write has ended
+            break
+    else:
+        pytest.fail("it has outlived its owner")
+    os.close(reading)
+
+
+@only_linux
+def test_a_fork_by_a_thread_that_ends_goes_on(begin: Begin) -> None:
+    reading, writing = os.pipe()
+
+    def wait_and_send(send: Send, log: CrashLog) -> None:
+        os.read(reading, 1)
+        send("still there")
+
+    workers: list[Worker] = []
+    thread = threading.Thread(target=lambda: workers.append(begin(ForkedWorker, wait_and_send)))
+    thread.start()
+    thread.join()
+    os.write(writing, b".")
+    assert finish(workers[0]) == ["still there"]
+    os.close(reading)
+    os.close(writing)
+
+
+# -- a process from before ---------------------------------------------------------------------------------------------
+
+
+@only_forked
+def test_a_preforked_process_is_as_this_one_was() -> None:
+    state = ["before"]
+    preforked = PreforkedProcess(lambda reasons: 5 if state == ["before"] and reasons == "threads; devices" else 1)
+    state.append("after")
+    assert preforked.take_over("threads; devices") == 5
+    preforked.dismiss()
+
+
+@only_forked
+def test_a_preforked_process_that_is_not_needed_is_gone() -> None:
+    preforked = PreforkedProcess(lambda reasons: 1)
+    preforked.dismiss()
+    preforked.dismiss()
+    with pytest.raises(ChildProcessError):
+        os.waitpid(preforked._fork._pid, os.WNOHANG)
+
+
+# -- calls -------------------------------------------------------------------------------------------------------------
+
+
+def result_of(call: Callable[[CrashLog], Any]) -> Any:
+    forked = ForkedCall(call)
+    try:
+        deadline = time.monotonic() + PATIENCE
+        while not forked.finished:
+            assert time.monotonic() < deadline
+            forked.poll()
+        return forked.result(FILES, "meanwhile")
+    finally:
+        forked.close()
+
+
+def fail_with(error: BaseException) -> Callable[[CrashLog], Any]:
+    def fail(log: CrashLog) -> None:
+        raise error
+
+    return fail
+
+
+@only_forked
+def test_what_becomes_of_a_call(capfd: pytest.CaptureFixture[str]) -> None:
+    def print_and_return(log: CrashLog) -> str:
+        os.write(1, b"not shown")
+        return "the result"
+
+    assert result_of(print_and_return) == "the result"
+    assert capfd.readouterr().out == ""
+    with pytest.raises(UsageError, match="the user's mistake"):
+        result_of(fail_with(UsageError("the user's mistake")))
+    with pytest.raises(RuntimeError, match="a mistake in pyfrc itself") as raised:
+        result_of(fail_with(LookupError("ours")))
+    assert "LookupError: ours" in str(raised.value.__cause__)
+    with pytest.raises(RobotCodeError, match=r"exit\(3\) was called"):
+        result_of(fail_with(SystemExit(3)))
+    with pytest.raises(RuntimeError, match="a mistake in pyfrc itself"):
+        result_of(lambda log: lambda: "cannot be pickled")
+    with pytest.raises(RobotCodeError, match="ended itself with exit code 4, meanwhile"):
+        result_of(lambda log: os._exit(4))
+
+
+def name_of(project: Project, log: CrashLog) -> str:
+    return project.main_file.name
+
+
+def test_a_call_in_a_new_interpreter(tmp_path: Path) -> None:
+    project = Project(tmp_path / "robot.py")
+    assert run_in_subprocess(name_of, project, "meanwhile") == "robot.py"
