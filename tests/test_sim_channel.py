@@ -14,12 +14,13 @@ import pytest
 from conftest import MakeProject
 from sim_robots import PATIENCE, wait
 
+from pyfrc_core.processes import channel
+from pyfrc_core.processes.channel import Channel
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.engine import output_pipe, processes, robot_channel
+from pyfrc_core.sim.engine import output_pipe, processes
 from pyfrc_core.sim.engine.messages import Failed
-from pyfrc_core.sim.engine.robot_channel import RobotChannel
 
 FAILS = """
     import ctypes
@@ -99,14 +100,14 @@ def test_the_exit_is_reported_before_a_message_is_read(
 ) -> None:
     """No message is read until the channel waits for nothing but that."""
     gate = Gate()
-    end_of_input = robot_channel.end_of_input
+    end_of_input = channel.end_of_input
 
     def ending(connection: Connection) -> None:
         end_of_input(connection)
         gate.set()
 
-    monkeypatch.setattr(robot_channel, "end_of_input", ending)
-    monkeypatch.setattr(robot_channel, "receive", late(robot_channel.receive, gate))
+    monkeypatch.setattr(channel, "end_of_input", ending)
+    monkeypatch.setattr(channel, "receive", late(channel.receive, gate))
     with failed(make_project, FAILS, fork) as simulation:
         see_the_users_error(simulation)
 
@@ -139,7 +140,7 @@ def test_the_messages_are_read_before_the_exit_is_reported(
         gate.set()
 
     monkeypatch.setattr(Simulation, "_fail", failing)
-    monkeypatch.setattr(RobotChannel, "ended", late(RobotChannel.ended, gate))
+    monkeypatch.setattr(Channel, "ended", late(Channel.ended, gate))
     with failed(make_project, FAILS) as simulation:
         see_the_users_error(simulation)
 
@@ -150,7 +151,7 @@ def test_what_was_printed_is_read_late(
 ) -> None:
     gate = Gate()
 
-    receive = robot_channel.receive
+    receive = channel.receive
 
     def receiving(connection: Connection) -> Any:
         message = receive(connection)
@@ -158,7 +159,7 @@ def test_what_was_printed_is_read_late(
             gate.set()
         return message
 
-    monkeypatch.setattr(robot_channel, "receive", receiving)
+    monkeypatch.setattr(channel, "receive", receiving)
     monkeypatch.setattr(output_pipe, "read", late(output_pipe.read, gate if robot is FAILS else exit_reported))
     with failed(make_project, robot) as simulation:
         assert "the last words" in simulation.take_output()
@@ -203,7 +204,7 @@ def test_the_robot_fails_with_commands_unread(
     else:
         listener = processes.Listener
         monkeypatch.setattr(processes, "Listener", lambda address, **key: listener(("127.0.0.1", 0), **key))
-    monkeypatch.setattr(robot_channel, "receive", late(robot_channel.receive, exit_reported))
+    monkeypatch.setattr(channel, "receive", late(channel.receive, exit_reported))
     project = Project(make_project({"robot.py": FAILS}).path / "robot.py")
     with Simulation(project, SimOptions(speed=0)) as simulation:
         for _ in range(20):

@@ -23,7 +23,7 @@ TESTS = """
 
 
     def test_forked(control):
-        assert not any("spawned" in argument for argument in sys.orig_argv)
+        assert not any("processes.spawn" in argument for argument in sys.orig_argv)
 
 
     def test_another(control):

@@ -177,7 +177,7 @@ def _robot(project: Project, log: CrashLog, seed: int, use_oracle: bool = True) 
     load(project)  # before robot time begins
     run = RobotRun()
     settings = project.settings.fuzz
-    hang_detector = HangDetector(run, project.files, settings.hang_seconds, log.write, log.descriptor)
+    hang_detector = HangDetector(run, project.files, settings.hang_seconds, log)
     with hang_detector.watching():
         run.open()
         CrashMoment(log, run)

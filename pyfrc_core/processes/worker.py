@@ -76,7 +76,8 @@ class ForkedWorker(Worker):
     def __init__(self, work: Work) -> None:
         super().__init__()
         self._crash_log: IO[bytes] = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115 - closed by `close`
-        self._fork = fork.Fork(lambda send: work_and_exit(work, send, self._crash_log.fileno()))
+        descriptor = self._crash_log.fileno()
+        self._fork = fork.Fork(lambda send: work_and_exit(partial(work, _sender(send)), descriptor))
 
     def fileno(self) -> int | None:
         return self._fork.fileno()
@@ -162,10 +163,9 @@ def wait_for_any(workers: Sequence[Worker]) -> None:
 # -- on the other side -----------------------------------------------------------------------------------------------
 
 
-def work_and_exit(work: Work, send: Callable[[bytes], object], crash_log: int) -> NoReturn:
+def work_and_exit(work: Callable[[CrashLog], int | None], crash_log: int) -> NoReturn:
     """Do the work in this process, which is its own, and end it.
 
-    :param send: takes frames
     :param crash_log: the descriptor of an empty file, open for reading and writing
     """
     status = 1
@@ -173,7 +173,7 @@ def work_and_exit(work: Work, send: Callable[[bytes], object], crash_log: int) -
         log = CrashLog(crash_log)
         log.enable()
         try:
-            status = work(lambda content: send(encode(content)), log) or 0
+            status = work(log) or 0
         except BaseException:
             log.write(traceback.format_exc())
     finally:
@@ -189,7 +189,11 @@ def _work_in_new_interpreter(work: Work, directory: Path) -> NoReturn:
         _messages_in(directory).open("wb", buffering=0) as messages,
         _crash_log_in(directory).open("w+b", buffering=0) as crash_log,
     ):
-        work_and_exit(work, messages.write, crash_log.fileno())
+        work_and_exit(partial(work, _sender(messages.write)), crash_log.fileno())
+
+
+def _sender(send: Callable[[bytes], object]) -> Send:
+    return lambda content: send(encode(content))
 
 
 def _messages_in(directory: Path) -> Path:

@@ -25,6 +25,7 @@ from ..processes.exit import EXIT_HANGS, call_before_sudden_exit
 from .exceptions import TestFroze
 
 if TYPE_CHECKING:
+    from ..processes.crash_report import CrashLog
     from ..project.robot_files import RobotFiles
     from .robot import RobotRun
 
@@ -128,10 +129,9 @@ class HangDetector:
     """Watches one robot run from a thread of its own.
 
     :param hang_seconds: processor seconds without a microsecond of robot time, after which code counts as hanging
-    :param last_words: called with the explanation before the process is ended, when the code cannot be stopped;
-        without it the process is never ended
-    :param stuck_file: the descriptor of a file for the stack of code that keeps Python's lock, so that not even this
-        class gets to run; the process ends then
+    :param log: where the explanation is written before the process is ended, when the code cannot be stopped; also
+        the stack of code that keeps Python's lock, so that not even this class gets to run. Without it the process is
+        never ended.
     """
 
     def __init__(
@@ -139,14 +139,12 @@ class HangDetector:
         run: RobotRun,
         files: RobotFiles | None,
         hang_seconds: float,
-        last_words: Callable[[str], None] | None = None,
-        stuck_file: int | None = None,
+        log: CrashLog | None = None,
     ) -> None:
         self._run = run
         self._files = files
         self._hang_seconds = hang_seconds
-        self._last_words = last_words
-        self._stuck_file = stuck_file
+        self._log = log
         self._interruption = _Interruption()
 
     @contextmanager
@@ -159,7 +157,7 @@ class HangDetector:
                 yield
             finally:
                 self._interruption.over = True
-                if self._stuck_file is not None:
+                if self._log is not None:
                     faulthandler.cancel_dump_traceback_later()
 
     def _watch(self) -> None:
@@ -167,9 +165,11 @@ class HangDetector:
         seen, cpu, wall = clock.now_us, _cpu(), _wall()
         warned = False
         while not interruption.over:
-            if self._stuck_file is not None:
+            if self._log is not None:
                 # From C, and so without Python's lock; put off again each time this thread does get to run.
-                faulthandler.dump_traceback_later(STUCK_FACTOR * self._hang_seconds, exit=True, file=self._stuck_file)
+                faulthandler.dump_traceback_later(
+                    STUCK_FACTOR * self._hang_seconds, exit=True, file=self._log.descriptor
+                )
             _wait(min(0.25, self._hang_seconds / 4))
             if clock.now_us != seen or not self._run.in_motion or interruption.over:
                 seen, cpu, wall, warned = clock.now_us, _cpu(), _wall(), False
@@ -206,8 +206,8 @@ class HangDetector:
 
     def _give_up(self, ident: int) -> None:
         """The code swallowed the interruption, or never came to see it."""
-        if self._last_words is None:
+        if self._log is None:
             return
-        self._last_words(self._explain(ident, busy=True))
+        self._log.write(self._explain(ident, busy=True))
         call_before_sudden_exit()
         _exit(EXIT_HANGS)

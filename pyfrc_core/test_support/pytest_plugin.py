@@ -6,7 +6,7 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Generator, Iterator
 from contextlib import ExitStack
 from functools import cached_property
 from hashlib import sha256
@@ -20,6 +20,7 @@ from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, PyfrcError
 from ..hal import HalData
 from ..project import Project
+from ..runtime.crash_moment import CrashMoment
 from ..runtime.data_logs import TEST_LOGS, LogPlace
 from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_pyfrc, names_its_place
 from ..runtime.hang_detector import HangDetector
@@ -40,6 +41,7 @@ from .reporting import BUG, bug_of, put_first
 if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
     from ..physics.engine import Physics, PhysicsModule
+    from ..processes.crash_report import CrashLog
 
 #: The fixtures that use the robot: a test with one of them runs in a separate process.
 ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller", "robot", "wpilib"})
@@ -74,14 +76,8 @@ class PyFrcPlugin:
     ) -> None:
         self.project = project or Project(Path(robot_file).resolve())
         self.options = options or TestOptions.combined(self.project.settings.test)
-        #: Whether this process runs a single test, and ends afterwards, so that no cleanup is needed.
-        self.own_process = False
-        #: The file descriptor to which a call that never returns to Python is reported.
-        self.when_python_is_stuck: int | None = None
-        #: Called with an explanation when robot code can only be stopped by ending its process.
-        self.last_words: Callable[[str], None] | None = None
-        #: Called with each run after it was opened.
-        self.when_opened: Callable[[RobotRun], object] = lambda run: None
+        #: That of a process that runs a single test, and ends afterwards, so that no cleanup is needed.
+        self.crash_log: CrashLog | None = None
         #: Why each test's process imports the robot's modules itself; empty when a fork inherits them.
         self.imports_late = imports_late
         self._former_logs: set[tuple[str, int]] = set()
@@ -168,14 +164,13 @@ class PyFrcPlugin:
         self.robot_class()  # imports the robot's modules before robot time begins
         name = _file_name(request.node.nodeid).removesuffix(".jsonl")
         run = RobotRun(LogPlace.of_test(self.project.root, name))
-        hang_detector = HangDetector(
-            run, self.project.files, self.options.hang_seconds, self.last_words, self.when_python_is_stuck
-        )
+        hang_detector = HangDetector(run, self.project.files, self.options.hang_seconds, self.crash_log)
         with hang_detector.watching(), ExitStack() as closing:
             run.open()
-            self.when_opened(run)
+            if self.crash_log is not None:
+                CrashMoment(self.crash_log, run)
             LoopLimit(run, self.project.files, self.project.settings)
-            if not self.own_process:
+            if self.crash_log is None:
                 closing.callback(_forget, run, request.node)
             closing.enter_context(self._recorded(run, request.node))
             yield run

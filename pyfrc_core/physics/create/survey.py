@@ -140,7 +140,7 @@ def survey(project: Project, log: CrashLog) -> Survey:
     robot_class = load_robot(project)
     run = RobotRun()
     hang_seconds = project.settings.test.hang_seconds
-    with HangDetector(run, project.files, hang_seconds, log.write, log.descriptor).watching():
+    with HangDetector(run, project.files, hang_seconds, log).watching():
         try:
             run.open()
             run.clock.limit_us = _LIMIT_US

@@ -17,10 +17,12 @@ from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import Client, Connection, wait
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
+from ...processes.channel import close_in_forks, end_of_output
 from ...processes.crash_report import CrashLog
 from ...processes.exit import call_before_sudden_exit, end_child_processes, exit_now
+from ...processes.worker import work_and_exit
 from .commands import Quit
 
 _LOOK_SECONDS = 0.2
@@ -171,29 +173,17 @@ def _end_robot(signum: int, frame: object) -> None:
     exit_now(128 + signum)
 
 
-def _become_the_robot(hosting: Hosting, launch: Launch) -> None:
-    """Never returns."""
-    from .robot_channel import close_in_forks, end_of_output
+def _become_the_robot(hosting: Hosting, launch: Launch) -> NoReturn:
+    with launch.crash_log.open("w+b", buffering=0) as file:
+        work_and_exit(partial(_run_robot, hosting, launch), file.fileno())
+
+
+def _run_robot(hosting: Hosting, launch: Launch, log: CrashLog) -> None:
     from .robot_side.robot_process import run_robot
 
-    status = 1
-    with launch.crash_log.open("w+b", buffering=0) as file:
-        log = CrashLog(file.fileno())
-        log.enable()
-        signal.signal(signal.SIGTERM, _end_robot)
-        try:
-            connection = Client(hosting.address, authkey=hosting.key)
-            close_in_forks(connection)
-            connection.send(launch.number)
-            run_robot(pickle.loads(launch.job), connection, log)
-            end_of_output(connection)
-            status = 0
-        except BaseException:
-            import traceback
-
-            log.write(traceback.format_exc())
-        finally:
-            end_child_processes()
-            sys.stdout.flush()
-            sys.stderr.flush()
-            exit_now(status)
+    signal.signal(signal.SIGTERM, _end_robot)
+    connection = Client(hosting.address, authkey=hosting.key)
+    close_in_forks(connection)
+    connection.send(launch.number)
+    run_robot(pickle.loads(launch.job), connection, log)
+    end_of_output(connection)

@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from ...processes.channel import Channel
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.spawn import Interpreter
 from . import host_process
@@ -22,7 +23,6 @@ from .commands import Quit
 from .host import Exited, Hosting, Kill, Launch, Preload
 from .messages import Failed, Job, Message
 from .output_pipe import OutputPipe
-from .robot_channel import RobotChannel
 
 #: The most bytes that the name of a socket may have on every system.
 _LONGEST_NAME = 100
@@ -67,7 +67,7 @@ class RobotProcesses:
         self._output: OutputPipe | None = None
         #: Set when the robot's process has ended.
         self._ended = threading.Event()
-        self._channels: dict[int, RobotChannel] = {}
+        self._channels: dict[int, Channel] = {}
         #: Set when the connection with this number has been accepted, and so all that were made before it.
         self._barriers: dict[str, threading.Event] = {}
         #: What is to be sent to the host as soon as it is there; likewise to the robot.
@@ -81,7 +81,7 @@ class RobotProcesses:
             if self._closed:
                 return self._number
             self._number += 1
-            self._channels[self._number] = RobotChannel(self._number, self._heard, self._gone)
+            self._channels[self._number] = Channel(self._number, self._heard, self._gone)
             if self._host is not None and not self._forks:
                 self._end_host()
             self._robot, self._for_robot = None, []

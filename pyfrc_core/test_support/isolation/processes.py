@@ -12,7 +12,6 @@ import pytest
 
 from ...processes.crash_report import CrashLog
 from ...processes.worker import ForkedWorker, Send, SpawnedWorker, Worker
-from ...runtime.crash_moment import CrashMoment
 from ..pytest_plugin import PyFrcPlugin
 from .messages import ReportSender
 
@@ -84,17 +83,9 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
 def _run_in_fork(item: pytest.Item, plugin: PyFrcPlugin, files: tuple[int, int], send: Send, log: CrashLog) -> None:
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     _capture_anew(item.config, files)
-    report_crashes(plugin, log)
-    ReportSender(send).run(item)
-
-
-def report_crashes(plugin: PyFrcPlugin, log: CrashLog) -> None:
-    """Have what ends this process too early written to its crash log: also code that cannot be stopped."""
-    plugin.own_process = True
-    plugin.when_python_is_stuck = log.descriptor
-    plugin.last_words = log.write
-    plugin.when_opened = partial(CrashMoment, log)
+    plugin.crash_log = log
     log.enable_fault_handler()  # pytest has one of its own
+    ReportSender(send).run(item)
 
 
 def _capture_anew(config: pytest.Config, files: tuple[int, int]) -> None:

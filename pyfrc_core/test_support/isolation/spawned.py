@@ -53,9 +53,9 @@ class OnlyOneTest:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         from .messages import ReportSender
-        from .processes import report_crashes
 
-        report_crashes(self._plugin, self._log)
+        self._plugin.crash_log = self._log
+        self._log.enable_fault_handler()  # pytest has one of its own
         for item in session.items:
             if item.nodeid == self._job.nodeid:
                 ReportSender(self._send).run(item, shares=False)

@@ -1,7 +1,7 @@
-"""One ordered channel for each robot process: its messages, in their order, then its exit.
+"""What a process sends over a connection of its own: its messages in their order, then its exit.
 
-Messages come over the process's own connection, its exit is reported from another side. So the exit is held back until
-the connection has been read to its end; no time limit decides which comes first.
+For processes that another one has started for this one: their exit is reported from another side. So the exit is held
+back until the connection has been read to its end; no time limit decides which comes first.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ def receive(connection: Connection) -> Any:
     return connection.recv()
 
 
-class RobotChannel:
-    """What one robot process sends.
+class Channel:
+    """What one process sends.
 
-    :param number: of its launch
+    :param number: which process it is
     :param on_message: called with the number and each message
     :param on_exit: called with the number and the exit code, after the last message
     """
@@ -41,7 +41,7 @@ class RobotChannel:
     def connected(self, connection: Connection) -> None:
         """Read the messages that come over this connection."""
         self.connection = connection
-        self._reader = threading.Thread(target=self._read, args=(connection,), name="pyfrc sim: robot", daemon=True)
+        self._reader = threading.Thread(target=self._read, args=(connection,), name="pyfrc: messages", daemon=True)
         self._reader.start()
 
     def ended(self, status: int) -> None:
