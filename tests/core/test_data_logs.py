@@ -9,7 +9,8 @@ import pytest
 import wpiutil
 from wpiutil.log import DataLogReader, StringLogEntry
 
-from pyfrc_core.runtime import data_logs, own_process
+from pyfrc_core.processes.exit import before_sudden_exit
+from pyfrc_core.runtime import data_logs
 from pyfrc_core.runtime.clock import KICKOFF
 from pyfrc_core.runtime.data_logs import DataLogs, LogPlace
 
@@ -122,7 +123,7 @@ def test_a_writer_of_robot_codes_own(tmp_path: Path, timeline: Timeline) -> None
     entry = StringLogEntry(writer, "words")
     entry.append("one")
     logs.rename(writer, "renamed.wpilog")
-    own_process.before_sudden_end["data logs"]()
+    before_sudden_exit["data logs"]()
     assert entries(tmp_path / "renamed.wpilog") == {"words": ["one"]}
     assert not (tmp_path / "own.wpilog").exists()
     with pytest.raises(RuntimeError):

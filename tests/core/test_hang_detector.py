@@ -74,7 +74,7 @@ def test_code_that_computes_while_robot_time_stands_hangs(monkeypatch: pytest.Mo
     ]
 
 
-def test_it_is_interrupted_again_and_ended_only_with_last_words(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_is_interrupted_again_and_ended_only_with_a_crash_log(monkeypatch: pytest.MonkeyPatch) -> None:
     def steps(world: World) -> Iterator[object]:
         for world.cpu in (10.0, 15.0, 20.0):
             yield 1
@@ -82,11 +82,15 @@ def test_it_is_interrupted_again_and_ended_only_with_last_words(monkeypatch: pyt
     world = World(monkeypatch)
     assert [entry.partition(":")[0] for entry in world.watch(steps(world))] == ["cpu 10 wall 0", "cpu 20 wall 0"]
     words: list[str] = []
-    world = World(monkeypatch, last_words=words.append)
+    stuck: list[tuple[float, object]] = []
+    faults = SimpleNamespace(dump_traceback_later=lambda seconds, exit, file: stuck.append((seconds, file)))
+    monkeypatch.setattr(hang_detector, "faulthandler", faults)
+    world = World(monkeypatch, log=SimpleNamespace(write=words.append, descriptor=7))
     world.watch(steps(world))
     assert world.log[1] == f"exit {EXIT_HANGS}"
     assert words[0].startswith("robot.py:11: the robot code hangs here")
     assert words[0].endswith("A loop that waits for something must wait(), sleep or return.")
+    assert set(stuck) == {(60.0, 7)}
 
 
 def test_code_that_is_blocked_has_a_minute_of_wall_time(monkeypatch: pytest.MonkeyPatch) -> None:

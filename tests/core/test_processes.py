@@ -12,14 +12,15 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import partial
+from multiprocessing import Pipe
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pyfrc_core.errors import RobotCodeError, UsageError
+from pyfrc_core.processes import channel, frames
 from pyfrc_core.processes import exit as process_exit
-from pyfrc_core.processes import frames
 from pyfrc_core.processes.call import ForkedCall, run_in_subprocess
 from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.processes.exit import before_every_exit, before_sudden_exit, call_before_sudden_exit, exit_now
@@ -176,6 +177,64 @@ def test_a_message_that_is_too_large(begin: Begin, monkeypatch: pytest.MonkeyPat
     assert "FrameTooLargeError" in worker.describe_exit(FILES, "meanwhile")
 
 
+# -- a channel: two sources, one order ---------------------------------------------------------------------------------
+
+
+class Heard:
+    """A channel, and all that it reports."""
+
+    def __init__(self) -> None:
+        self.events: list[tuple[object, ...]] = []
+        self.ours, self.theirs = Pipe()
+        self.channel = channel.Channel(
+            5,
+            lambda number, message: self.events.append((number, "message", message)),
+            lambda number, status: self.events.append((number, "exit", status)),
+        )
+
+
+EXIT = (5, "exit", 3)
+
+
+def test_an_exit_that_is_known_first_is_reported_last(monkeypatch: pytest.MonkeyPatch) -> None:
+    heard, ending = Heard(), threading.Event()
+    receive, end_of_input = channel.receive, channel.end_of_input
+
+    def receive_late(connection: Any) -> Any:
+        assert ending.wait(PATIENCE)
+        return receive(connection)
+
+    def end(connection: Any) -> None:
+        end_of_input(connection)
+        ending.set()
+
+    monkeypatch.setattr(channel, "receive", receive_late)
+    monkeypatch.setattr(channel, "end_of_input", end)
+    for number in range(3):
+        heard.theirs.send(number)
+    heard.theirs.close()
+    heard.channel.connected(heard.ours)
+    heard.channel.ended(3)
+    assert heard.events == [(5, "message", 0), (5, "message", 1), (5, "message", 2), EXIT]
+
+
+@only_linux
+def test_a_connection_that_another_process_holds_open_does_not_hold_up_the_exit() -> None:
+    heard = Heard()
+    heard.channel.connected(heard.ours)
+    heard.theirs.send("before")
+    heard.channel.ended(3)
+    assert heard.events == [(5, "message", "before"), EXIT]
+    heard.theirs.close()
+
+
+def test_an_exit_is_reported_once_and_without_a_connection() -> None:
+    heard = Heard()
+    heard.channel.ended(3)
+    heard.channel.ended(4)
+    assert heard.events == [EXIT]
+
+
 # -- ends --------------------------------------------------------------------------------------------------------------
 
 
@@ -283,6 +342,7 @@ def test_an_exit_is_not_prevented(monkeypatch: pytest.MonkeyPatch) -> None:
 OWNER = """
 import os, signal, sys
 from functools import partial
+from multiprocessing import Pipe
 from pyfrc_core.processes import fork, spawn
 
 held = int(sys.argv[2])
