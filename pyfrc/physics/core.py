@@ -1,4 +1,4 @@
-"""Connects your physics module with the simulated robot."""
+"""The interface between your physics module and the simulated robot."""
 
 from pyfrc_core.physics.core import PhysicsEngine, PhysicsInitException, PhysicsInterface
 

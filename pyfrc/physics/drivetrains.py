@@ -1,4 +1,4 @@
-"""Simple drivetrains: from what the motors are set to, to how the robot moves."""
+"""Simple drivetrains: compute the robot's motion from its motors' values."""
 
 from pyfrc_core.physics.deadzones import DeadzoneCallable, linear_deadzone
 from pyfrc_core.physics.deprecated_drivetrains import four_motor_drivetrain, mecanum_drivetrain, two_motor_drivetrain

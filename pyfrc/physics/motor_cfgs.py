@@ -1,4 +1,4 @@
-"""What motors can do: the configurations of those that robots have, and how to make another."""
+"""Motor configurations, and the class to create others."""
 
 from pyfrc_core.physics.motor_cfgs import (
     MOTOR_CFG_775_125,

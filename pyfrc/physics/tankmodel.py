@@ -1,4 +1,4 @@
-"""A model of a tank drive, from its motors' values to how far the robot moves."""
+"""A model of a tank drive: compute the robot's motion from its motors' values."""
 
 from pyfrc_core.physics.tankmodel import MotorModel, TankModel
 

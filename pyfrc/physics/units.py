@@ -1,4 +1,4 @@
-"""The units that physical quantities are given in: ``5 * units.feet``."""
+"""The units of physical quantities: ``5 * units.feet``."""
 
 from pyfrc_core.physics.units import units
 

@@ -1,4 +1,4 @@
-"""What a camera that looks for targets would see, and when the robot would hear of it."""
+"""Simulate a camera that detects targets: what it sees, and when the robot receives the data."""
 
 from pyfrc_core.physics.visionsim import VisionSim, VisionSimTarget
 

@@ -1,4 +1,4 @@
-"""Controlling the robot's state during a test."""
+"""Control the robot's state during a test."""
 
 from pyfrc_core.test_support.controller import TestController
 

@@ -1,4 +1,4 @@
-"""Control over the time a robot under test is using."""
+"""Control over robot time in a test."""
 
 from pyfrc_core.test_support.fake_time import FakeTime, TestEnded, TestFroze, TestRanTooLong
 

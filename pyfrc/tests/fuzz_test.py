@@ -1,4 +1,4 @@
-"""Mashes the buttons and switches in random ways."""
+"""A test of the robot with random inputs."""
 
 from pyfrc_core.tests.fuzz_test import test_fuzz
 

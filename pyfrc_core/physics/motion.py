@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .labels import show_label
+from ..runtime.patches import patches
 from .parameters import ParameterError, finite, not_negative, within_full_power
 
 
@@ -63,7 +63,7 @@ class LinearMotion:
         self.position_ft = min(max(self.position_ft + feet, self._min), self._max)
         # Rounded before it is truncated: many small steps add up to slightly less than the whole.
         self.position_ticks = int(round(self.position_ft * self._ticks_per_feet, 6))
-        show_label(self._name, f"{round(self.position_ft, 2) + 0.0:.2f}")
+        _show_label(self._name, f"{round(self.position_ft, 2) + 0.0:.2f}")
 
     def _time_since_last_call(self) -> float:
         import wpilib
@@ -72,3 +72,9 @@ class LinearMotion:
         self._last_call = now
         # Negative when the object is used with a second robot, whose time starts at zero again.
         return 0.0 if last is None else max(0.0, now - last)
+
+
+def _show_label(label: str, value: object) -> None:
+    """Show `value` in the simulator, as text in a box with this label, if a robot is running."""
+    if patches.run is not None:
+        patches.run.hal_data["custom"][label] = value

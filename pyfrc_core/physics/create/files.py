@@ -12,8 +12,7 @@ from ...errors import PyfrcError, SettingsError, UsageError
 from ...processes.call import run_in_subprocess
 from ...project import Project
 from ...text_files import write_whole
-from .config_file import SCHEMA_NAME
-from .proposal import propose
+from .proposal import SCHEMA_NAME, propose
 
 
 @dataclass

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from ...processes.crash_report import CrashLog
 from ...project import Project
+
+if TYPE_CHECKING:
+    from .survey import Survey
+
+#: The JSON Schema beside the configuration, for completion in editors.
+SCHEMA_NAME = "config.schema.json"
+
+#: The robot of the written ``physics.py``, 27.5 by 36.5 inches, in feet. It starts at the middle of the field's left
+#: end, facing along the field.
+_ROBOT = {"w": 2.29, "l": 3.04, "starting_x": 3, "starting_y": 13.2, "starting_angle": 0}
 
 
 @dataclass(frozen=True)
@@ -34,7 +46,6 @@ def propose(project: Project, log: CrashLog) -> Proposal:
     :raises RobotCodeError: when the robot's code fails before it can be driven
     """
     # Imported here, since the parent process does not need them.
-    from .config_file import config_text
     from .drivetrain import find_layout
     from .physics_file import physics_text
     from .report import advice, summary
@@ -44,9 +55,15 @@ def propose(project: Project, log: CrashLog) -> Proposal:
     layout = find_layout(found)
     return Proposal(
         physics_text(found, layout),
-        config_text(found),
+        _config_text(found),
         summary(layout, found),
         layout.assumptions,
         advice(layout),
         found.problem,
     )
+
+
+def _config_text(found: Survey) -> str:
+    """Return the text of ``sim/config.json``, with the robot and the names of its channels."""
+    content: dict[str, Any] = {"$schema": SCHEMA_NAME, "pyfrc": {"robot": _ROBOT, **found.labels}}
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
