@@ -24,7 +24,7 @@ from pyfrc_core.fuzz.match import MatchResult, ReplayTask, Task
 from pyfrc_core.fuzz.match_executor import MatchExecutor
 from pyfrc_core.fuzz.seed_schedule import SeedScheduler
 from pyfrc_core.fuzz.shrink import Shrinker
-from pyfrc_core.fuzz.values import SPANS, Kind, can_be, nearest, simpler
+from pyfrc_core.fuzz.values import SPANS, InputKind, can_be, nearest, simpler
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork, wait_for_any
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
@@ -468,8 +468,8 @@ def test_no_more_robots_are_run_than_allowed() -> None:
     assert needed <= {target for step in shrinker.script.steps for target in step.writes}
 
 
-@given(kind=st.sampled_from(sorted(set(get_args(Kind)) & SPANS.keys())), value=st.floats(-1e6, 1e6))
-def test_simpler_values_can_be_and_are_shorter(kind: Kind, value: float) -> None:
+@given(kind=st.sampled_from(sorted(set(get_args(InputKind)) & SPANS.keys())), value=st.floats(-1e6, 1e6))
+def test_simpler_values_can_be_and_are_shorter(kind: InputKind, value: float) -> None:
     value = nearest(kind, value)
     for each in simpler(kind, value):
         assert can_be(kind, each)

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyfrc_core.fuzz.values import SPANS, Kind, can_be, draw, nearest
+from pyfrc_core.fuzz.values import SPANS, InputKind, can_be, draw, nearest
 from pyfrc_core.runtime.scripts.script import load_script
 
 ROBOTS = Path(__file__).parent / "robots"
@@ -256,8 +256,8 @@ def test_the_same_seed_writes_the_same_whatever_python_hashes(make_shared_projec
     assert again[0] != again[1] != again[2]
 
 
-@given(kind=st.sampled_from(get_args(Kind)), seed=st.integers(0, 2**32), now=st.floats(-1e6, 1e6))
-def test_what_is_drawn_can_be(kind: Kind, seed: int, now: float) -> None:
+@given(kind=st.sampled_from(get_args(InputKind)), seed=st.integers(0, 2**32), now=st.floats(-1e6, 1e6))
+def test_what_is_drawn_can_be(kind: InputKind, seed: int, now: float) -> None:
     options = ("a", "b")
     value = draw(kind, random.Random(seed), options, now)
     assert can_be(kind, value, options)

@@ -13,7 +13,7 @@ from wpilib.simulation import SimDeviceSim
 
 from ..hal import HalData, format_path
 from .gamepads import TRIGGERS
-from .values import Kind
+from .values import InputKind
 
 
 @dataclass(frozen=True, order=True)
@@ -27,7 +27,7 @@ class Input:
     """
 
     target: str
-    kind: Kind
+    kind: InputKind
     device: str = ""
     options: tuple[str, ...] = ()
 
@@ -51,21 +51,21 @@ def find_controls(hal_data: HalData, gamepads: Mapping[int, str]) -> Iterator[In
 # -- sensors ---------------------------------------------------------------------------------------------------------
 
 #: The values that devices measure, by their key in `hal_data`.
-_DEVICES: dict[str, tuple[tuple[str, Kind], ...]] = {
+_DEVICES: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "dio": (("value", "switch"),),
     "analog_in": (("voltage", "volts"),),
     "encoder": (("count", "count"), ("rate", "rate")),
     "analog_gyro": (("angle", "angle"), ("rate", "turning")),
     "duty_cycle": (("output", "turns"), ("frequency", "hertz")),
 }
-_MODULES: dict[str, tuple[tuple[str, Kind], ...]] = {
+_MODULES: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "pcm_compressor": (("pressure_switch", "switch"),),
     "ph_compressor": (("pressure_switch", "switch"),),
     "pdp": (("voltage", "battery"), *((f"current[{channel}]", "amperes") for channel in range(24))),
 }
 
 #: Patterns for the names of a SimDevice's numeric values; the first match counts.
-_NAMED: tuple[tuple[str, Kind], ...] = (
+_NAMED: tuple[tuple[str, InputKind], ...] = (
     (r"rate|velocity", "turning"),
     (r"yaw|pitch|roll", "half turns"),
     (r"heading", "heading"),
@@ -113,7 +113,7 @@ def _of_sim_device(name: str) -> Iterator[Input]:
         if is_output:
             continue
         options: tuple[str, ...] = ()
-        kind: Kind
+        kind: InputKind
         sort = device.getValue(value).type.name
         if sort == "BOOLEAN":
             kind = "connected" if re.search("connected|valid", value, re.IGNORECASE) else "switch"

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
 from .inputs import Input
-from .values import NOT_PRESSED, Kind, Value, draw
+from .values import NOT_PRESSED, InputKind, Value, draw
 
 #: Packets come 50 times a second, and hands move no faster.
 _STEP_US = 2 * PACKET_US
@@ -27,7 +27,7 @@ _KNOWN, _OTHERS = 100, 1
 _BUTTONS = (0, 0, 1, 1, 2, 2, 2, 3, 3, 4)
 _AXES = (0, 0, 1, 1, 1, 2, 2, 2, 4)
 
-_RELEASED: dict[Kind, float] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": NOT_PRESSED}
+_RELEASED: dict[InputKind, float] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": NOT_PRESSED}
 
 
 class JoystickGenerator:

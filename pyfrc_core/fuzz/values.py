@@ -13,7 +13,7 @@ from typing import Any, Literal, TypeAlias
 Value: TypeAlias = bool | int | float | str
 
 #: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes.
-Kind = Literal[
+InputKind = Literal[
     "axis",
     "trigger",
     "button",
@@ -61,7 +61,7 @@ class Span:
 #: The edges of the dead bands that teams and WPILib use, from both sides.
 _DEAD_BANDS = (0.01, 0.019, 0.02, 0.021, 0.05, 0.051, 0.1, 0.101)
 
-SPANS: dict[Kind, Span] = {
+SPANS: dict[InputKind, Span] = {
     "axis": Span(-1, 1, (0.0, *(sign * edge for edge in _DEAD_BANDS for sign in (1, -1)))),
     "trigger": Span(0, 1, (0.0, 1.0, 1.0, 0.5, *_DEAD_BANDS)),
     "volts": Span(0, 5, (0.0, 0.0, 5.0, 5.0, 5.0, 2.5, 0.001, 4.999)),
@@ -90,7 +90,7 @@ _FACTORS = (0.5, 1.0, 2.0)
 _DIGITS = 3
 
 
-def draw(kind: Kind, rng: random.Random, options: tuple[str, ...] = (), now: float = 0) -> Any:
+def draw(kind: InputKind, rng: random.Random, options: tuple[str, ...] = (), now: float = 0) -> Any:
     """Return a random value of this kind.
 
     :param options: the possible values, for kinds with a few values only
@@ -127,14 +127,14 @@ def _axis(rng: random.Random) -> float:
     return round(rng.uniform(-1, 1), _DIGITS)
 
 
-def nearest(kind: Kind, value: float) -> float:
+def nearest(kind: InputKind, value: float) -> float:
     """Return the nearest possible value of this kind, rounded to a readable number of digits."""
     span = SPANS[kind]
     inside = min(max(value, span.low), span.high)
     return round(inside) if span.whole else round(float(inside), _DIGITS)
 
 
-def simpler(kind: Kind, value: Value) -> list[float]:
+def simpler(kind: InputKind, value: Value) -> list[float]:
     """Return values of this kind that are shorter to read, the shortest first; for kinds without numbers, none."""
     span = SPANS.get(kind)
     if span is None or isinstance(value, bool) or not isinstance(value, int | float):
@@ -145,7 +145,7 @@ def simpler(kind: Kind, value: Value) -> list[float]:
     return sorted(found, key=lambda each: (len(repr(each)), abs(each - value)))
 
 
-def can_be(kind: Kind, value: object, options: tuple[str, ...] = ()) -> bool:
+def can_be(kind: InputKind, value: object, options: tuple[str, ...] = ()) -> bool:
     """Return whether an input of this kind can have this value."""
     span = SPANS.get(kind)
     if kind == "pov":

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from pyfrc_core.errors import nearest
 
 from .builtin_types import LiveMapping, LiveSequence
-from .kinds import ANY, Kind, UnknownKey, WrongIndex, WrongType, WrongValue
+from .kinds import ANY, UnknownKey, ValueKind, WrongIndex, WrongType, WrongValue
 from .paths import join
 
 Callback = Callable[[Any, Any], object]
@@ -35,7 +35,7 @@ class Slot(NamedTuple):
 
     get: Callable[[], Any]
     set: Callable[[Any], object] | None
-    kind: Kind = ANY
+    kind: ValueKind = ANY
     watch: Callable[[Callable[[], None]], object] | None = None
     canonical: str = ""
     recorded: bool = True
@@ -277,7 +277,7 @@ class ValueList(LiveList):
     def __init__(
         self,
         path: str,
-        kind: Kind,
+        kind: ValueKind,
         length: Callable[[], int],
         get: Callable[[int], Any],
         put: Callable[[int, Any], object],

@@ -11,7 +11,7 @@ from wpilib import simulation as sim
 
 from .containers import NOT_SET
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind
-from .kinds import BOOL, FLOAT, INT32, INT64, Kind, choice, number, text, whole
+from .kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
 
 RANGE = choice({"2G": 0, "4G": 1, "8G": 2}, hal.AccelerometerRange)
 LED_STATE = choice({"off": 0, "green": 1, "red": 2, "orange": 3}, wpilib.RadioLEDState)
@@ -220,7 +220,7 @@ KINDS = (
             F(
                 "data",
                 "Data",
-                Kind("a list of [red, green, blue], each 0 to 255", _colours, []),
+                ValueKind("a list of [red, green, blue], each 0 to 255", _colours, []),
                 get=led_data,
                 put=_set_led_data,
             ),

@@ -16,7 +16,7 @@ from wpilib.simulation import DriverStationSim
 
 from .containers import LiveDict, LiveList, Slot, ValueList, stored
 from .fields import HAS_SOURCE, DeviceField
-from .kinds import BOOL, FLOAT, INT32, Kind, choice, number, text, whole
+from .kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
 from .paths import join
 
 JOYSTICKS = 6
@@ -140,7 +140,7 @@ class JoystickData(LiveDict):
             self._load_buttons,
             partial(self._changed, "buttons"),
         )
-        angle = Kind("-1 or an angle from 0 to 360", whole(-1, 360).convert, -1)
+        angle = ValueKind("-1 or an angle from 0 to 360", whole(-1, 360).convert, -1)
         self.povs = ValueList(
             join(path, "povs"),
             angle,

@@ -13,7 +13,7 @@ from functools import partial
 from typing import Any
 
 from .containers import LiveDict, LiveList, Slot, stored
-from .kinds import ANY, BOOL, Kind
+from .kinds import ANY, BOOL, ValueKind
 from .paths import join
 
 
@@ -34,7 +34,7 @@ class DeviceField:
 
     name: str
     hal: str | None = None
-    kind: Kind = ANY
+    kind: ValueKind = ANY
     default: Any = None
     same_as: str = ""
     recorded: bool = True

@@ -1,7 +1,7 @@
 """The kinds of values in `hal_data`: checks of writes, with errors that state the expected value.
 
 WPILib's bindings raise a `TypeError` about C++ overloads. Students need the path and the range instead, so every write
-is checked by a `Kind` first.
+is checked by a `ValueKind` first.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Choice(int):
 
 
 @dataclass(frozen=True)
-class Kind:
+class ValueKind:
     """A kind of values.
 
     :param expected: completes "expected ..." in an error
@@ -132,10 +132,10 @@ def _as_bool(value: Any) -> bool:
     return bool(value)
 
 
-def number(low: float | None = None, high: float | None = None) -> Kind:
+def number(low: float | None = None, high: float | None = None) -> ValueKind:
     """Return the kind of floats; NaN and infinity are allowed only without a range, since sensors may report them."""
     if low is None or high is None:
-        return Kind("a number", _as_float, 0.0)
+        return ValueKind("a number", _as_float, 0.0)
 
     def convert(value: Any) -> float:
         result = _as_float(value)
@@ -143,10 +143,10 @@ def number(low: float | None = None, high: float | None = None) -> Kind:
             raise ValueError
         return result
 
-    return Kind(f"a number from {low:g} to {high:g}", convert, 0.0)
+    return ValueKind(f"a number from {low:g} to {high:g}", convert, 0.0)
 
 
-def whole(low: int, high: int) -> Kind:
+def whole(low: int, high: int) -> ValueKind:
     """Return the kind of whole numbers; a float is accepted if it is whole."""
 
     def convert(value: Any) -> int:
@@ -155,10 +155,10 @@ def whole(low: int, high: int) -> Kind:
             raise ValueError
         return result
 
-    return Kind(f"a whole number from {low} to {high}", convert, 0)
+    return ValueKind(f"a whole number from {low} to {high}", convert, 0)
 
 
-def text(max_bytes: int) -> Kind:
+def text(max_bytes: int) -> ValueKind:
     """Return the kind of strings with at most this many bytes of UTF-8: the HAL silently cuts longer ones."""
 
     def convert(value: Any) -> str:
@@ -168,10 +168,10 @@ def text(max_bytes: int) -> Kind:
             raise ValueError
         return value
 
-    return Kind(f"a text of at most {max_bytes} bytes", convert, "")
+    return ValueKind(f"a text of at most {max_bytes} bytes", convert, "")
 
 
-def choice(names: dict[str, int], make: Callable[[int], Any] = int) -> Kind:
+def choice(names: dict[str, int], make: Callable[[int], Any] = int) -> ValueKind:
     """Return the kind of the values in `names`.
 
     :param names: the number of each name; names (in any case), numbers and enums are accepted
@@ -196,11 +196,11 @@ def choice(names: dict[str, int], make: Callable[[int], Any] = int) -> Kind:
 
     lower = {name.lower(): value for name, value in names.items()}
     expected = "one of " + ", ".join(f"{name!r} ({value})" for name, value in names.items())
-    return Kind(expected, convert, 0, load=load, plain=int)
+    return ValueKind(expected, convert, 0, load=load, plain=int)
 
 
-BOOL = Kind("True or False", _as_bool, False)
+BOOL = ValueKind("True or False", _as_bool, False)
 FLOAT = number()
 INT32 = whole(-(2**31), 2**31 - 1)
 INT64 = whole(-(2**63), 2**63 - 1)
-ANY = Kind("anything", lambda value: value)
+ANY = ValueKind("anything", lambda value: value)

@@ -1,1 +1,1 @@
-"""What the robot's code did while it ran: which lines, and how long they took."""
+"""Measure the robot's code: which lines ran, and how long its functions took."""

@@ -1,1 +1,1 @@
-"""Physics: turns what the robot's motors do into what its sensors see, in tests as in the simulator."""
+"""Simulate physics, in tests and in the simulator: compute sensor values and the robot's motion from its motors."""

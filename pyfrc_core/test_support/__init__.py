@@ -1,1 +1,1 @@
-"""What robot tests use: fake time, the controller of the robot's state, the pytest plugin with its fixtures."""
+"""Support of robot tests: fake time, the controller of the robot's state, and the pytest plugin with its fixtures."""

@@ -1,1 +1,1 @@
-"""`pyfrc create-physics`: a ``physics.py`` and a ``sim/config.json`` for the robot at hand."""
+"""`pyfrc create-physics`: write a ``physics.py`` and a ``sim/config.json`` that fit the robot."""
