@@ -14,7 +14,7 @@ from wpilib.interfaces import MotorController
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.hal import HalData, modes
-from pyfrc_core.hal.kinds import BOOL, FLOAT, INT32, Choice, Kind, choice, number, text, whole
+from pyfrc_core.hal.kinds import BOOL, FLOAT, INT32, Choice, ValueKind, choice, number, text, whole
 from pyfrc_core.hal.output_gate import OutputGate
 
 OUTPUT, BOTH = hal.SimDevice.Direction.kOutput, hal.SimDevice.Direction.kBidir
@@ -206,7 +206,7 @@ STATION = choice({"unknown": 0, "Red": 1})
         (STATION, 0, 0),
     ],
 )
-def test_values_that_are_taken(kind: Kind, taken: Any, stored: Any) -> None:
+def test_values_that_are_taken(kind: ValueKind, taken: Any, stored: Any) -> None:
     value = kind.check(taken, "x")
     assert (value, type(value)) == (stored, type(stored))
 
@@ -233,7 +233,7 @@ def test_values_that_are_taken(kind: Kind, taken: Any, stored: Any) -> None:
         (BOOL, "x" * 100, TypeError, f"x: expected True or False, not '{'x' * 56}... (str)"),
     ],
 )
-def test_values_that_are_refused(kind: Kind, refused: Any, error: type[Exception], message: str) -> None:
+def test_values_that_are_refused(kind: ValueKind, refused: Any, error: type[Exception], message: str) -> None:
     with pytest.raises(error) as caught:
         kind.check(refused, "x")
     assert str(caught.value) == message
