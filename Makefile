@@ -19,7 +19,7 @@ check: $(VENV)/installed-dev  ## check style, types, and which room imports whic
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .
 	$(RUN) mypy
-	$(VENV)/bin/lint-imports
+	$(VENV)/bin/lint-imports --no-logo
 
 docs: $(VENV)/installed-dev  ## build the documentation with the API reference in build/docs
 	$(RUN) sphinx -q -E -W --keep-going docs build/docs
