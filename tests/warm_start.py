@@ -227,7 +227,7 @@ def main() -> None:
         importlib.import_module(name)
     from pyfrc_cli import start
 
-    start._start_again = _fix_the_seed
+    start._restart_with_fixed_seed = _fix_the_seed
     server.send(json.dumps(list(sys.modules)).encode())
     gc.collect()
     gc.freeze()

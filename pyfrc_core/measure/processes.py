@@ -18,10 +18,10 @@ from typing import Any
 from ..processes.exit import before_every_exit, exit_now
 from ..processes.fork import Fork
 
-#: How processes that are started anew hear of it: an environment variable with the settings as JSON, for each kind.
+#: For each kind, the environment variable that gives new interpreters the settings, as JSON.
 _KINDS = {"coverage": "PYFRC_COVERAGE", "profile": "PYFRC_PROFILE"}
 
-#: How long a process that is ended may take to keep what it has measured, in seconds.
+#: How long a process that is ended may take to save its measurements, in seconds.
 _PATIENCE = 0.8
 
 

@@ -38,7 +38,7 @@ _HARMLESS = {
 
 @dataclass(frozen=True)
 class Hosting:
-    """What a host is told.
+    """What a host is started with.
 
     :param address: where the simulation listens; likewise `key`
     :param fork: whether to fork robots' processes
@@ -92,9 +92,9 @@ def main(hosting: Hosting) -> None:
     measure_here()
     connection = Client(hosting.address, authkey=hosting.key)
     connection.send("host")
-    # Ends with the simulation, not with whoever presses Ctrl-C in its terminal.
+    # Ends with the simulation, and not by Ctrl-C in its terminal.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    from .robot_side import robot_process  # noqa: F401 - what every robot needs, imported while nobody waits for it
+    from .robot_side import robot_process  # noqa: F401 - what every robot needs, imported before it is needed
 
     if hosting.fork:
         _Forks(hosting, connection).serve()
@@ -162,7 +162,7 @@ class _Forks:
 def _preload(modules: Sequence[str]) -> None:
     for name in modules:
         if name.partition(".")[0] in _HARMLESS and name not in sys.modules:
-            with suppress(Exception):  # the robot will be told
+            with suppress(Exception):  # the robot's own import fails, too
                 importlib.import_module(name)
 
 

@@ -26,7 +26,7 @@ from .output_pipe import OutputPipe
 
 #: The most bytes that the name of a socket may have on every system.
 _LONGEST_NAME = 100
-#: How long a process is given to end when it has been told to, in seconds.
+#: How long a process is given to end when it was asked to, in seconds.
 _PATIENCE = 1.0
 
 
@@ -76,7 +76,7 @@ class RobotProcesses:
         self._accepting = _thread(self._accept, "pyfrc sim: listener")
 
     def launch(self, job: Job) -> int:
-        """Begin another robot's process, ending the one before; answers the launch's number."""
+        """Begin another robot's process, ending the one before; return the launch's number."""
         with self._lock:
             if self._closed:
                 return self._number
