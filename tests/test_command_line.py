@@ -82,7 +82,7 @@ def test_a_mistyped_word_is_answered_with_the_right_one(wrong: list[str], meant:
 def test_a_robots_file_given_as_to_another_tool_is_answered_with_the_option_for_it(command: str, make_project) -> None:
     result = make_project({}).run(command, "robot.py")
     assert result.code == 2
-    assert result.stderr.endswith("pyfrc finds the robot's file; another than robot.py is named with --main FILE.\n")
+    assert result.stderr.endswith("pyfrc finds the robot's file. Use --main FILE if it is not called robot.py.\n")
 
 
 @pytest.mark.parametrize("args", [["-v", "config", "check"], ["config", "check", "--verbose"]], ids=" ".join)

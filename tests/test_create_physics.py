@@ -185,7 +185,7 @@ VARIANTS = {
         "self.drive.arcadeDrive(-self.stick.getY(), self.stick.getX())",
         "(robot.left_encoder.getDistance(), robot.right_encoder.getDistance())",
         wrong_turn=True,
-        says="note: By their names, the motors turn the robot right when the stick is pushed to the left",
+        says="note: According to their names, the motors turn the robot right when the stick is pushed to the left",
     ),
     "motors and a gyro on the CAN bus": Variant(
         """
@@ -523,7 +523,7 @@ def test_existing_files_that_are_not_valid(
 
 
 IN_THE_WAY = {
-    "sim, a file": ("sim", "sim is a file, where the directory of sim/config.json has to be"),
+    "sim, a file": ("sim", "sim is a file, but the directory of sim/config.json needs this name"),
     "capitals": ("Physics.py", "there is a Physics.py: rename it to physics.py"),
     "a package": ("physics/__init__.py", "there is a package physics/, but pyfrc runs a file physics.py"),
 }

@@ -14,7 +14,7 @@ def test_check_tells_warnings_and_mistakes(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT})
     none = project.run("config", "check")
     assert (none.code, none.stderr) == (0, "")
-    assert none.stdout == "sim/config.json: there is no such file, so everything is at its default\n"
+    assert none.stdout == "sim/config.json: the file does not exist, so all values are defaults\n"
 
     project.write({"sim/config.json": '{"pyfrc": {\n"robt": {}}}'})
     warned = project.run("config", "check")
@@ -134,7 +134,7 @@ def test_a_file_in_the_wrong_place_is_told(make_project: MakeProject, place: str
     assert checked.code == 1
     assert checked.stdout == (
         f"warning: {place}: pyfrc does not read this file\n  Move it to sim/config.json\n"
-        "sim/config.json: there is no such file, so everything is at its default, but 1 warning\n"
+        "sim/config.json: the file does not exist, so all values are defaults, but 1 warning\n"
     )
     project.write({place: '{"other": 1}'})  # another tool's
     assert project.run("config", "check", "--strict").code == 0
