@@ -227,6 +227,7 @@ def main() -> None:
         importlib.import_module(name)
     from pyfrc_cli import start
 
+    assert callable(start._restart_with_fixed_seed)  # under another name, each command would start cold
     start._restart_with_fixed_seed = _fix_the_seed
     server.send(json.dumps(list(sys.modules)).encode())
     gc.collect()
