@@ -10,9 +10,9 @@ import pytest
 from sim_robots import FILES
 
 from pyfrc_core.errors import UsageError
-from pyfrc_core.sim.engine.extensions import see_that_there_are
+from pyfrc_core.sim.engine.extensions import check_installed
 from pyfrc_core.sim.ui.choose import default_name
-from pyfrc_core.sim.ui.picture import see_that_pictures_can_be_drawn
+from pyfrc_core.sim.ui.picture import check_pictures
 
 #: As on a machine without a screen.
 NO_DISPLAY = {"DISPLAY": "", "WAYLAND_DISPLAY": ""}
@@ -135,9 +135,9 @@ def test_windows_need_a_display(project) -> None:
 def test_what_is_not_installed_is_said(name: str, package: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda module: None)
     with pytest.raises(UsageError, match=f"pip install {package}"):
-        see_that_there_are([name])
+        check_installed([name])
     with pytest.raises(UsageError, match=r"pip install .pyfrc\[picture\]"):
-        see_that_pictures_can_be_drawn(Path("path.png"))
+        check_pictures(Path("path.png"))
     monkeypatch.setenv("DISPLAY", ":0")
     chosen, why = default_name()
     assert chosen == "none"

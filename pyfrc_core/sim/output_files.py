@@ -1,4 +1,4 @@
-"""The files that a simulation leaves behind: its recording, WPILib's data log, a picture."""
+"""The files that a simulation writes: its recording, WPILib's data log, a picture."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from .engine.simulation import Simulation
 
 
 class OutputFiles:
-    """What is to be kept, seen before anything runs: nobody drives for an hour to learn that it cannot be written.
+    """The files to write. They are checked before the simulation runs: an hour of driving must not be lost at the end.
 
-    :raises UsageError: when one of these files cannot be written
+    :raises UsageError: when one of them cannot be written
     """
 
     def __init__(self, record: Path | None, wpilog: Path | None, picture: Path | None) -> None:
         self._record, self._wpilog, self._picture = record, wpilog, picture
         if picture is not None:
-            from .ui.picture import see_that_pictures_can_be_drawn
+            from .ui.picture import check_pictures
 
-            see_that_pictures_can_be_drawn(picture)
+            check_pictures(picture)
         for option, file in (("--record", record), ("--wpilog", wpilog), ("--picture", picture)):
             if file is not None:
-                _see_that_it_can_be_written(option, file)
+                _check_writable(option, file)
         self._former_log = _stamp(wpilog)
 
     def write(self, simulation: Simulation) -> list[Path]:
-        """Write what is to be kept of a robot that there has been.
+        """Write the files, if the robot has started at all.
 
-        :returns: every file that was written, the one that the robot's process writes included
-        :raises UsageError: when there was no room for one of them
+        :returns: every file that was written, including the data log of the robot's process
+        :raises UsageError: when the disk was full
         """
         snapshot = simulation.snapshot
         if snapshot is None:
@@ -50,7 +50,7 @@ class OutputFiles:
         return written
 
 
-def _see_that_it_can_be_written(option: str, file: Path) -> None:
+def _check_writable(option: str, file: Path) -> None:
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         if file.exists() and not os.access(file, os.W_OK):
@@ -64,7 +64,7 @@ def _see_that_it_can_be_written(option: str, file: Path) -> None:
 
 
 def _stamp(file: Path | None) -> tuple[int, int] | None:
-    """By which to see whether a file has been written since."""
+    """Return what changes when a file is written."""
     if file is None or not file.is_file():
         return None
     status = file.stat()

@@ -138,9 +138,9 @@ def draw_script(project: Project, script: Path, picture: Path, until: float | No
 
     :param until: an earlier end, in seconds of robot time
     """
-    from .ui.picture import draw_picture, see_that_pictures_can_be_drawn
+    from .ui.picture import check_pictures, draw_picture
 
-    see_that_pictures_can_be_drawn(picture)
+    check_pictures(picture)
     options = SimOptions(speed=0, paused=True, script=load_script(script), recording=False)
     simulation = Simulation(project, options)
     headless = Headless(lambda text: None, seconds=until)

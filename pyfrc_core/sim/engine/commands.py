@@ -1,4 +1,4 @@
-"""What a simulation tells its robot's process; `Simulation`'s methods make these."""
+"""The commands that a simulation sends to its robot's process; `Simulation`'s methods make them."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ ChosenMode = Literal["autonomous", "teleop", "test"]
 class Run:
     """Let time go on.
 
-    :param until_us: pause when robot time gets there; None: never
-    :param packets: pause after so many packets
+    :param until_us: pause at this robot time; None: never
+    :param packets: pause after this many packets
     """
 
     until_us: int | None = None
@@ -23,19 +23,19 @@ class Run:
 
 @dataclass(frozen=True)
 class Pause:
-    """Let time stand still."""
+    """Pause."""
 
 
 @dataclass(frozen=True)
 class Speed:
-    """Robot seconds a second; 0 is as fast as it goes."""
+    """Set the robot seconds per second; 0 is as fast as possible."""
 
     factor: float
 
 
 @dataclass(frozen=True)
 class ChooseMode:
-    """Disable the robot, and have this ready for when it is enabled. Ends a practice match."""
+    """Disable the robot, and choose the mode for when it is enabled. Ends a practice match."""
 
     mode: ChosenMode
 
@@ -49,7 +49,7 @@ class Enable:
 
 @dataclass(frozen=True)
 class EmergencyStop:
-    """Stop the robot for good: it can be enabled again only when its program has been restarted."""
+    """Stop the robot; it can be enabled again only after its program was restarted."""
 
 
 @dataclass(frozen=True)
@@ -66,12 +66,12 @@ class Write:
 
 @dataclass(frozen=True)
 class Quit:
-    """End; told to a robot's process, and to its host."""
+    """End; for a robot's process and for its host."""
 
 
 Command = Run | Pause | Speed | ChooseMode | Enable | EmergencyStop | Practice | Write
 
-#: The target that puts the robot elsewhere on the field: x, y and angle as WPILib has them, in metres and degrees.
+#: The target that moves the robot on the field: x, y and angle as WPILib has them, in metres and degrees.
 ROBOT_ON_FIELD = "nt:/SmartDashboard/Field/Robot"
 
 

@@ -12,10 +12,10 @@ from ...errors import UsageError
 
 @dataclass(frozen=True)
 class Extension:
-    """One that is known.
+    """A known extension.
 
-    :param module: has a function ``loadExtension``
-    :param package: what to install
+    :param module: the module with the function ``loadExtension``
+    :param package: the package to install
     """
 
     module: str
@@ -29,15 +29,15 @@ EXTENSIONS = {
 }
 
 
-#: WPILib's simulator window, which wants the process's main thread.
+#: WPILib's simulator window, which needs the process's main thread.
 WINDOW = "gui"
 _LOADABLE = {**EXTENSIONS, WINDOW: Extension("halsim_gui", "robotpy-halsim-gui")}
 
 
-def see_that_there_are(names: Sequence[str]) -> None:
-    """See that these can be loaded.
+def check_installed(names: Sequence[str]) -> None:
+    """Check that these extensions can be loaded.
 
-    :raises UsageError: saying what to install
+    :raises UsageError: naming the package to install
     """
     for name in names:
         if name not in _LOADABLE:
@@ -53,6 +53,6 @@ def see_that_there_are(names: Sequence[str]) -> None:
 
 
 def load_extensions(names: Sequence[str]) -> None:
-    """Load them into this process."""
+    """Load these extensions into this process."""
     for name in names:
         importlib.import_module(_LOADABLE[name].module).loadExtension()

@@ -23,9 +23,9 @@ _SAME_SIZE = 1.0
 
 
 def field_of(project: Project) -> Field:
-    """The project's field, without tags.
+    """Return the project's field, without tags.
 
-    :raises SettingsError: when ``sim/config.json`` is not what it may be
+    :raises SettingsError: when ``sim/config.json`` is invalid
     """
     config = project.sim_config
     start = config.start
@@ -45,7 +45,7 @@ def field_of(project: Project) -> Field:
 
 
 def _image(project: Project, config: SimConfig) -> Path | None:
-    """The configured image; None where there is none, of which the configuration has warned."""
+    """Return the configured image; None where the file does not exist, of which the configuration warns."""
     if config.field.image is None:
         return None
     file = project.root / "sim" / config.field.image
@@ -61,7 +61,7 @@ def _shape(given: FieldObject) -> Shape:
 
 
 def tags_of(config: SimConfig) -> tuple[Tag, ...]:
-    """The AprilTags of the season, where `robotpy-apriltag` is installed and the field is the season's."""
+    """Return the AprilTags of the season, where `robotpy-apriltag` is installed and the field is the season's."""
     if importlib.util.find_spec("robotpy_apriltag") is None:
         return ()
     from robotpy_apriltag import AprilTagField, AprilTagFieldLayout
@@ -84,9 +84,9 @@ def _tags(layout: object, height: float) -> Iterator[Tag]:
 
 
 def start_named(field: Field, name: str | None) -> Pose:
-    """One of the field's starts; the first, if none is named.
+    """Return one of the field's starts; the first, if no name is given.
 
-    :raises UsageError: when there is none of that name
+    :raises UsageError: when no start has that name
     """
     if name is None:
         return next(iter(field.starts.values()))
@@ -99,6 +99,6 @@ def start_named(field: Field, name: str | None) -> Pose:
 
 
 def robot_at(field: Field, pose: Pose) -> dict[str, list[float]]:
-    """What is to be written for the robot to be there: its place as WPILib has it, in metres and degrees."""
+    """Return the write that puts the robot there: its place as WPILib has it, in metres and degrees."""
     x, y = pose.x * METRES_PER_FOOT, (field.height - pose.y) * METRES_PER_FOOT
     return {ROBOT_ON_FIELD: [x, y, -math.degrees(pose.angle)]}

@@ -1,4 +1,4 @@
-"""What has happened, in order of time: kept on disk but for its end, so that memory does not grow with a long run."""
+"""What has happened, in order of time. All but its end is on disk, so that memory does not grow in a long run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 
 Item = TypeVar("Item")
 
-#: So many entries are written at once. As many, and fewer than twice as many, are in memory.
+#: The number of entries that are written at once. At least as many are in memory, and fewer than twice as many.
 _BLOCK = 512
 
 
@@ -25,7 +25,7 @@ class _File:
         self.io = TemporaryFile(prefix="pyfrc-sim-", buffering=0)  # noqa: SIM115
 
     def __del__(self) -> None:
-        if hasattr(self, "io"):  # else there was no room for it
+        if hasattr(self, "io"):  # otherwise there was no space for it
             self.io.close()
 
 
@@ -44,9 +44,9 @@ class _Block:
 
 
 class History(Generic[Item]):
-    """A list of times, in microseconds, and what happened then, which grows at its end.
+    """A growing list of entries with their times, in microseconds.
 
-    Its temporary file has no name and is gone with the process. Use a history from one thread at a time.
+    Its temporary file has no name and disappears with the process. Use a history from one thread at a time.
     """
 
     def __init__(self) -> None:
@@ -56,7 +56,7 @@ class History(Generic[Item]):
         self._most = 2 * _BLOCK
 
     def append(self, at_us: int, item: Item) -> None:
-        """Add an entry; none is earlier than the one before."""
+        """Add an entry. Its time is not earlier than that of the entry before."""
         self._recent.append((at_us, item))
         if len(self._recent) >= self._most:
             self._write()
@@ -70,7 +70,7 @@ class History(Generic[Item]):
             data = memoryview(pickle.dumps(entries, pickle.HIGHEST_PROTOCOL))
             while data:
                 data = data[self._file.io.write(data) :]
-        except OSError:  # there is no room on the disk: it stays in memory, until more has come
+        except OSError:  # the disk is full: the entries stay in memory until more have come
             self._most *= 2
             return
         self._blocks.append(_Block(self._file, offset, entries[-1][0], len(entries)))
@@ -98,7 +98,7 @@ class History(Generic[Item]):
         return self._recent[-1][1] if self._recent else None
 
     def until(self, time_us: int) -> History[Item]:
-        """Return the part until a moment. It can grow otherwise than this one does."""
+        """Return the part until a moment. It can grow differently from this one."""
         part = History[Item]()
         whole = bisect_right(self._blocks, time_us, key=lambda block: block.last_us)
         part._blocks = self._blocks[:whole]
@@ -115,5 +115,5 @@ class History(Generic[Item]):
 
 
 def entries(history: History[Item]) -> Iterator[Item]:
-    """What has happened, without the times."""
+    """Iterate over the entries, without their times."""
     return map(itemgetter(1), history)

@@ -1,4 +1,4 @@
-"""What goes between a simulation and its robot's process, besides commands: pickled dataclasses."""
+"""The messages between a simulation and its robot's process, besides commands: pickled dataclasses."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from .time_state import TimeState
 
 @dataclass(frozen=True)
 class StationState:
-    """What a driver station knows that its robot does not.
+    """The state of the driver station that the robot does not have.
 
-    :param practice_since_us: when the practice match began that goes on now
-    :param sticks: what the joysticks' controls are at, by target, whether or not it is delivered to the robot
+    :param practice_since_us: when the current practice match began
+    :param sticks: the state of the joysticks' controls, by target, whether or not the robot receives it
     """
 
     practice_since_us: int | None = None
@@ -31,16 +31,16 @@ class StationState:
 class Job:
     """One run of the robot, for its process.
 
-    :param script: what the robot is told from outside, from its start on
-    :param forward_to_us: how far to go at once, as fast as it goes
-    :param time_state: how time is to go on from there
-    :param commands: to be carried out there, before time goes on
-    :param recording: whether what comes from outside is to be told, and what the robot does packet by packet
-    :param station: how the driver station is at `forward_to_us`
+    :param script: the robot's inputs, from its start on
+    :param forward_to_us: the moment to replay to, as fast as possible
+    :param time_state: the state of time from there on
+    :param commands: carried out there, before time goes on
+    :param recording: whether to report the inputs, and what the robot does in each packet
+    :param station: the driver station at `forward_to_us`
     :param nt_port: where to serve NetworkTables to dashboards; None: nowhere
     :param wpilog: where to write WPILib's data log
     :param extensions: WPILib's simulation extensions to load, by name
-    :param tags: the field's tags, if it is known already which there are
+    :param tags: the field's tags, if they are known already
     """
 
     project: Project
@@ -58,11 +58,11 @@ class Job:
 
 @dataclass(frozen=True)
 class Ready:
-    """The robot has been brought to where it is to go on from.
+    """The robot has reached the moment that it goes on from.
 
     :param libraries: the modules that its code has imported and that are not its own
     :param network_address: where NetworkTables are served
-    :param notes: what the user should know
+    :param notes: information for the user
     """
 
     tags: tuple[Tag, ...]
@@ -76,16 +76,16 @@ class Update:
     """What has changed since the last one.
 
     :param time_us: robot time
-    :param time_state: how robot time goes on
-    :param carried_out: how many commands have been carried out, those of the `Job` among them
-    :param recorded: how many of them are part of the recorded steps: what comes in a pause is when time goes on
-    :param base: all values of `hal_data`, where `lines` do not go on from those told before
-    :param lines: of the trace (see `pyfrc_core.runtime.trace`), the lines since then
-    :param trail: where the robot has been since then
-    :param distance: how far it has driven in all, in feet
-    :param mode_seconds: how long it has been in each mode
-    :param steps: recorded steps, from the one with the number `steps_from`
-    :param drawings: the user's drawings, if they have changed; likewise `targets`, `choosers`
+    :param time_state: the state of time
+    :param carried_out: the number of commands that were carried out, including those of the `Job`
+    :param recorded: how many of them are in the recorded steps; a command in a pause is recorded when time goes on
+    :param base: all values of `hal_data`, where `lines` do not continue those sent before
+    :param lines: the new lines of the trace (see `pyfrc_core.runtime.trace`)
+    :param trail: the robot's places since the last update
+    :param distance: the whole distance that it has driven, in feet
+    :param mode_seconds: the time that it has been in each mode
+    :param steps: recorded steps; the first has the number `steps_from`
+    :param drawings: the user's drawings, if they have changed; `targets` and `choosers` likewise
     """
 
     time_us: int
@@ -117,7 +117,7 @@ class Update:
 
 @dataclass(frozen=True)
 class Failed:
-    """The robot program runs no more; its process ends."""
+    """The robot program has failed, and its process ends."""
 
     failure: Failure
 

@@ -1,4 +1,4 @@
-"""What a simulation may be told before it starts."""
+"""The options of a simulation."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ...errors import UsageError
 from ...runtime.scripts.script import InputScript
-from .extensions import see_that_there_are
+from .extensions import check_installed
 
 #: The port where dashboards look for a robot's NetworkTables.
 NT4_PORT = 5810
@@ -17,17 +17,17 @@ NT4_PORT = 5810
 class SimOptions:
     """How to simulate.
 
-    :param speed: robot seconds a second; 0 is as fast as it goes
-    :param paused: whether to begin with time standing still
-    :param script: what the robot is told, besides what is commanded
-    :param start_at: go there at once before anything is shown, in seconds of robot time
-    :param run_until: pause there, in seconds of robot time
-    :param recording: whether to keep what is told and done; only then is there a way back in time
+    :param speed: robot seconds per second; 0 is as fast as possible
+    :param paused: whether to begin with time paused
+    :param script: inputs of the robot, besides the commands
+    :param start_at: replay to this moment before anything is shown, in seconds of robot time
+    :param run_until: pause at this moment, in seconds of robot time
+    :param recording: whether to record inputs and outputs; going back in time is possible only then
     :param nt_port: where to serve NetworkTables to dashboards; None: nowhere
     :param wpilog: where to write WPILib's data log
     :param extensions: WPILib's simulation extensions to load, by name
-    :param start_position: one of the field's `starts` for the robot to start at
-    :param fork: False has each robot start in a new interpreter, as where processes cannot be forked
+    :param start_position: where the robot starts, one of the field's `starts`
+    :param fork: False starts each robot in a new interpreter, as on systems where processes cannot be forked
     """
 
     speed: float = 1.0
@@ -43,12 +43,12 @@ class SimOptions:
     fork: bool | None = None
 
     def check(self) -> None:
-        """See that this can be done.
+        """Check that these options are possible together.
 
-        :raises UsageError: saying what cannot
+        :raises UsageError: naming the option that is impossible
         """
         check_speed(self.speed)
-        see_that_there_are(self.extensions)
+        check_installed(self.extensions)
         if self.run_until is not None and self.run_until < self.start_at:
             raise UsageError(
                 f"--seconds {self.run_until:g} is before --from {self.start_at:g}",
@@ -67,9 +67,9 @@ class SimOptions:
 
 
 def check_speed(factor: float) -> None:
-    """See that robot time can go this fast.
+    """Check that a speed is possible.
 
-    :raises UsageError: when it cannot
+    :raises UsageError: when it is not
     """
     if not (factor == 0 or 0.01 <= factor <= 1000):
         raise UsageError(

@@ -1,4 +1,4 @@
-"""The commands that a robot's process may lose when another process takes its place."""
+"""The commands that would be lost when another process replaces the robot's process."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from .time_state import TimeState
 
 
 class PendingCommands:
-    """Commands that were sent to one process, and are not known to be part of its time state or its recording.
+    """Commands that were sent to a process and are not yet part of the time state or recording that it reported.
 
-    :param commands: those that the process begins with
+    :param commands: the commands that the process begins with
     """
 
     def __init__(self, commands: Iterable[Command] = ()) -> None:
@@ -20,13 +20,13 @@ class PendingCommands:
 
     @property
     def commands(self) -> tuple[Command, ...]:
-        """In their order."""
+        """The commands, in their order."""
         return tuple(command for _, command in self._commands)
 
     def add(self, command: Command, sent: bool = True) -> None:
         """Add a command.
 
-        :param sent: whether it is sent now; else there is no process
+        :param sent: whether it is sent now; False where there is no process
         """
         self._sent += 1
         self._commands.append((self._sent, command))
@@ -34,10 +34,10 @@ class PendingCommands:
             self._merge(self._sent)
 
     def settle(self, carried_out: int, recorded: int) -> None:
-        """Remove what is known.
+        """Remove the commands that the process has reported.
 
-        :param carried_out: how many commands have been carried out
-        :param recorded: how many of them are part of the recording
+        :param carried_out: the number of commands that were carried out
+        :param recorded: the number of them that are in the recording
         """
         self._commands = [
             (number, command)
@@ -47,13 +47,13 @@ class PendingCommands:
         self._merge(carried_out)
 
     def time_after(self, state: TimeState, next_packet_us: int) -> TimeState:
-        """Return the time state after all of them."""
+        """Return the time state after all these commands."""
         for command in self.commands:
             state = state.after(command, next_packet_us)
         return state
 
     def _merge(self, until: int) -> None:
-        """Make one of writes that come one after the other in a pause: a gamepad's would fill the memory."""
+        """Merge consecutive writes in a pause into one: those of a gamepad would fill the memory."""
         merged: list[tuple[int, Command]] = []
         for number, command in self._commands:
             if merged and number <= until and isinstance(command, Write) and isinstance(merged[-1][1], Write):

@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-#: Directories that hold no code of the robot's.
+#: Directories without robot code.
 _NOT_OURS = {"__pycache__", "node_modules", "site-packages", "tests", "venv"}
 _TWO_SECONDS = 2_000_000_000  # in nanoseconds
 
@@ -21,17 +21,17 @@ def program_files(root: Path) -> dict[str, tuple[int, int]]:
             if name.endswith(".py") or name in ("config.json", "pyproject.toml"):
                 try:
                     status = Path(directory, name).stat()
-                except OSError:  # gone again: an editor's
+                except OSError:  # gone again: an editor's temporary file
                     continue
                 found[str(Path(directory, name))] = (status.st_mtime_ns, status.st_size)
     return found
 
 
 def keep_no_bytecode_of_new_code(root: Path) -> None:
-    """Have this process write no compiled forms when a file of the program was saved a moment ago.
+    """Stop this process from writing bytecode when a file of the program was saved within the last two seconds.
 
-    Python takes a compiled form for that of any source of the same size that was saved in the same second. When a file
-    is saved twice within it, the simulator would go on with the old code.
+    Python believes that bytecode fits any source of the same size that was saved in the same second. When a file is
+    saved twice within a second, the simulator would continue with the old code.
     """
     newest = max((saved for saved, _ in program_files(root).values()), default=0)
     if abs(time.time_ns() - newest) < _TWO_SECONDS:

@@ -1,4 +1,4 @@
-"""What a simulation keeps of a run: everything it was told, and everything it did."""
+"""The recording of a run: all its inputs, and everything that it did."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _AT = attrgetter("at_us")
 class Recording:
     """One run, from its start.
 
-    :param past: what the robot was, or will be, told by a script
-    :param known: whether what it does is told from the start, so that the whole has a hash
+    :param past: the script of the run's first part, which was or will be replayed
+    :param known: whether the trace is complete from the start, so that it has a hash
     """
 
     def __init__(self, past: InputScript, known: bool = True) -> None:
@@ -38,11 +38,11 @@ class Recording:
         self._changing_from = 0
         self._lines: History[str] = History()
         self._stations: History[StationState] = History()
-        #: How far it goes, in microseconds of robot time.
+        #: The end of the recording, in microseconds of robot time.
         self.length_us = 0
 
-    def hear(self, update: Update) -> None:
-        """Take in what has happened."""
+    def add(self, update: Update) -> None:
+        """Add what has happened since the last update."""
         self.length_us = max(self.length_us, update.time_us)
         for step in self._changing[: update.steps_from - self._changing_from]:
             self._steps.append(step.at_us, step)
@@ -53,17 +53,17 @@ class Recording:
             self._stations.append(update.time_us, update.station)
 
     def script(self) -> InputScript:
-        """What the robot was told, with the hash of what it did, if that is known."""
+        """Return the robot's inputs, with the hash of what it did, if that is known."""
         return replace(self._script_until(self.length_us + 1), trace=self.digest())
 
     def _script_until(self, time_us: int) -> InputScript:
-        """What the robot was told until then, and until one microsecond after the recording's end."""
+        """Return the inputs until a moment, at most until one microsecond after the recording's end."""
         time_us = min(time_us, self.length_us + 1)
-        told = [step for step in self._past.steps if step.at_us <= time_us]
+        earlier = [step for step in self._past.steps if step.at_us <= time_us]
         steps = takewhile(lambda step: step.at_us <= time_us, chain(entries(self._steps), self._changing))
         return replace(
             self._past,
-            steps=tuple(merge(told, steps, key=_AT)),
+            steps=tuple(merge(earlier, steps, key=_AT)),
             end_us=self.length_us + 1,
             packages={name: version(name) for name in ("pyfrc", "wpilib")},
             trace=None,
@@ -71,7 +71,7 @@ class Recording:
         )
 
     def digest(self) -> str | None:
-        """The hash of what the robot did."""
+        """Return the hash of what the robot did; None when it is not known from the start."""
         if not self._known:
             return None
         digest = hashlib.sha256()
@@ -80,7 +80,7 @@ class Recording:
         return digest.hexdigest()
 
     def until(self, time_us: int) -> Recording:
-        """The part until a moment, to go on from there."""
+        """Return a recording of the part until a moment, which can grow from there."""
         part = Recording(self._script_until(time_us), self._known)
         part.length_us = time_us
         part._lines = self._lines.until(time_us)
@@ -88,7 +88,7 @@ class Recording:
         return part
 
     def again(self) -> Recording:
-        """The same inputs for another robot program, which may do something else."""
+        """Return a recording of the same inputs for a changed robot program, which may do something else."""
         again = Recording(self.script(), known=False)
         again.length_us = self.length_us
         again._stations = self._stations.until(self.length_us)
@@ -96,7 +96,7 @@ class Recording:
 
     @property
     def past(self) -> InputScript:
-        """What the robot is told by a script."""
+        """The script of the first part."""
         return self._past
 
     @property
@@ -106,11 +106,11 @@ class Recording:
 
     @property
     def station(self) -> StationState:
-        """How the driver station is at the end."""
+        """The driver station at the end."""
         return self._stations.last or StationState()
 
     def save(self, file: Path) -> None:
-        """Write the input script, and, where it is known, what the robot did beside it."""
+        """Write the input script, and beside it the trace, where it is known."""
         self.script().save(file)
         if self._known:
             write_whole(trace_beside(file), self._trace())

@@ -56,7 +56,7 @@ class Simulation(Controls):
         self._snapshot: Snapshot | None = None
         self._recording = Recording(self._first_script())
         self._older: list[Recording] = []
-        self._heard = monotonic()
+        self._reported_at = monotonic()
         self._launch = 0
         self._tags: tuple[Tag, ...] | None = None
         self._builder = SnapshotBuilder()
@@ -85,9 +85,9 @@ class Simulation(Controls):
 
     @property
     def status(self) -> Status:
-        """How the simulation goes."""
+        """The state of the simulation."""
         status = self._status
-        if status.state == "running" and monotonic() - self._heard > _SILENCE:
+        if status.state == "running" and monotonic() - self._reported_at > _SILENCE:
             return replace(status, responding=False)
         return status
 
@@ -275,7 +275,7 @@ class Simulation(Controls):
             self._forward_us = forward_to_us
             self._time, self._pending = time, PendingCommands(commands)
             self._builder = SnapshotBuilder()
-            self._heard = monotonic()
+            self._reported_at = monotonic()
             starts = self._status.starts + 1
             self._status = replace(self._status, state="starting", failure=None, note="", starts=starts)
             if options.recording:
@@ -307,7 +307,7 @@ class Simulation(Controls):
         with self._changed:
             if launch != self._launch or self._status.state == "closed":
                 return
-            self._heard = monotonic()
+            self._reported_at = monotonic()
             if isinstance(message, Update):
                 self._take_in(message)
             elif isinstance(message, Ready):
@@ -359,7 +359,7 @@ class Simulation(Controls):
 
     def _take_in(self, update: Update) -> None:
         if self.options.recording:
-            self._recording.hear(update)
+            self._recording.add(update)
             if update.base is not None:
                 # Where changes came before the base, they begin with a change that holds all values.
                 time, base = (0.0, {}) if update.lines else (update.time_us / 1_000_000, update.base)

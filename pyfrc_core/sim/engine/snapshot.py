@@ -1,4 +1,4 @@
-"""What a front end draws: the robot at one moment of its time, and how the simulation of it goes."""
+"""What a front end draws: the robot at one moment of its time, and the state of the simulation."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any, Literal
 
 from .scene import Point, Scene
 
-#: How a simulation stands. ``starting``: robot code is imported, or brought to a moment of the past.
-#: ``failed``: the robot crashed, hangs or has ended; `Status.failure` says how. ``closed``: nothing comes any more.
+#: The state of a simulation. ``starting``: robot code is imported, or replayed to a moment of the past.
+#: ``failed``: the robot crashed, hangs or has ended; `Status.failure` says how. ``closed``: nothing more will happen.
 State = Literal["starting", "running", "paused", "failed", "closed"]
 
 
@@ -18,8 +18,8 @@ State = Literal["starting", "running", "paused", "failed", "closed"]
 class Chooser:
     """A ``SendableChooser`` that the robot has put on the dashboard.
 
-    :param name: where, such as ``/SmartDashboard/Auto``
-    :param active: the option that the robot goes by
+    :param name: its place, such as ``/SmartDashboard/Auto``
+    :param active: the option that the robot uses
     """
 
     name: str
@@ -30,19 +30,19 @@ class Chooser:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """The robot at one moment. The same whenever this moment comes again: nothing in it depends on the wall clock.
+    """The robot at one moment. Nothing in it depends on the wall clock: going back to a moment gives an equal snapshot.
 
     :param time: robot time, in seconds
-    :param mode: what the driver station asks for: ``disabled``, ``autonomous``, ``teleop``, ``test``,
-        ``disabled autonomous`` or ``disabled test`` (chosen, and not enabled)
+    :param mode: the mode that the driver station asks for: ``disabled``, ``autonomous``, ``teleop``, ``test``,
+        ``disabled autonomous`` or ``disabled test`` (chosen but not enabled)
     :param values: inputs and outputs by their paths in `hal_data`: ``pwm[0].value``, ``joysticks[0].axes`` (a tuple),
-        ``custom["My Label"]``, ``event.game_specific_message``, ``user_program_state``, ...; of devices, only those
-        that the robot has made
-    :param station_attached: whether there is a driver station; without one, the robot is disabled and gets no packets
-    :param practice_since: when the practice match began that goes on now, in seconds
-    :param match_left: the seconds left in its period, as told to the robot
-    :param distance: how far the robot has driven since its start, in feet
-    :param mode_seconds: how long it has been in each mode since its start
+        ``custom["My Label"]``, ``event.game_specific_message``, ``user_program_state``, ...; only devices that
+        the robot has made
+    :param station_attached: whether a driver station is connected; otherwise the robot is disabled and gets no packets
+    :param practice_since: when the current practice match began, in seconds
+    :param match_left: the seconds left in its period, as the robot sees them
+    :param distance: the distance that the robot has driven since its start, in feet
+    :param mode_seconds: the time in each mode since its start
     """
 
     time: float
@@ -73,12 +73,12 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Failure:
-    """Why the robot program runs no more.
+    """Why the robot program has ended.
 
     :param headline: the user's own file and line first, as ``robot.py:12: ZeroDivisionError: division by zero``
     :param details: the traceback, if there is one
     :param time: robot time, in seconds
-    :param exit_code: a command's: 1 when the robot's code failed, 2 when there is no way to run it
+    :param exit_code: the command's exit code: 1 when the robot's code failed, 2 when it cannot be run
     """
 
     headline: str
@@ -89,23 +89,23 @@ class Failure:
 
 @dataclass(frozen=True)
 class Status:
-    """How the simulation goes: what depends on this machine, and not on the robot alone.
+    """The state of the simulation: what depends on this machine, and not on the robot alone.
 
-    :param speed: robot seconds a second, as asked for; 0 is as fast as it goes
-    :param reached: robot seconds a second, over the last half second or so
-    :param average: the same since the robot was there, without pauses
-    :param packet_seconds: how long this machine took to compute the last packet, in wall seconds
-    :param worst_packet_seconds: the longest of the last second or so
-    :param late_packets: how many packets have taken longer than 20 ms to compute
-    :param overruns: how many turns of the robot's loop took longer than its period, in robot time
+    :param speed: the wanted speed in robot seconds per second; 0 is as fast as possible
+    :param reached: the measured speed over about the last half second
+    :param average: the measured speed since the robot started, without pauses
+    :param packet_seconds: the time that this machine took for the last packet, in wall seconds
+    :param worst_packet_seconds: the longest such time in about the last second
+    :param late_packets: the number of packets that took longer than 20 ms
+    :param overruns: the number of turns of the robot's loop that took longer than its period, in robot time
     :param worst_loop_seconds: the longest of those turns, in seconds of robot time
-    :param length: how far the recording goes, in seconds of robot time: one can go back to any moment until then
-    :param failure: what has happened, while `state` is ``failed``
-    :param note: something that the user should know, such as why a command was not carried out
-    :param responding: whether the robot's process has been heard of in the last second, while it should run
-    :param former_trail: where the robot drove before the code was changed, or time turned back
-    :param starts: how many robot processes have been started until now
-    :param network_address: where dashboards find NetworkTables, if they are served
+    :param length: the end of the recording, in seconds of robot time; going back to any moment before it is possible
+    :param failure: the reason, while `state` is ``failed``
+    :param note: information for the user, such as why a command was not carried out
+    :param responding: False while the robot should run and its process has sent nothing for a second
+    :param former_trail: the robot's path before the code changed or the user went back in time
+    :param starts: the number of robot processes that were started
+    :param network_address: the address of the NetworkTables server, if there is one
     """
 
     state: State = "starting"

@@ -1,4 +1,4 @@
-"""Snapshots, put together from what the robot's process tells of changes."""
+"""Builds snapshots from the changes that the robot's process reports."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from .messages import Update
 from .scene import Field, Point, Scene
 from .snapshot import Snapshot
 
-#: So many of the trail's last points are all shown, and so many of those before.
+#: The number of the trail's last points that are all shown, and the most points that are shown before them.
 _RECENT_POINTS, _OLDER_POINTS = 2048, 4096
 
 
 class _Trail:
-    """Where the robot has been: of a long way, fewer and fewer of the older points."""
+    """The robot's path; of a long path, fewer and fewer of the older points."""
 
     def __init__(self) -> None:
         self._older: list[Point] = []
         self._recent: list[Point] = []
-        #: Each of so many points is kept among the older ones, and how many there have been.
+        #: One of this many points is kept among the older ones; and the number of all older points.
         self._every, self._count = 1, 0
         self.points: tuple[Point, ...] = ()
 
     def add(self, points: Iterable[Point]) -> None:
         self._recent += points
         excess = len(self._recent) - _RECENT_POINTS
-        if excess > _RECENT_POINTS // 2:  # seldom, since front ends draw the whole trail anew then
+        if excess > _RECENT_POINTS // 2:  # rarely, since front ends then draw the whole trail again
             for point in self._recent[:excess]:
                 if self._count % self._every == 0:
                     self._older.append(point)
@@ -41,7 +41,7 @@ class _Trail:
 
 
 class SnapshotBuilder:
-    """The snapshots of one run."""
+    """Builds the snapshots of one run."""
 
     def __init__(self) -> None:
         self._last: Snapshot | None = None
@@ -49,11 +49,11 @@ class SnapshotBuilder:
 
     @property
     def trail(self) -> tuple[Point, ...]:
-        """Where the robot has been."""
+        """The robot's path."""
         return self._trail.points
 
     def snapshot_after(self, update: Update, field: Field) -> Snapshot:
-        """The robot as it is after an update."""
+        """Return the snapshot after an update."""
         before = self._last or Snapshot(0.0, "disabled", Scene(field))
         values = _values(before, update)
         if update.trail:

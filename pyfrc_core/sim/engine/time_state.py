@@ -1,4 +1,4 @@
-"""Whether robot time goes on, how far and how fast: what the user's commands make of it."""
+"""The state of robot time that the user wants: running or paused, how far, how fast."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from .commands import Command, Pause, Run, Speed
 
 @dataclass(frozen=True)
 class TimeState:
-    """Changed by commands, and by reaching `until_us`; by nothing else.
+    """Changes by commands and by reaching `until_us` only.
 
-    The robot's process goes by it. The `Simulation` computes from it what the user wants, whatever the process is at.
+    The robot's process follows it. The `Simulation` computes from it what the user wants, however far the process is.
 
     :param until_us: pause when robot time gets there; None: never
-    :param stepping: whether `until_us` is the end of a step, counted from where it began
-    :param speed: robot seconds a second; 0 is as fast as it goes
+    :param stepping: whether `until_us` is the end of a step
+    :param speed: robot seconds per second; 0 is as fast as possible
     """
 
     paused: bool = False
@@ -27,7 +27,7 @@ class TimeState:
     def after(self, command: Command, next_packet_us: int) -> TimeState:
         """Return the state after a command, which need not be one about time.
 
-        A step that comes before the end of another one is added to it: how fast the machine is makes no difference.
+        A step that comes before the end of another is added to it, so that the machine's speed makes no difference.
 
         :param next_packet_us: when the first packet after the command is due
         """
@@ -45,11 +45,11 @@ class TimeState:
                 return self
 
     def stopped(self) -> TimeState:
-        """Return the state when time stands still, by `Pause` or at `until_us`."""
+        """Return the paused state, after `Pause` or at `until_us`."""
         return replace(self, paused=True, until_us=None, stepping=False)
 
     def continued_at(self, time_us: int) -> TimeState:
-        """Return the state after going to another moment: a step ends there; a later `until_us` stays."""
+        """Return the state after going to another moment. It ends a step; a later `until_us` stays."""
         if self.paused or self.stepping or (self.until_us is not None and self.until_us <= time_us):
             return self.stopped()
         return self

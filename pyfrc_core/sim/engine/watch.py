@@ -1,4 +1,4 @@
-"""``pyfrc sim --watch``: when a file of the project is saved, the simulation goes on with the new code."""
+"""``pyfrc sim --watch``: continue a simulation with new code when a file of the project is saved."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Watch:
         self._seen = program_files(self._root)
 
     def changed(self) -> list[str]:
-        """The files that have been saved, made or removed since this was last asked, relative to the root."""
+        """Return the files that were saved, made or removed since the last call, relative to the root."""
         before, self._seen = self._seen, program_files(self._root)
         changed = sorted({file for file, _ in before.items() ^ self._seen.items()})
         return [Path(file).relative_to(self._root).as_posix() for file in changed]
@@ -33,9 +33,9 @@ class Watch:
 
 @contextmanager
 def watching(simulation: Simulation, saved: Callable[[list[str]], object]) -> Iterator[None]:
-    """While this lasts, have the simulation go on with the project's code as it is on the disk.
+    """Within this context, continue the simulation with the project's new code whenever a file is saved.
 
-    :param saved: is told which files have changed, before that
+    :param saved: called with the changed files, before the simulation continues
     """
     over = threading.Event()
     watch = Watch(simulation.project.root)

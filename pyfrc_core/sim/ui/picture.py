@@ -1,6 +1,6 @@
-"""A picture of the field with the way that the robot has driven, for a pull request or a lab report.
+"""A picture of the field with the robot's path, for a pull request or a lab report.
 
-Drawn by Pillow, an optional extra: the robot's own suite and most simulations need none.
+Drawn by Pillow, an optional extra: tests and most simulations need no picture.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from ..engine.scene import Field, Line, Point, Pose, Scene
 if TYPE_CHECKING:
     from PIL.ImageDraw import ImageDraw
 
-#: The longer side, in pixels; and the room around the field, for the scale.
+#: The longer side of the picture, and the margin for the scale around the field, in pixels.
 _LONGER_SIDE = 1200
 _MARGIN = 28
-#: The grid's lines are so far apart, and every second one has its number, in feet.
+#: The distance of the grid's lines, in feet; every second line has its number.
 _GRID = 5
 _BACKGROUND, _FLOOR, _EDGE, _LINE = "#ffffff", "#e8e8e8", "#404040", "#d0d0d0"
 _TRAIL, _FORMER, _ROBOT, _TAG, _TARGET = "#0057b8", "#f0a030", "#d00000", "#303030", "#00a040"
 
 
-def see_that_pictures_can_be_drawn(file: Path) -> None:
-    """See that there can be a picture in this file.
+def check_pictures(file: Path) -> None:
+    """Check that a picture can be drawn into this file.
 
     :raises UsageError: saying what to do
     """
@@ -46,10 +46,10 @@ def see_that_pictures_can_be_drawn(file: Path) -> None:
 def draw_picture(scene: Scene, file: Path, former_trail: Iterable[Point] = ()) -> None:
     """Draw what is on the field.
 
-    :param former_trail: where the robot drove before, in another colour
-    :raises UsageError: when there cannot be such a file
+    :param former_trail: the path before, drawn in another colour
+    :raises UsageError: when the file cannot be written
     """
-    see_that_pictures_can_be_drawn(file)
+    check_pictures(file)
     from PIL import Image, ImageDraw
 
     field = scene.field
@@ -101,7 +101,7 @@ def _paste(file: Path, image: object) -> None:
 
 
 def _color(name: str) -> str:
-    """The colour, or black for a name that Pillow does not know: `tkinter` knows more of them."""
+    """Return the colour; black for a name that Pillow does not know, since tkinter knows more names."""
     from PIL import ImageColor
 
     try:
@@ -119,22 +119,22 @@ class _Drawing:
         self._scale = scale
 
     def polygon(self, points: Iterable[Point], color: str) -> None:
-        """A filled polygon."""
+        """Draw a filled polygon."""
         self._draw.polygon(self._pixels(points), fill=color)
 
     def line(self, points: Iterable[Point], color: str, width: int) -> None:
-        """A line through all points."""
+        """Draw a line through all points."""
         pixels = self._pixels(points)
         if len(pixels) > 1:
             self._draw.line(pixels, fill=color, width=width, joint="curve")
 
     def spot(self, point: Point, color: str, filled: bool) -> None:
-        """A round mark."""
+        """Draw a round mark."""
         ((x, y),) = self._pixels([point])
         self._draw.ellipse((x - 5, y - 5, x + 5, y + 5), outline=color, fill=color if filled else None, width=2)
 
     def text(self, point: Point, text: str, color: str, size: int, beside: tuple[int, int] = (0, 0)) -> None:
-        """A text with its middle so many pixels beside a point."""
+        """Draw a text; its middle is `beside` the point, in pixels."""
         from PIL import ImageFont
 
         ((x, y),) = self._pixels([point])
@@ -142,7 +142,7 @@ class _Drawing:
         self._draw.text(at, text, fill=color, font=ImageFont.load_default(size), anchor="mm")
 
     def grid(self, field: Field) -> None:
-        """Lines, with numbers below the field and at its left."""
+        """Draw the grid, with numbers below the field and at its left."""
         half = _MARGIN // 2
         for x in range(0, math.floor(field.width) + 1, _GRID):
             self.line([(x, 0), (x, field.height)], _LINE, 1)
@@ -154,12 +154,12 @@ class _Drawing:
                 self.text((0, y), f"{y} ft", _EDGE, 12, (-half, 0))
 
     def start(self, point: Point) -> None:
-        """Where the robot has begun."""
+        """Mark where the robot has started."""
         self.spot(point, _TRAIL, filled=True)
         self.text(point, "start", _TRAIL, 12, (0, 14))
 
     def tag(self, x: float, y: float, angle: float, number: str) -> None:
-        """A tag, as a short wall seen from above, with its number behind it."""
+        """Draw a tag as a short wall seen from above, with its number behind it."""
         pose = Pose(x, y, angle)
         ends = [pose.moved(0, side, 0) for side in (-0.4, 0.4)]
         self.line([(end.x, end.y) for end in ends], _TAG, 4)
@@ -167,7 +167,7 @@ class _Drawing:
         self.text((behind.x, behind.y), number, _TAG, 10)
 
     def robot(self, pose: Pose, field: Field) -> None:
-        """The robot, with an arrow to its front."""
+        """Draw the robot, with an arrow to its front."""
         length, width = field.robot_length / 2, field.robot_width / 2
         corners = [(length, -width), (length, width), (-length, width), (-length, -width)]
         outline = [pose.moved(forward, right, 0) for forward, right in corners]
