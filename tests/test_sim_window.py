@@ -716,7 +716,7 @@ def test_the_console_follows_what_is_printed(user: User) -> None:
 
 def test_the_console_says_where_the_program_starts_again(user: User) -> None:
     console = user.window.console
-    user.window.tell("saved: robot.py")
+    user.window.announce("saved: robot.py")
     user.press("F9")
     user.until(lambda: console.text.get("1.0", "end").count("the robot is there") == 2)
     marked = [line for line in console.text.get("1.0", "end").splitlines() if line.startswith("—")]
@@ -726,7 +726,7 @@ def test_the_console_says_where_the_program_starts_again(user: User) -> None:
 def test_a_long_message_leaves_room_for_the_traceback(user: User) -> None:
     console = user.window.console
     console.show(Failure(f"robot.py:3: ValueError: {'long ' * 2000}", "the traceback", 1.0))
-    user.window.center.make_room_for_a_traceback(True)
+    user.window.center.make_space_for_traceback(True)
     user.window.root.update()
     assert console.headline.cget("text").endswith("…\nafter 1.00 s")
     assert console.text.winfo_height() > 60

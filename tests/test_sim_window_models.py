@@ -144,13 +144,13 @@ def test_only_what_the_robot_has_made_is_shown() -> None:
 
 def test_rows_are_made_anew_only_when_something_came_or_went() -> None:
     model = DeviceRows(CONFIG)
-    assert model.look(VALUES)
+    assert model.update(VALUES)
     panels = model.panels
-    assert not model.look({**VALUES, "pwm[0].value": 1.0, "control.enabled": True})
+    assert not model.update({**VALUES, "pwm[0].value": 1.0, "control.enabled": True})
     assert model.panels is panels
-    assert model.look({**VALUES, "pwm[7].value": 0.0})
-    assert model.look({**VALUES, "pwm[7].value": 0.0, "dio[1].is_input": False})
-    assert model.look({})
+    assert model.update({**VALUES, "pwm[7].value": 0.0})
+    assert model.update({**VALUES, "pwm[7].value": 0.0, "dio[1].is_input": False})
+    assert model.update({})
     assert model.panels == ()
 
 

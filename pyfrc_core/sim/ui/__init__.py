@@ -1,4 +1,4 @@
-"""Front ends: what shows a simulation and lets a person take part in it. One module for each."""
+"""Front ends: each shows a simulation and lets a person drive it. One module or package for each."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ if TYPE_CHECKING:
 class FrontEnd(ABC):
     """Shows one simulation.
 
-    A front end asks `Simulation.snapshot` and `Simulation.status` when it wants to draw, and calls the simulation's
-    methods for what its user wants. It need know nothing else.
+    A front end reads `Simulation.snapshot` and `Simulation.status` when it draws, reads output and changes by its
+    own cursors, and calls the simulation's methods for its user. Several front ends can show one simulation.
+    `pyfrc_core.sim.ui.choose` has the table of front ends.
     """
 
     @abstractmethod
     def run(self, simulation: Simulation) -> int:
-        """Show the simulation, which has not been started, until the user closes it or it is over.
+        """Start the simulation, and show it until the user closes it or it is over.
 
         :returns: the command's exit code
         """
 
-    def saved(self, files: list[str]) -> None:  # noqa: B027 - who shows nothing of it need not listen
-        """These files were saved, and the robot gets their code: with --watch, from another thread."""
+    def saved(self, files: list[str]) -> None:  # noqa: B027 - optional
+        """Show that these files were saved and that the robot gets their code. --watch calls it on another thread."""

@@ -1,4 +1,4 @@
-"""The front end without a window: for continuous integration, for dashboards, for a look at what a robot does."""
+"""The front end without a window, for continuous integration, dashboards and quick checks."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from ..engine.simulation import Simulation
 from ..engine.snapshot import Failure, Snapshot
 from . import FrontEnd
 
-#: What the robot may be put through. ``auto`` is autonomous.
+#: What the robot is put through. ``auto`` is autonomous.
 HeadlessMode = Literal["practice", "auto", "teleop", "test", "disabled"]
 
-#: How long one of the modes lasts when nobody says, in seconds.
+#: The default length of a mode, in seconds.
 DEFAULT_SECONDS = 15.0
 
 _CHOSEN: dict[str, ChosenMode] = {"auto": "autonomous", "teleop": "teleop", "test": "test"}
-#: What the robot prints is passed on as often, in wall seconds.
+#: The interval of printing the robot's output, in wall seconds.
 _PRINT_SECONDS = 0.25
 
 
 @dataclass(frozen=True)
 class Summary:
-    """What came of a simulation.
+    """The result of a simulation.
 
-    :param snapshot: the robot at the end; None when it was never seen
-    :param speed: robot seconds a wall second, from when the robot was there; 0: it never ran
+    :param snapshot: the robot at the end; None when it did not start
+    :param speed: robot seconds per wall second since the robot started; 0: it never ran
     """
 
     snapshot: Snapshot | None
@@ -43,7 +43,7 @@ class Summary:
     late_packets: int
 
     def lines(self) -> list[str]:
-        """For people to read."""
+        """Return the result as lines of text for the user."""
         found = []
         snapshot = self.snapshot
         if snapshot is not None:
@@ -74,13 +74,13 @@ def _text_of(failure: Failure) -> str:
 
 
 class Headless(FrontEnd):
-    """Runs the robot for some time and sums up.
+    """Runs the robot for some time, and prints a summary.
 
     :param say: prints
-    :param mode: what to put the robot through; None: only what comes from scripts and dashboards
-    :param seconds: for how long; None: until it is interrupted, or for as long as the script or the match takes
-    :param watching: whether a robot that fails gets new code, where nothing says when to end
-    :param quiet: say only what the robot prints, and what is wrong
+    :param mode: what to put the robot through; None: only scripts and dashboards control it
+    :param seconds: for how long; None: until it is interrupted, or until the end of the script or match
+    :param watching: whether a robot that fails gets new code, when no end is given
+    :param quiet: print only the robot's output and what is wrong
     """
 
     def __init__(
@@ -98,12 +98,12 @@ class Headless(FrontEnd):
         self._watching = watching
         self._simulation: Simulation | None = None
         self._output: OutputCursor | None = None
-        self._told: Failure | None = None
+        self._reported: Failure | None = None
         self._noted = ""
         self.summary: Summary | None = None
 
     def run(self, simulation: Simulation) -> int:
-        """The exit code is that of the robot's failure, if it has failed."""
+        """Run the simulation, and return the exit code: that of the robot's failure, if it has failed."""
         self._simulation = simulation
         self._output = simulation.output_cursor()
         end = self._end(simulation)
@@ -139,7 +139,7 @@ class Headless(FrontEnd):
         return 0 if status.failure is None else status.failure.exit_code
 
     def saved(self, files: list[str]) -> None:
-        """Say that the robot gets new code."""
+        """Print that the robot gets new code."""
         if self._quiet:
             return
         seconds = 0.0 if self._simulation is None else self._time_us(self._simulation) / 1_000_000
@@ -147,7 +147,7 @@ class Headless(FrontEnd):
         self._say(f"{', '.join(files)} {verb} saved: going on with the new code at {seconds:.2f} s\n")
 
     def _drive(self, simulation: Simulation, end: float | None) -> None:
-        """Let the robot run until it is over."""
+        """Run the robot to the end."""
         if self._mode == "practice":
             simulation.practice()
         elif self._mode is not None and self._mode != "disabled":
@@ -197,9 +197,9 @@ class Headless(FrontEnd):
         if status.note not in ("", self._noted):
             self._noted = status.note
             self._say(f"warning: {status.note}\n")
-        if self._watching and status.failure is not None and status.failure is not self._told:
-            self._told = status.failure
-            if status.state == "failed":  # else it is over, and summed up
+        if self._watching and status.failure is not None and status.failure is not self._reported:
+            self._reported = status.failure
+            if status.state == "failed":  # otherwise it is over, and the summary says so
                 self._say(f"{_text_of(status.failure)}\n")
                 if not self._quiet:
                     self._say("waiting for the correction to be saved\n")

@@ -13,7 +13,7 @@ class WpilibWindow(FrontEnd):
     """Waits for the user to close that window, which the robot's process has opened."""
 
     def run(self, simulation: Simulation) -> int:
-        """The exit code is 1 when the robot has failed."""
+        """Run the simulation, and return the exit code: 1 when the robot has failed."""
         output = simulation.output_cursor()
         with simulation:
             while not simulation.wait_for(lambda: simulation.status.state in ("failed", "closed"), timeout=0.25):

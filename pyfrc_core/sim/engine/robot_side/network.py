@@ -1,8 +1,8 @@
-"""NetworkTables of a simulated robot: what its dashboards show and write, and its choosers.
+"""NetworkTables of a simulated robot: the values that dashboards show and write, and choosers.
 
-The robot's own tables stay in its process, where nothing changes them while the robot's code runs: a second instance is
-served to dashboards, and between packets each is told what is new in the other. So what a dashboard writes arrives at
-a moment that can be recorded, and comes at the same moment in a replay.
+The robot's own tables stay in its process, where nothing changes them while the robot's code runs. A second instance
+serves dashboards, and between packets the changes of each are copied to the other. So a dashboard's write arrives at a
+moment that can be recorded, and at the same moment in a replay.
 """
 
 from __future__ import annotations
@@ -31,18 +31,18 @@ class Choosers:
         self._news = ntcore.NetworkTableListenerPoller(self._instance)
         self._news.addListener([""], _PUBLISHED)
         self._names: set[str] = set()
-        self._told: tuple[Chooser, ...] = ()
+        self._sent: tuple[Chooser, ...] = ()
 
     def changed(self) -> tuple[Chooser, ...] | None:
-        """All of them; None when nothing has changed since the last time."""
+        """Return all choosers; None when nothing has changed since the last call."""
         for event in self._news.readQueue():
             name = event.data.name if isinstance(event.data, ntcore.TopicInfo) else ""
             if name.endswith(_TYPE):
                 self._names.add(name.removesuffix(_TYPE))
         choosers = tuple(self._chooser(name) for name in sorted(self._names) if self._text(name + _TYPE) == _CHOOSER)
-        if choosers == self._told:
+        if choosers == self._sent:
             return None
-        self._told = choosers
+        self._sent = choosers
         return choosers
 
     def _chooser(self, name: str) -> Chooser:
@@ -74,7 +74,7 @@ class Served:
         self._news.addListener([""], _FROM_OUTSIDE)
 
     def exchange(self) -> None:
-        """Between packets: tell dashboards what the robot has published, and the robot what dashboards have written."""
+        """Copy what the robot has published to dashboards, and what dashboards have written to the robot."""
         for event in self._robot.readQueue():
             data = event.data
             if isinstance(data, ntcore.ValueEventData):
@@ -87,13 +87,13 @@ class Served:
                 self._write(f"{NETWORK}{name}", value)
 
     def close(self) -> None:
-        """Let go of the port."""
+        """Release the port."""
         ntcore.NetworkTableInstance.destroy(self._instance)
 
     def _publish(self, topic: ntcore.Topic, value: ntcore.Value) -> None:
         name = topic.getName()
         if name in self._from_outside and self._from_outside.pop(name) == value.value():
-            return  # what a dashboard has written comes back
+            return  # a dashboard's own write comes back
         kind = topic.getTypeString()
         known = self._publishers.get(name)
         if known is None or known[0] != kind:
@@ -107,12 +107,12 @@ def _plain(value: ntcore.Value) -> Any:
     found = value.value()
     items = found if isinstance(found, (list, tuple)) else [found]
     if not all(isinstance(each, (bool, int, float, str)) for each in items):
-        return None  # structs and the like are written by robots
+        return None  # only robots write structs and the like
     return list(found) if isinstance(found, tuple) else found
 
 
 def _problem_with(port: int) -> str | None:
-    """Why there cannot be a server at this port, which WPILib would only tell on the console."""
+    """Return why no server is possible at this port, which WPILib would only print to the console."""
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

@@ -1,4 +1,4 @@
-"""How fast robot time goes beside the wall clock's."""
+"""The speed of robot time compared with the wall clock."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from ....runtime.robot_time import PACKET_US
 
 wall = time.perf_counter
 
-#: A robot that has fallen behind by more than this, in wall seconds, is not made to catch up.
+#: A robot that is late by more than this, in wall seconds, does not catch up.
 _GIVEN_UP = 1.0
-#: What was reached is told of the last so many wall seconds.
+#: The reached speed is measured over this time, in wall seconds.
 _RECENT = 0.5
 _PACKETS_A_SECOND = 1_000_000 // PACKET_US
 
 
 class Pace:
-    """A schedule, fixed when it begins: robot time does not drift from the wall's, however late single packets are.
+    """An absolute schedule: robot time does not drift from the wall clock, however late single packets are.
 
-    :param speed: robot seconds a second; 0 is as fast as it goes
+    :param speed: robot seconds per second; 0 is as fast as possible
     """
 
     def __init__(self, speed: float, paused: bool) -> None:
@@ -34,13 +34,13 @@ class Pace:
         self._packets: deque[float] = deque(maxlen=_PACKETS_A_SECOND)
 
     def begin(self, now_us: int) -> None:
-        """Begin a new schedule: the speed has changed, or time goes on after a pause."""
+        """Begin a new schedule, after a change of speed or after a pause."""
         self._began_wall, self._began_us = wall(), now_us
         self._at_wall, self._at_us = self._began_wall, now_us
         self._recent.clear()
 
     def wait_for(self, due_us: int) -> float:
-        """The wall seconds until robot time may be `due_us`; less than 0 when it is late."""
+        """Return the wall seconds until robot time may be `due_us`; negative when it is late."""
         if self.speed == 0:
             return 0.0
         due = self._began_wall + (due_us - self._began_us) / 1_000_000 / self.speed
@@ -50,7 +50,7 @@ class Pace:
         return wait
 
     def ran(self, now_us: int) -> None:
-        """Robot time has come to `now_us`."""
+        """Note that robot time is at `now_us`."""
         now = wall()
         self._run_wall += now - self._at_wall
         self._run_us += now_us - self._at_us
@@ -60,7 +60,7 @@ class Pace:
             self._recent.popleft()
 
     def took(self, seconds: float, packets: int = 1) -> None:
-        """The robot has taken so long on the wall for each of these packets."""
+        """Note the wall seconds that the robot took for each of these packets."""
         self.packet_seconds = seconds
         if seconds > PACKET_US / 1_000_000:
             self.late_packets += packets
@@ -68,7 +68,7 @@ class Pace:
 
     @property
     def reached(self) -> float:
-        """Robot seconds a second, lately."""
+        """The robot seconds per second in the recent past."""
         if self.paused or len(self._recent) < 2:
             return 0.0
         (first_wall, first_us), (last_wall, last_us) = self._recent[0], self._recent[-1]
@@ -76,10 +76,10 @@ class Pace:
 
     @property
     def average(self) -> float:
-        """Robot seconds a second, since it first ran; pauses do not count."""
+        """The robot seconds per second since the robot first ran, without pauses."""
         return self._run_us / 1_000_000 / max(1e-9, self._run_wall)
 
     @property
     def worst_packet_seconds(self) -> float:
-        """The longest time that the robot has lately taken for a packet, in wall seconds."""
+        """The longest time for a packet in the recent past, in wall seconds."""
         return max(self._packets, default=0.0)

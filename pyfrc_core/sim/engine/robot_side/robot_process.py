@@ -39,12 +39,12 @@ from ..snapshot import Failure
 from .session import Ended, Session
 from .wpilog import WpiLog
 
-#: Code that a robot imports counts as a library's when it is from there.
+#: Code in these directories counts as a library.
 _INSTALLED = ("site-packages", "dist-packages")
 
 
 def run_robot(job: Job, connection: Connection, log: CrashLog) -> None:
-    """Run a robot until the other end of `connection` is closed, or the robot fails: which is told there.
+    """Run a robot until the other end of `connection` is closed, or the robot fails; the failure is sent there.
 
     :param log: written to when the process ends by itself
     """
@@ -83,7 +83,7 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
                 if job.wpilog is not None:
                     closing.enter_context(_logged(run, job.wpilog))
                 run.construct(robot_class)
-                gc.freeze()  # what is there now stays: to look through it takes as long as hundreds of packets
+                gc.freeze()  # a collection of all modules takes as long as hundreds of packets
 
             def ready() -> Ready:
                 tags = tags_of(project.sim_config) if job.tags is None else job.tags
@@ -93,13 +93,13 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
             try:
                 session.go(construct, ready)
             except (BrokenPipeError, ConnectionResetError):
-                pass  # nobody is there any more
+                pass  # the simulation has ended
             except BaseException:
-                with suppress(Exception):  # what has happened matters more
-                    session.tell()
+                with suppress(Exception):  # the original error matters more
+                    session.send_update()
                 raise
     except BaseException as error:
-        # A robot that is not there was to go on from that moment.
+        # A robot that could not be imported fails at the moment that it was to go on from.
         now = run.clock.now if loaded else job.forward_to_us / 1_000_000
         connection.send(Failed(_failure(error, project, now)))
 
@@ -115,10 +115,10 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
     entry = error.__traceback__
     while entry is not None and entry.tb_next is not None and is_pyfrc(entry.tb_frame.f_code.co_filename):
         entry = entry.tb_next  # _run's own
-    told = "".join(traceback.format_exception(type(error), error, entry))
+    text = "".join(traceback.format_exception(type(error), error, entry))
     for root in {str(project.root), str(project.root.resolve())}:
-        told = told.replace(f'  File "{root}{os.sep}', '  File "')  # in a window, every letter is dear
-    return Failure(str(failure), told, now)
+        text = text.replace(f'  File "{root}{os.sep}', '  File "')  # windows have little space
+    return Failure(str(failure), text, now)
 
 
 @contextmanager

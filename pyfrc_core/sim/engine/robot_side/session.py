@@ -1,4 +1,4 @@
-"""The robot's side of a simulation: lets time go on, carries out commands, tells what has changed."""
+"""The robot's side of a simulation: lets time go on, carries out commands, reports what has changed."""
 
 from __future__ import annotations
 
@@ -30,17 +30,16 @@ from .pace import Pace, wall
 from .station import Station
 from .user_renderer import UserRenderer
 
-#: Faster than real time, updates are told no oftener than this, in wall seconds; else one for each packet. What is not
-#: recorded has nobody who watches, and each update takes as long as dozens of packets.
+#: Above real time, the shortest interval of updates, in wall seconds; otherwise each packet has one. Unrecorded
+#: simulations run unattended, and each update takes as long as dozens of packets.
 _UPDATE_SECONDS, _UNRECORDED_UPDATE_SECONDS = 0.02, 0.1
-#: How long to wait for commands while time stands still, before looking what dashboards have written.
+#: How long to wait for commands in a pause before reading what dashboards have written, in wall seconds.
 _LOOK_SECONDS = 0.05
-#: Where the robot is, is asked every so many packets; the trail has a point for each time that it has moved on by as
-#: many feet.
+#: The robot's place is read at this interval, in packets; the trail gets a point after this distance, in feet.
 _FOLLOW_PACKETS, _TRAIL_STEP = 2, 0.05
-#: So long the robot runs at most without a look at commands when it goes as fast as it can: packets, wall seconds.
+#: The longest run between two looks at commands at full speed, in packets and in wall seconds.
 _MOST_PACKETS, _CHUNK_SECONDS = 50, 0.01
-#: A `robotInit` that waits for longer than this is shown while it waits.
+#: A `robotInit` that waits longer than this is shown while it waits.
 _INITIALIZED_BY_US = 10_000_000
 
 
@@ -56,7 +55,7 @@ class _Lines(list[str]):
 
 
 class Session:
-    """One run of a robot that somebody takes part in: open, and its robot not constructed yet.
+    """One interactive run of a robot. The run is open, and its robot is not constructed yet.
 
     :param connection: to the `Simulation`
     """
@@ -69,7 +68,7 @@ class Session:
         self._time = job.time_state
         self._carried_out = self._recorded = 0
         self._pace = Pace(self._time.speed, self._time.paused)
-        if job.extensions:  # which have changed what every run begins with: that, too, comes from outside
+        if job.extensions:  # which have changed the initial state: that counts as an input, too
             modes.reset_driver_station()
         self._recorder = Recorder(run) if job.recording else None
         self._lines = _Lines()
@@ -86,11 +85,11 @@ class Session:
         self._notes: list[str] = []
         self._tracing = False
         self._packet_began = wall()
-        self._steps_told = 0
-        self._told_at = 0.0
+        self._steps_sent = 0
+        self._sent_at = 0.0
         self._update_seconds = _UPDATE_SECONDS if job.recording else _UNRECORDED_UPDATE_SECONDS
         self._packets_at_once = 1
-        # How far the robot is let go on at a time, and the last such target beyond which it has been seen to wait.
+        # The next target in robot time, and the last target beyond which the robot was waiting.
         self._target_us = self._awaited_us = -1
         self._advance_began = wall(), 0  # on the wall and in robot time
         self._taken_over = self._left = False
@@ -103,7 +102,7 @@ class Session:
         self._station = Station(run, project.settings.match, project.sim_config.field, self._write, job.station)
 
     def go(self, construct: Callable[[], object], ready: Callable[[], Ready]) -> None:
-        """Make the robot, bring it to where it is to go on from, and let it run until nobody listens any more.
+        """Construct the robot, replay to the moment that it goes on from, and run it until the simulation ends.
 
         :raises Ended: when the robot program has ended
         """
@@ -132,7 +131,7 @@ class Session:
                 raise
 
     def _take_over(self) -> None:
-        """Begin to take part: the robot is where it is to go on from."""
+        """Begin to carry out commands: the replay is over."""
         run, job = self._run, self._job
         self._taken_over = True
         self._station.take_over()
@@ -143,7 +142,7 @@ class Session:
             if self._served.problem:
                 self._notes.append(self._served.problem)
         self._connection.send(self._ready())
-        self.tell(dict(run.hal_data.leaves()))
+        self.send_update(dict(run.hal_data.leaves()))
         if not self._tracing:
             self._trace.look(run.clock.now)
             self._lines.clear()
@@ -166,13 +165,13 @@ class Session:
     def _next_target(self) -> int | None:
         """Carry out commands, pause and keep the pace until robot time may go on.
 
-        :returns: how far it may; None when there is no other end any more
+        :returns: the next target; None when the simulation has ended
         """
         pace, clock = self._pace, self._run.clock
-        while self._hear_commands():
+        while self._receive_commands():
             if not pace.paused and self._stop_us() <= clock.now_us:
                 self._set_time(self._time.stopped())
-                self.tell()
+                self.send_update()
             if pace.paused:
                 if self._connection.poll(_LOOK_SECONDS if self._served is not None else None):
                     continue
@@ -193,7 +192,7 @@ class Session:
         self._advance_began = wall(), self._run.clock.now_us
 
     def _end_advance(self) -> None:
-        """Measure how long the robot took to its target, and send an update where one is due."""
+        """Measure the time that the robot took to its target, and send an update if one is due."""
         pace, now_us = self._pace, self._run.clock.now_us
         began, from_us = self._advance_began
         took = wall() - began
@@ -205,20 +204,20 @@ class Session:
             self._packets_at_once = max(1, self._packets_at_once // 2)
         else:
             self._packets_at_once = min(_MOST_PACKETS, self._packets_at_once * 2)
-        if 0 < pace.speed <= 1 or wall() - self._told_at >= self._update_seconds:
-            self.tell()
+        if 0 < pace.speed <= 1 or wall() - self._sent_at >= self._update_seconds:
+            self.send_update()
 
     # -- a loop that waits ----------------------------------------------------------------------------------------
 
     def _on_wait(self) -> None:
-        """Robot code on this thread is about to wait, perhaps for longer than it is let go on."""
+        """Note that robot code on this thread is about to wait, perhaps beyond the target."""
         if self._awaited_us != self._target_us:
             self._awaited_us = self._target_us
             # Right after everything that is due at the target.
             self._run.clock.at(self._target_us + 1, INPUT, partial(self._on_beyond, self._target_us))
 
     def _on_beyond(self, target_us: int) -> None:
-        """Do within the robot's wait what is otherwise done between two targets: `run_until` does not return."""
+        """Do the work between two targets within the robot's wait, since `run_until` does not return."""
         run = self._run
         if target_us != self._target_us or not run.threads.driver_waits:
             return
@@ -254,22 +253,22 @@ class Session:
         self._pace.paused, self._pace.speed = time.paused, time.speed
         self._pace.begin(self._run.clock.now_us)
 
-    # -- what comes from outside ----------------------------------------------------------------------------------
+    # -- inputs ---------------------------------------------------------------------------------------------------
 
-    def _hear_commands(self) -> bool:
-        """Carry out what has come; answers False when nobody is there any more."""
-        heard = False
+    def _receive_commands(self) -> bool:
+        """Carry out the commands that have arrived. Returns False when the simulation has ended."""
+        received = False
         try:
             while self._connection.poll():
                 command = self._connection.recv()
                 if isinstance(command, Quit):
                     return False
                 self._carry_out(command)
-                heard = True
+                received = True
         except (EOFError, ConnectionError):
             return False
-        if heard and self._pace.paused:
-            self.tell(dict(self._run.hal_data.leaves()))
+        if received and self._pace.paused:
+            self.send_update(dict(self._run.hal_data.leaves()))
         return True
 
     def _carry_out(self, command: object) -> None:
@@ -303,17 +302,17 @@ class Session:
         if self._served is not None:
             self._served.exchange()
 
-    # -- what is told ---------------------------------------------------------------------------------------------
+    # -- updates --------------------------------------------------------------------------------------------------
 
-    def tell(self, base: dict[str, Any] | None = None) -> None:
-        """Tell what has changed.
+    def send_update(self, base: dict[str, Any] | None = None) -> None:
+        """Send what has changed.
 
-        :param base: all values, where those told until now are not what this goes on from
+        :param base: all values, where the changes do not continue those sent before
         """
         run, pace = self._run, self._pace
         if not self._job.recording and base is None:
             self._trace.look(run.clock.now)
-        steps = () if self._recorder is None else self._recorder.steps_from(max(0, self._steps_told - 2))
+        steps = () if self._recorder is None else self._recorder.steps_from(max(0, self._steps_sent - 2))
         overruns, worst_us = run.overruns_until_now()
         drawings, vision = self._renderer.drawings(), self._targets_seen()
         update = Update(
@@ -336,7 +335,7 @@ class Session:
             trail=tuple(self._trail),
             distance=self._distance,
             mode_seconds={mode: packets * PACKET_US / 1_000_000 for mode, packets in self._mode_packets.items()},
-            steps_from=max(0, self._steps_told - 2),
+            steps_from=max(0, self._steps_sent - 2),
             steps=steps,
             drawings=None if drawings == self._drawings else drawings,
             targets=None if vision == self._vision else vision,
@@ -344,9 +343,9 @@ class Session:
             notes=tuple(self._notes),
         )
         self._connection.send(update)
-        self._told_at = wall()
+        self._sent_at = wall()
         self._drawings, self._vision = drawings, vision
-        self._steps_told = update.steps_from + len(steps)
+        self._steps_sent = update.steps_from + len(steps)
         if self._recorder is not None:
             self._recorder.forget_before(update.steps_from)
         self._lines.clear()
@@ -365,13 +364,13 @@ class Session:
         self._packet_began = wall()
 
     def _packet_is_over(self, now: float) -> None:
-        # Measured here, what recording costs does not count as the robot's.
+        # Measured before recording, whose time does not count as the robot's.
         self._pace.took(wall() - self._packet_began)
         if self._tracing:
             self._trace.look(now)
 
     def _follow(self) -> None:
-        """Called for every second packet: where the robot has gone, in which mode."""
+        """Note the robot's place and mode. Called for every second packet."""
         if not self._run.alive:
             raise Ended
         self._mode_packets[modes.mode_name() if modes.is_attached() else "disabled"] += _FOLLOW_PACKETS

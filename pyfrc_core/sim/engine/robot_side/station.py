@@ -1,4 +1,4 @@
-"""The driver station: modes, a practice match, and which joystick data are delivered in which mode."""
+"""The driver station: modes, a practice match, and the modes in which the robot receives joystick data."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Station:
     """The driver station of one run.
 
     :param write: writes a target, as in input scripts
-    :param state: how it is to begin with
+    :param state: its state at the beginning
     """
 
     def __init__(
@@ -41,20 +41,20 @@ class Station:
         self._field = field
         self._write = write
         self.state = state
-        #: Whether match time is this class's: for one packet longer than the practice match.
+        #: Whether this class sets the match time: until one packet after the practice match.
         self._keeps_time = state.practice_since_us is not None
 
     def take_over(self) -> None:
-        """From the next packet on, have the say over the match: until now, the script before has counted down."""
+        """Control the match from the next packet on; until now, the replayed script has done so."""
         self._run.clock.before_packet.append(self._on_packet)
 
     def choose(self, command: ChooseMode) -> None:
-        """Disabled, and ready for a mode."""
+        """Disable the robot, and choose a mode."""
         self._end_practice()
         self._enter({"teleop": "disabled"}.get(command.mode, f"disabled {command.mode}"))
 
     def enable(self, command: Enable) -> str:
-        """Enable or disable; answers what the user should know, if anything."""
+        """Enable or disable the robot, and return information for the user, or an empty text."""
         if not command.enabled:
             self._disable()
         elif self._run.hal_data.read(E_STOP):
@@ -66,23 +66,23 @@ class Station:
         return ""
 
     def emergency_stop(self, command: EmergencyStop) -> None:
-        """Stop for good."""
+        """Stop the robot until it is restarted."""
         self._disable()
         self._write(E_STOP, True)
 
     def practise(self, command: Practice) -> None:
-        """Begin a practice match, with the next packet."""
+        """Begin a practice match with the next packet."""
         self.state = replace(self.state, practice_since_us=self._run.clock.next_packet_us)
 
     def put(self, target: str, value: Any) -> None:
-        """Write an input; a joystick's control, when its data are delivered."""
+        """Write an input. A joystick's control is written when the robot receives its data."""
         control = _CONTROL.fullmatch(target)
         if control is None:
             self._write(target, value)
             return
         if self._delivers(modes.mode_name()):
             self._write(target, value)
-        # Kept when it could be written, or will be found out when it is.
+        # Kept after the write, which fails for a wrong value; a value that is not delivered now is checked later.
         self.state = replace(self.state, sticks={**self.state.sticks, target: value})
 
     def _disable(self) -> None:

@@ -1,7 +1,7 @@
-"""A run as WPILib's data log, for AdvantageScope: each value that has changed, when it has.
+"""A run as a WPILib data log, for AdvantageScope: each change with its time.
 
-Modes and joysticks stand where robots' own logs have them (``DS:enabled``, ``DS:joystick0/axes``), the robot's place
-under ``/pose``, everything else under its path in `hal_data`: ``/hal_data/pwm[0].value``.
+Modes and joysticks have the names of robots' own logs (``DS:enabled``, ``DS:joystick0/axes``), the robot's place is
+``/pose``, and everything else has its path in `hal_data`: ``/hal_data/pwm[0].value``.
 """
 
 from __future__ import annotations
@@ -31,18 +31,18 @@ _DRIVER_STATION = {
     "control.test": "DS:test",
     "control.eStop": "DS:estop",
 }
-#: How often what WPILib holds back is written, in microseconds of robot time: the robot's process may die at once.
+#: The interval of flushing WPILib's buffer, in microseconds of robot time: the robot's process may be killed.
 _FLUSH_US = 100_000
 _STICK = re.compile(r"joysticks\[(\d)\]\.(axes|buttons|povs)")
 
-#: Logs that could not be written: when WPILib learns that, at their end, it ends the process with a dump of memory.
+#: Logs that could not be written, kept alive: WPILib aborts the process when it closes such a log.
 _UNFINISHED: list[DataLogWriter] = []
 
 
 class WpiLog:
     """Writes one file, from the beginning of a run.
 
-    :raises UsageError: when there can be no such file
+    :raises UsageError: when the file cannot be written
     """
 
     def __init__(self, file: Path) -> None:
@@ -58,12 +58,12 @@ class WpiLog:
         self._flush_us = 0
 
     def write(self, now_us: int, changed: Mapping[str, Any], pose: Pose2d | None) -> None:
-        """Write what has changed by `now_us`, in microseconds of robot time."""
+        """Write the changes at `now_us`, in microseconds of robot time."""
         stamp = max(1, now_us)  # to WPILib, 0 is "now"
         for path, value in changed.items():
             self._entry(path, value)(value, stamp)
         if pose is not None:
-            # Not by a StructLogEntry: of a DataLogWriter it says "Object is closed", in WPILib 2026.
+            # Not by a StructLogEntry, which in WPILib 2026 takes a DataLogWriter for closed ("Object is closed").
             if self._pose is None:
                 self._log.addStructSchema(Pose2d, stamp)
                 self._pose = self._log.start("/pose", f"struct:{wpistruct.getTypeName(Pose2d)}", "", stamp)
@@ -73,7 +73,7 @@ class WpiLog:
             self._log.flush()
 
     def close(self) -> None:
-        """Write what is still to be written."""
+        """Write what is still in the buffer, and close the file."""
         self._log.flush()
         if check_disk_space(self._file):
             _UNFINISHED.append(self._log)
@@ -105,7 +105,7 @@ class WpiLog:
 
 
 def _converting(entry: Any, convert: Callable[[Any], Any]) -> Callable[[Any, int], object]:
-    """Appends to an entry; a value that has become something else meanwhile (None, as a text) is left out."""
+    """Return a function that appends to an entry. A value of another type, such as None, is left out."""
 
     def append(value: Any, stamp: int) -> None:
         try:

@@ -1,7 +1,7 @@
-"""What the device panels show: rows made of a snapshot's values, without a window.
+"""The rows of the device panels, made from a snapshot's values.
 
-Only what the robot has made is among the values, so there is a row for that and for nothing else. `DeviceRows` makes
-the rows anew when something came or went; between that, only the values at their paths change.
+The values contain only devices that the robot has made, so only these have rows. `DeviceRows` makes the rows again when
+a device comes or goes; otherwise only the values at their paths change.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ Values = Mapping[str, Any]
 class Row:
     """One device's line.
 
-    :param paths: of the values shown: one, a relay's two directions, or one for each of a module's lamps
-    :param low: the least that a meter or slider goes to; likewise `high`
-    :param tooltip: what it is, in words
+    :param paths: the paths of its values: one, a relay's two directions, or one for each of a module's lamps
+    :param low: the lowest value of a meter or slider; `high` likewise
+    :param tooltip: an explanation of the row
     """
 
     kind: Kind
@@ -65,8 +65,8 @@ class DeviceRows:
         self._shape: object = None
         self.panels: tuple[Panel, ...] = ()
 
-    def look(self, values: Values) -> bool:
-        """Make the panels for these values; answers whether they are others than before."""
+    def update(self, values: Values) -> bool:
+        """Make the panels for these values, and return whether they have changed."""
         # A robot may use a channel as an input and later as an output.
         shape = values.keys(), [value for path, value in values.items() if path.endswith(".is_input")]
         if shape == self._shape:
@@ -77,7 +77,7 @@ class DeviceRows:
 
 
 def panels_of(values: Values, config: SimConfig) -> Iterator[Panel]:
-    """The panels that have rows, in the order in which they are shown."""
+    """Yield the panels that have rows, in their order on the screen."""
     tree = _tree(values)
     makers = {
         "PWM": _pwm,
@@ -100,13 +100,13 @@ def panels_of(values: Values, config: SimConfig) -> Iterator[Panel]:
 
 
 def _tree(values: Values) -> dict[Any, Any]:
-    """The values by the segments of their paths."""
+    """Return the values as a tree, by the segments of their paths."""
     tree: dict[Any, Any] = {}
     for path, value in values.items():
         place = tree
         try:
             *parents, last = parse_path(path)
-        except ValueError:  # a key of the user's own that cannot be written as a path
+        except ValueError:  # a user's key that cannot be written as a path
             continue
         for segment in parents:
             place = place.setdefault(segment, {})
@@ -120,7 +120,7 @@ def _named(channel: int | str, labels: Mapping[int, str]) -> str:
 
 
 def _titled(what: str, channel: int, labels: Mapping[int, str]) -> str:
-    """With its whole label, for which there may be no room beside the channel."""
+    """Return the name with the whole label, for which the panel may have no space."""
     return f"{what} {channel}, {labels[channel]}" if channel in labels else f"{what} {channel}"
 
 
@@ -270,11 +270,16 @@ def _roborio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
 def _robot(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     for name, (path, value) in tree.get("robot", {}).items():
         kind: Kind = "switch" if isinstance(value, bool) else "number" if isinstance(value, int | float) else "text"
-        yield Row(kind, (path,), str(name), tooltip=f"hal_data['robot']['{name}']: what this device tells the robot")
+        yield Row(
+            kind,
+            (path,),
+            str(name),
+            tooltip=f"hal_data['robot']['{name}']: the value that this device reports to the robot",
+        )
 
 
 def _custom(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     for name, entry in tree.get("custom", {}).items():
-        # What is written there is the robot's, and may be a dict or list of its own.
+        # Robot code may write a dict or list there.
         if isinstance(entry, tuple):
             yield Row("text", (entry[0],), str(name), tooltip=f"hal_data['custom']['{name}']")

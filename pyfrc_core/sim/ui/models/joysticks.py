@@ -1,4 +1,4 @@
-"""The six joysticks as the window has them: what was set here, or is told of the robot's. Without a window."""
+"""The state of the six joysticks: set by the user, or taken over from the robot's."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
     from ...engine.simulation import Simulation
 
 JOYSTICKS = 6
-#: So many axes are shown; more of them where they have labels.
+#: The number of axes and buttons that are shown; labelled axes are shown, too.
 _AXES, BUTTONS = 6, 12
 
 _AXIS_NAMES = ("X", "Y", "Z", "Throttle")
 
-#: Nobody touches the POV.
+#: The angle of a POV that is not pressed.
 RELEASED = -1
 
 
 @dataclass
 class Stick:
-    """One joystick's controls. Buttons count from 1: the first of the list is none."""
+    """One joystick's controls. Buttons count from 1: the first entry of the list is unused."""
 
     axes: list[float] = field(default_factory=lambda: [0.0] * 12)
     buttons: list[bool] = field(default_factory=lambda: [False] * 33)
@@ -33,12 +33,12 @@ class Stick:
 
 
 class Sticks:
-    """What the six joysticks' controls are at; moves them."""
+    """The state of the six joysticks' controls, and the methods that move them."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self.sticks = [Stick() for _ in range(JOYSTICKS)]
-        self._told: list[Any] = [None] * JOYSTICKS
+        self._adopted: list[Any] = [None] * JOYSTICKS
 
     def move(self, stick: int, axis: int, value: float) -> None:
         """Move an axis."""
@@ -57,19 +57,19 @@ class Sticks:
             self._simulation.set_pov(stick, 0, angle)
 
     def plug(self, stick: int, plugged_in: bool) -> None:
-        """Plug a joystick in, or pull it out."""
+        """Plug a joystick in, or unplug it."""
         self.sticks[stick].plugged = plugged_in
         self._simulation.plug(stick, plugged_in)
 
     def adopt(self, values: Values) -> None:
-        """Take over what the robot's joysticks have become, by a script or after going back in time."""
+        """Take over the robot's joysticks, which a script or going back in time has changed."""
         for number, stick in enumerate(self.sticks):
             room = f"joysticks[{number}]"
-            told = tuple(values.get(f"{room}.{part}") for part in ("axes", "buttons", "povs"))
-            if told == self._told[number]:
+            state = tuple(values.get(f"{room}.{part}") for part in ("axes", "buttons", "povs"))
+            if state == self._adopted[number]:
                 continue
-            self._told[number] = told
-            axes, buttons, povs = told
+            self._adopted[number] = state
+            axes, buttons, povs = state
             stick.plugged = axes is not None
             stick.axes[: len(axes or ())] = axes or ()
             stick.buttons[: len(buttons or ())] = buttons or ()
@@ -77,7 +77,7 @@ class Sticks:
 
 
 def axis_labels(config: SimConfig, stick: int) -> dict[int, str]:
-    """The axes that are shown, and what is written beside them."""
+    """Return the labels of the axes that are shown."""
     named = dict(config.joysticks[stick].axes) if stick in config.joysticks else {}
     shown = sorted({*range(_AXES), *named})
     return {axis: named.get(axis) or _axis_name(axis) for axis in shown}
@@ -88,11 +88,11 @@ def _axis_name(axis: int) -> str:
 
 
 def button_labels(config: SimConfig, stick: int) -> dict[int, str]:
-    """What is written beside the buttons that have a name."""
+    """Return the labels of the buttons that have one."""
     named = dict(config.joysticks[stick].buttons) if stick in config.joysticks else {}
     return {1: "Trigger", 2: "Top"} | named
 
 
 def direction(x: float, y: float) -> int:
-    """Which of a POV's eight directions a point is in, seen from the middle, y downwards: degrees clockwise from up."""
+    """Return a POV's angle for a point beside its middle, y downwards: one of eight, in degrees clockwise from up."""
     return round(math.degrees(math.atan2(x, -y)) / 45) % 8 * 45

@@ -1,4 +1,4 @@
-"""Driving by the keyboard: which keys move which joystick's axes, press its buttons, and are the driver station's.
+"""Driving by the keyboard: which keys move which axes and press which buttons.
 
 Key names are Tk's keysyms, in lower case.
 """
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 #: A joystick and one of its axes, or one of its buttons.
 Control = tuple[int, int]
 
-#: How far a key moves an axis while Shift is held.
+#: The distance that a key moves an axis while Shift is held.
 GENTLE = 0.4
 
 _SHIFTS = frozenset({"shift_l", "shift_r"})
@@ -23,18 +23,18 @@ _SHIFTS = frozenset({"shift_l", "shift_r"})
 #: All three at once enable the robot, as on the Driver Station.
 ENABLE_CHORD = frozenset({"bracketleft", "bracketright", "backslash"})
 
-#: What a key that is held with Shift is called, on keyboards as in the United States.
+#: The names of keys that are held with Shift, on keyboards of the United States.
 _SHIFTED = dict(zip(("exclam", "at", "numbersign", "dollar", "percent", "asciicircum", "ampersand", "asterisk",
                      "parenleft", "parenright"), "1234567890", strict=True))  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Layout:
-    """What the keys do.
+    """An assignment of keys.
 
-    :param name: what the user chooses it by
+    :param name: its name for the user
     :param help: the keys in a few words
-    :param axes: how far a key moves axes
+    :param axes: the distance that each key moves axes
     """
 
     name: str
@@ -88,7 +88,7 @@ LAYOUTS = (
 
 
 def layout_for(config: SimConfig) -> Layout:
-    """The layout that fits a robot's labels: which axes of joystick 0 it names says what is held in the hands."""
+    """Return the layout for a robot: the axes of joystick 0 that it labels show which kind of joystick it uses."""
     tank, joysticks, gamepad = LAYOUTS
     named = config.joysticks[0].axes.keys() if 0 in config.joysticks else set()
     if named & {4, 5}:
@@ -101,12 +101,12 @@ BUTTON_KEYS = {**{str(number): number for number in range(1, 10)}, "0": 10}
 
 
 def canonical(keysym: str) -> str:
-    """A key's name, whether or not Shift or Caps Lock is on."""
+    """Return a key's name, without the effect of Shift and Caps Lock."""
     return _SHIFTED.get(keysym, keysym.lower())
 
 
 class KeyDriver:
-    """Which keys are held, and what that makes of axes and buttons."""
+    """The keys that are held, and the axes and buttons that follow from them."""
 
     def __init__(self, layout: Layout = LAYOUTS[0]) -> None:
         self.layout = layout
@@ -119,16 +119,16 @@ class KeyDriver:
         self.held.discard(canonical(keysym))
 
     def release_all(self) -> None:
-        """As when the window is no longer the one that is typed into."""
+        """Release all keys, as when another window gets them."""
         self.held.clear()
 
     @property
     def asks_to_enable(self) -> bool:
-        """Whether the keys are held that enable the robot."""
+        """Whether the keys that enable the robot are held."""
         return self.held >= ENABLE_CHORD
 
     def axes(self) -> dict[Control, float]:
-        """Where the layout's axes are now; all of those that some key moves."""
+        """Return the positions of all axes that a key of the layout moves."""
         far = GENTLE if self.held & _SHIFTS else 1.0
         moved: dict[Control, float] = {}
         for key, moves in self.layout.axes.items():
@@ -137,5 +137,5 @@ class KeyDriver:
         return {control: min(max(value, -1.0), 1.0) for control, value in moved.items()}
 
     def buttons(self) -> dict[Control, bool]:
-        """Whether the keys of the buttons are held; buttons count from 1."""
+        """Return which buttons are pressed; buttons count from 1."""
         return {(0, button): key in self.held for key, button in BUTTON_KEYS.items()}

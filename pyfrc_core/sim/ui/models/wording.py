@@ -1,4 +1,4 @@
-"""What is written in the window, and the arithmetic of its sliders: without a window."""
+"""The texts that front ends show."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ import re
 from ....physics.pose import Pose
 from ...engine.snapshot import Snapshot, Status
 
-#: The alliance stations in words, in the order of their numbers, and as they are commanded.
+#: The alliance stations: as they are shown, in the order of their numbers, and as they are commanded.
 STATIONS = {f"{color.title()} {number}": f"{color}{number}" for color in ("red", "blue") for number in (1, 2, 3)}
 
 _MODES = {"autonomous": "Autonomous", "teleop": "Teleoperated", "test": "Test"}
 
-# Colours and the like, which programs write for terminals.
+# Colours and the like, for terminals.
 _ESCAPES = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|[@-Z\\-_])|[\x00-\x08\x0b-\x1f\x7f]")
 
 
 def clock(seconds: float) -> str:
-    """A moment of robot time, as ``1:02.34``: what a packet is long can be seen."""
+    """Return a moment of robot time as ``1:02.34``, precise enough to show each packet."""
     minutes, hundredths = divmod(round(max(seconds, 0.0) * 100), 6000)
     return f"{minutes}:{hundredths // 100:02}.{hundredths % 100:02}"
 
 
 def speed_text(speed: float) -> str:
-    """How fast robot time is to go."""
+    """Return the wanted speed of robot time."""
     return "max" if speed == 0 else f"{speed:.2g}x"
 
 
 def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
-    """What the robot is doing: in words, and of which kind: ``wait``, ``error``, ``disabled`` or ``enabled``."""
+    """Return what the robot is doing, and its kind: ``wait``, ``error``, ``disabled`` or ``enabled``."""
     if status.state == "failed":
         return "No robot code", "error"
     if not status.responding:
@@ -48,7 +48,7 @@ def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
 
 
 def status_texts(snapshot: Snapshot | None, status: Status) -> list[str]:
-    """The status line's parts."""
+    """Return the parts of the status line."""
     time = 0.0 if snapshot is None else snapshot.time
     going = status.state == "running"
     reached = f"Speed {status.reached:.2f}x of {speed_text(status.speed)}"
@@ -66,12 +66,12 @@ def status_texts(snapshot: Snapshot | None, status: Status) -> list[str]:
 
 
 def plain_output(text: str) -> str:
-    """What a program printed, without what is for terminals only."""
+    """Return a program's output without control sequences for terminals."""
     return _ESCAPES.sub("", text.replace("\r\n", "\n"))
 
 
 def number_text(value: float, decimals: int) -> str:
-    """A number in little room."""
+    """Return a number in few characters."""
     if not math.isfinite(value):
         return str(value)
     if abs(value) >= 1e6:
@@ -81,7 +81,7 @@ def number_text(value: float, decimals: int) -> str:
 
 
 def pose_text(robot: Pose | None) -> str:
-    """Where the robot is."""
+    """Return the robot's place and heading."""
     if robot is None:
         return "no physics.py: see pyfrc create-physics"
     degrees = (math.degrees(robot.angle) + 180) % 360 - 180
@@ -89,6 +89,6 @@ def pose_text(robot: Pose | None) -> str:
 
 
 def station_name(station: object) -> str:
-    """An alliance station in words, from its number in WPILib."""
+    """Return the name of an alliance station from its number in WPILib."""
     names = list(STATIONS)
     return names[station - 1] if isinstance(station, int) and 1 <= station <= len(names) else ""

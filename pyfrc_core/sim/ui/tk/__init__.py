@@ -22,15 +22,15 @@ class TkFrontEnd(FrontEnd):
         try:
             self._show(simulation)
         finally:
-            # What is Tk's must not be left for another thread to tidy away: it would wait for a loop that is over.
+            # Tk objects that another thread destroyed would wait for an event loop that is over.
             gc.collect()
             simulation.close()
         return 0
 
     def saved(self, files: list[str]) -> None:
-        """Say that the robot gets new code."""
+        """Show that the robot gets new code."""
         if (window := self._window) is not None:
-            window.tell(f"saved: {', '.join(files)}")
+            window.announce(f"saved: {', '.join(files)}")
 
     def _show(self, simulation: Simulation) -> None:
         self._window = window = Window(simulation)

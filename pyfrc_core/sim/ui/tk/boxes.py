@@ -1,4 +1,4 @@
-"""Boxes with a list to choose from, which neither keep the keys nor turn with the wheel."""
+"""Boxes with a list to choose from, which neither keep the keyboard focus nor react to the wheel."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from tkinter import ttk
 
 
 def has_keys(widget: tk.Misc) -> bool:
-    """Whether what is typed goes to this widget.
+    """Return whether this widget has the keyboard focus.
 
-    By its name: tkinter knows no widgets that Tk has made for itself, such as a box's list, and `focus_get` fails then.
+    Compares names, since `focus_get` fails for widgets that Tk has made itself, such as a box's list.
     """
     return str(widget.tk.call("focus")) == str(widget)
 
 
 def tame(box: ttk.Combobox, done: Callable[[], object]) -> None:
-    """Have something chosen from a box's list only, and by nothing that is meant for what is around it.
+    """Let a box change only by its list, and not by the wheel or by keys that drive.
 
-    :param done: called when the box gets the keys, and its list is not open, as when that is closed without a choice:
-        else the arrows would both drive and open the list again
+    :param done: called when the box gets the focus while its list is closed, as after a list was closed without a
+        choice; otherwise the arrow keys would both drive and open the list again
     """
     for turned in ("<MouseWheel>", "<Button-4>", "<Button-5>"):
         box.bind(turned, lambda event: "break")

@@ -17,9 +17,9 @@ from .tooltip import Tooltip
 if TYPE_CHECKING:
     from ...engine.simulation import Simulation
 
-#: The field's share of the height; and a traceback's, at least.
+#: The field's share of the height, and the least share of a traceback.
 _FIELD_SHARE, _TRACEBACK_SHARE = 0.72, 0.45
-#: How much nearer the buttons bring the field.
+#: The zoom factor of the buttons.
 _ZOOM = 1.5
 
 _HOW = "Wheel: zoom, drag: move"
@@ -30,7 +30,7 @@ _HELP = (
 
 
 class CenterView:
-    """Field and console, each as high as the user wants."""
+    """Field and console, with a sash between them."""
 
     def __init__(self, parent: tk.Misc, theme: Theme, tooltip: Tooltip, simulation: Simulation) -> None:
         self.frame = frame = ttk.PanedWindow(parent, orient="vertical")
@@ -41,21 +41,21 @@ class CenterView:
         self.console = ConsoleView(frame, theme, simulation)
         frame.add(card, weight=4)
         frame.add(self.console.frame, weight=1)
-        #: Where the sash was before a traceback needed room.
+        #: The sash's place before a traceback needed space.
         self._former_sash = 0
         self._shared = False
         frame.bind("<Configure>", self._share)
 
     def show_pose(self, robot: Pose | None) -> None:
-        """Write where the robot is."""
+        """Show the robot's place."""
         self._pose.configure(text=pose_text(robot))
         others = sum(each.winfo_reqwidth() for each in self._bar.winfo_children() if each is not self._how)
-        # Half a hint helps nobody; the mouse on it brings the whole.
+        # A hint that does not fit is replaced by "?", whose tooltip explains it.
         fits = others + self._how_width + self._gaps <= self._bar.winfo_width()
         self._how.configure(text=_HOW if fits else "?")
 
-    def make_room_for_a_traceback(self, failed: bool) -> None:
-        """Make the console higher, when the robot has failed; afterwards as high as it was."""
+    def make_space_for_traceback(self, failed: bool) -> None:
+        """Make the console higher when the robot has failed, and as high as before afterwards."""
         if failed:
             self._former_sash = self._sash()
             self._move_sash(min(self._former_sash, round(self.frame.winfo_height() * (1 - _TRACEBACK_SHARE))))
@@ -82,11 +82,11 @@ class CenterView:
         tooltip.attach(how, _HELP)
 
     def _share(self, event: tk.Event[tk.Misc]) -> None:
-        if not self._shared:  # from then on the user may have moved the sash
+        if not self._shared:  # later, the user may have moved the sash
             self._shared = True
             self._move_sash(round(event.height * _FIELD_SHARE))
 
-    # tkinter's own method for it answers anything.
+    # tkinter's own method for it is typed as Any.
     def _sash(self) -> int:
         return int(self.frame.tk.call(str(self.frame), "sashpos", 0))
 

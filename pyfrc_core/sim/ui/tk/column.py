@@ -1,4 +1,4 @@
-"""A column of cards that can be scrolled where the window is too low for all of them."""
+"""A column of cards that scrolls when the window is too low for all of them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .theme import Theme
 
 
 class Column:
-    """Put things into `inside`, below each other.
+    """A scrolling column; its widgets are packed into `inside`.
 
     :param width: in pixels
     """

@@ -1,4 +1,4 @@
-"""Under the field: what the robot prints; and, when its program has failed, why."""
+"""Under the field: the robot's output, and the reason when its program has failed."""
 
 from __future__ import annotations
 
@@ -61,12 +61,12 @@ class ConsoleView:
         text.tag_configure("hint", foreground=colors.MUTED)
         scrollbar = ttk.Scrollbar(body, command=self._scroll)
         text.configure(yscrollcommand=scrollbar.set)
-        #: Whether the last line is to be seen; else the user reads something above.
+        #: Whether to show the last line; False while the user reads above it.
         self._follows = True
         for turned in ("<MouseWheel>", "<Button-4>", "<Button-5>"):
             text.bind(turned, lambda event: text.after_idle(self._look))
         text.bind("<Configure>", lambda event: self._show_end())
-        # A text that nobody can type into gets no keys.
+        # A disabled text widget receives no keys.
         frame.winfo_toplevel().bind("<<Copy>>", lambda event: self._copy(), add="+")
         scrollbar.pack(side="right", fill="y")
         text.pack(side="left", fill="both", expand=True)
@@ -75,7 +75,7 @@ class ConsoleView:
         self._empty = True
 
     def show(self, failure: Failure | None) -> None:
-        """Show what has been printed since, and what has happened."""
+        """Show new output, and the failure."""
         if output := self._output.read_last(_MOST_AT_ONCE):
             self._append(plain_output(output))
         if failure is self._failure:
@@ -92,7 +92,7 @@ class ConsoleView:
         self._append(f"\n{failure.details or failure.headline}\n", "trace")
 
     def mark(self, what: str) -> None:
-        """Say what has happened here, between what was printed before it and after it."""
+        """Show an event between the output before it and after it."""
         if not self._empty or self._simulation.snapshot is not None:
             self.show(self._failure)
             self._append(f"— {what} —\n", "hint")

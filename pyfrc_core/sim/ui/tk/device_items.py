@@ -1,4 +1,4 @@
-"""The rows of the device panels on a canvas. Each is made once; `show` changes what has changed."""
+"""The rows of the device panels on a canvas. Each is created once; `show` updates what has changed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MOST_LEDS = 48
 
 @dataclass(frozen=True)
 class Place:
-    """Where a row is on its canvas, in pixels: what is beside its label is between `left` and `right`."""
+    """The place of a row on its canvas, in pixels: its value is between `left` and `right`."""
 
     left: int
     right: int
@@ -25,9 +25,9 @@ class Place:
 
 
 class Item:
-    """One row. Its class is the one for a text, or for a title without a value."""
+    """One row. This class shows a text, or a title without a value."""
 
-    #: How high the row is, in the design's pixels; and how wide what is beside its label.
+    #: The height of the row and the width of its value, in pixels of the design.
     height, value_room = 22, 96
 
     def __init__(self, canvas: tk.Canvas, theme: Theme, row: Row, place: Place) -> None:
@@ -58,11 +58,11 @@ class Item:
         self._canvas.itemconfigure(self._text, text=_shortened(text, 22))
 
     def value_at(self, x: int) -> float | None:
-        """What a click or drag at this pixel sets, if the row is a slider."""
+        """Return the value that a click or drag at this pixel sets, if the row is a slider."""
         return None
 
     def _label_room(self) -> int:
-        """How wide the label may be, in pixels."""
+        """Return the greatest width of the label, in pixels."""
         whole = self.place.right - self._theme.px(12)
         return whole - self._theme.px(self.value_room) if self.row.paths else whole
 
@@ -233,7 +233,7 @@ class Lamps(Item):
                 x - r, y - px(6) - r, x + r, y - px(6) + r, outline="", fill=colors.LAMP_OFF
             )
             self._lamps.append(lamp)
-            if apart >= px(14) or number % 2 == 0:  # there is no room for all of sixteen
+            if apart >= px(14) or number % 2 == 0:  # sixteen numbers do not fit
                 text = str(number)
                 self._canvas.create_text(x, y + px(8), text=text, font=self._theme.tiny, fill=colors.MUTED)
         self._lit: list[bool] = [False] * count

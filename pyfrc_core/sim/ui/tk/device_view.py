@@ -1,4 +1,4 @@
-"""The device panels: a long canvas that can be scrolled, its inputs set by the mouse."""
+"""The device panels: a scrolling canvas, whose inputs are set by the mouse."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from ....config.sim import SimConfig
     from ...engine.simulation import Simulation
 
-#: In the design's pixels: the whole width, and where labels end.
+#: The width, and the end of the labels, in pixels of the design.
 WIDTH, _LABELS = 292, 150
 
 
 class DeviceView:
-    """Shows what the robot has made, as it makes it.
+    """Shows the devices that the robot has made.
 
-    :param done: called when the user has typed a number, and keys are for driving again
+    :param done: called when the user has typed a number, so that keys drive again
     """
 
     def __init__(
@@ -56,18 +56,18 @@ class DeviceView:
     def show(self, snapshot: Snapshot) -> None:
         """Draw what has changed since the last one."""
         values = snapshot.values
-        if self.rows.look(values):
+        if self.rows.update(values):
             self._make_items()
         for item in self.items:
             if item is not self._held:
                 item.look([values.get(path) for path in item.row.paths])
 
     def relabel(self, config: SimConfig) -> None:
-        """Take other labels."""
+        """Use other labels."""
         self.rows = DeviceRows(config)
 
     def center_of(self, row: Row) -> tuple[int, int]:
-        """Where a row is set by a click, in the canvas's pixels as it is scrolled now."""
+        """Return the pixel of the canvas, as it is scrolled, where a click sets a row."""
         item = next(item for item in self.items if item.row == row)
         return item.place.right - self._theme.px(14), item.place.y - round(self.canvas.canvasy(0))
 

@@ -1,4 +1,4 @@
-"""What the keys do: a choice of layouts for driving, and the other keys."""
+"""The choice of the layout of the keys that drive, with help."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _OTHERS = ". Shift: gently. 1 to 9, 0: buttons of joystick 0"
 class DriveView:
     """Chooses the layout of the keys that drive.
 
-    :param done: called when the user has chosen, and keys are for driving again
+    :param done: called when the user has chosen, so that keys drive again
     """
 
     def __init__(self, parent: tk.Misc, theme: Theme, keys: DriverStationKeys, done: Callable[[], None]) -> None:

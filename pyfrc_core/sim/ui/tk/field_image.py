@@ -1,4 +1,4 @@
-"""The picture that lies under the field, brought to the size at which it is seen.
+"""The picture under the field, scaled to the size at which it is seen.
 
 Tk can make pictures larger or smaller by whole factors only; here each of the screen's pixels takes the picture's
 nearest one. Only what is to be seen is made, so that one can come near a large picture.
@@ -34,7 +34,7 @@ class FieldImage:
             ) from None
         self._root = root
         self.width, self.height = picture.width(), picture.height()
-        # Where the picture can be seen through, the carpet is to be seen.
+        # The carpet shows through transparent parts.
         whole = tk.PhotoImage(master=root, width=self.width, height=self.height)
         whole.put(colors.CARPET, to=(0, 0, self.width, self.height))
         root.tk.call(str(whole), "copy", str(picture), "-compositingrule", "overlay")
@@ -44,7 +44,7 @@ class FieldImage:
         self._rows = [pixels[start : start + size] for start in range(0, len(pixels), size)]
 
     def seen(self, view: Viewport) -> tuple[tk.PhotoImage, int, int] | None:
-        """What is seen of the picture, and the pixel of its top left corner; None when that is nothing."""
+        """Return the visible part of the picture, and its top left pixel; None when nothing is visible."""
         left, top = view.to_screen(0, 0)
         right, bottom = view.to_screen(view.field_width, view.field_height)
         columns = range(max(round(left), 0), min(round(right), view.width))
@@ -53,7 +53,7 @@ class FieldImage:
             return None
         across, down = self.width / (right - left), self.height / (bottom - top)
         taken = [3 * min(max(int((x + 0.5 - left) * across), 0), self.width - 1) for x in columns]
-        pick = itemgetter(*(slice(byte, byte + 3) for byte in [*taken, taken[-1]]))  # two or more: it answers a tuple
+        pick = itemgetter(*(slice(byte, byte + 3) for byte in [*taken, taken[-1]]))  # two or more: returns a tuple
         lines: list[bytes] = []
         last, line = -1, b""
         for y in rows:
@@ -67,5 +67,5 @@ class FieldImage:
 
 
 def _pixels(ppm: bytes) -> bytes:
-    """The pixels of a picture as Tk writes the PPM format: after three lines of header, three bytes each."""
+    """Return the pixels of a picture in Tk's PPM format: after three lines of header, three bytes each."""
     return ppm.split(b"\n", 3)[3]

@@ -1,4 +1,4 @@
-"""The field in the window's middle: what the scene shows, seen from above, near or far."""
+"""The field in the middle of the window: draws the scene, with zoom."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _ZOOM_STEP = 1.2
 
 
 class FieldView:
-    """Draws scenes. Items are made once and moved; all are placed anew when another part of the field is seen."""
+    """Draws scenes. Items are created once and then moved; all are placed again when the view changes."""
 
     def __init__(self, parent: tk.Misc, theme: Theme, simulation: Simulation) -> None:
         self._theme, self._simulation = theme, simulation
@@ -37,7 +37,7 @@ class FieldView:
         self._picture: tk.PhotoImage | None = None
         self.view = Viewport.whole(field.width, field.height, 100, 100)
         self._whole = True
-        #: Whether another part of the field is to be seen than was drawn.
+        #: Whether the view has changed since the field was drawn.
         self.moved = True
         self._robot: Pose | None = None
         self._bumpers = ""
@@ -55,7 +55,7 @@ class FieldView:
 
     @property
     def problem(self) -> str:
-        """What could not be drawn, if anything."""
+        """Why something could not be drawn; empty when everything was."""
         return self._image_problem or self._drawings.problem or self._color_problem
 
     def show(self, snapshot: Snapshot, status: Status) -> None:
@@ -80,7 +80,7 @@ class FieldView:
             self._bumpers = bumpers
             self.canvas.itemconfigure("bumpers", fill=bumpers)
 
-    # -- which part is seen ---------------------------------------------------------------------------------------
+    # -- the view -------------------------------------------------------------------------------------------------
 
     def see_whole(self) -> None:
         """Show the whole field."""
@@ -88,7 +88,7 @@ class FieldView:
         self._see(Viewport.whole(self._field.width, self._field.height, self.view.width, self.view.height))
 
     def zoom(self, factor: float, x: float | None = None, y: float | None = None) -> None:
-        """Come nearer, or go farther away; towards the middle, if no pixel is given."""
+        """Zoom by a factor, towards a pixel or towards the middle."""
         view, self._whole = self.view, False
         self._see(view.zoomed(factor, view.width / 2 if x is None else x, view.height / 2 if y is None else y))
 
@@ -109,7 +109,7 @@ class FieldView:
         self._draw_field()
         self.moved = True
 
-    # -- what stays -----------------------------------------------------------------------------------------------
+    # -- fixed items ----------------------------------------------------------------------------------------------
 
     def _draw_field(self) -> None:
         canvas, px, field = self.canvas, self._theme.px, self._field
@@ -144,7 +144,7 @@ class FieldView:
     def _draw_shape(self, shape: Shape) -> int:
         try:
             return self.canvas.create_polygon(*[0] * 2 * len(shape.points), fill=shape.color, tags="field")
-        except tk.TclError:  # what is there is to be seen all the same
+        except tk.TclError:  # the shape is drawn all the same
             self._color_problem = f"sim/config.json: pyfrc.field.objects: no colour is called {shape.color!r}."
             return self.canvas.create_polygon(*[0] * 2 * len(shape.points), fill=colors.EDGE, tags="field")
 
@@ -165,7 +165,7 @@ class FieldView:
         self._draw_targets(scene.targets)
         self._place_robot(scene.robot)
 
-    # -- what moves -----------------------------------------------------------------------------------------------
+    # -- moving items ---------------------------------------------------------------------------------------------
 
     def _make_robot(self) -> None:
         canvas, px, tags = self.canvas, self._theme.px, ("over", "robot")

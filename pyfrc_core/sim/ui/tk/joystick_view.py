@@ -1,4 +1,4 @@
-"""One of the six joysticks, its controls moved by the mouse."""
+"""One of the six joysticks, with controls that the mouse moves."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from .tooltip import Tooltip
 if TYPE_CHECKING:
     from ....config.sim import SimConfig
 
-#: In the design's pixels.
+#: In pixels of the design.
 WIDTH, _PAD, _DIAL, _AXIS, _BUTTON = 288, 84, 60, 18, 18
-#: How wide the label of axis 1 is at most, beside the POV.
+#: The greatest width of the label of axis 1, beside the POV.
 _LABEL = 100
 
 _PAD_HELP = "Drag: axes 0 and 1. With the right button, it stays where you let it go."
 _BUTTON_HELP = "Click: pressed while you hold it. Right click: stays pressed."
 
-#: What the mouse holds: ``pad``, ``axis 3``, ``button 2``, ``pov``.
+#: The control that the mouse holds: ``pad``, ``axis 3``, ``button 2``, ``pov``.
 _Part = tuple[str, int]
 
 
 class JoystickView:
-    """Shows one joystick, and which of the six it is can be chosen."""
+    """Shows one joystick; the user chooses which of the six."""
 
     def __init__(
         self,
@@ -107,16 +107,16 @@ class JoystickView:
             self._show_source()
 
     def relabel(self, config: SimConfig) -> None:
-        """Take other labels."""
+        """Use other labels."""
         self._config = config
         self._make()
 
     def center_of(self, part: _Part) -> tuple[int, int]:
-        """The middle of a control, in the canvas's pixels."""
+        """Return the middle of a control, in the canvas's pixels."""
         x0, y0, x1, y1 = dict(self._parts)[part]
         return round((x0 + x1) / 2), round((y0 + y1) / 2)
 
-    # -- which gamepad moves it -----------------------------------------------------------------------------------
+    # -- the gamepad ----------------------------------------------------------------------------------------------
 
     def _show_source(self) -> None:
         if self._gamepads is None or self._names is None:
@@ -298,6 +298,6 @@ class JoystickView:
 
 
 def _snapped(value: float) -> float:
-    """A place of an axis, which stops in the middle when it is near."""
+    """Return a position of an axis, which snaps to the middle."""
     value = round(min(max(value, -1.0), 1.0), 2)
     return 0.0 if abs(value) < 0.05 else value

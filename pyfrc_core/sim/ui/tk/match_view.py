@@ -1,4 +1,4 @@
-"""What is chosen before a match: alliance, game message, where the robot starts, what it does in autonomous."""
+"""The choices before a match: alliance, game data, start position, choosers such as the autonomous mode."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .tooltip import Tooltip
 if TYPE_CHECKING:
     from ...engine.simulation import Simulation
 
-#: How wide what stands before a box is at most, in the design's pixels.
+#: The greatest width of the labels before the boxes, in pixels of the design.
 _LABEL = 96
 
 
 class MatchView:
     """Choices, each a box with a list.
 
-    :param done: called when the user has chosen, and keys are for driving again
+    :param done: called when the user has chosen, so that keys drive again
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class MatchView:
         self._alliance = self._box(list(STATIONS), self._choose_alliance)
         self._message = self._box(list(simulation.project.game_specific_messages), self._send_message, "normal")
         self._message.bind("<Return>", lambda event: self._send_message())
-        tooltip.attach(self._message, "Game data, which the field tells all robots: choose, or type and press Enter")
+        tooltip.attach(self._message, "Game data, which the field sends to all robots: choose, or type and press Enter")
         self._place_row("Alliance", self._alliance)
         self._place_row("Game data", self._message)
         starts = list(simulation.field.starts)
@@ -49,12 +49,12 @@ class MatchView:
         if starts:
             self._start.current(0)
         self.reset = ttk.Button(grid, text="Reset", width=6, style="Tiny.TButton", command=self._reset, takefocus=False)
-        tooltip.attach(self.reset, "Put the robot back to where it starts. It can be dragged on the field, too.")
+        tooltip.attach(self.reset, "Put the robot back to its start. It can also be dragged on the field.")
         self._place_row("Start", self._start, self.reset)
         self._choosers: dict[str, tuple[Chooser, ttk.Label, ttk.Combobox]] = {}
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show what is chosen."""
+        """Show the current choices."""
         values = snapshot.values
         chosen = values.get("alliance_station"), values.get("event.game_specific_message"), snapshot.choosers
         if chosen == self._shown:

@@ -1,4 +1,4 @@
-"""A slider: thin, flat, with what is behind the knob coloured. `ttk.Scale` cannot be made to look so everywhere."""
+"""A thin, flat slider, coloured up to its knob. `ttk.Scale` cannot look like this on every system."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from .theme import Theme
 
 
 class Slider(tk.Canvas):
-    """Stands somewhere from 0 to 1.
+    """A slider with positions from 0 to 1.
 
-    :param moved: called with its place while it is dragged; True with it when it is let go
+    :param moved: called with the position while it is dragged; the second argument is True when it is released
     """
 
     def __init__(self, parent: tk.Misc, theme: Theme, width: int, moved: Callable[[float, bool], object]) -> None:
@@ -32,7 +32,7 @@ class Slider(tk.Canvas):
         self.bind("<ButtonRelease-1>", self._release)
 
     def show(self, place: float) -> None:
-        """Stand there, unless it is being dragged."""
+        """Move to a position, unless the slider is being dragged."""
         if not self.held:
             self._go(place)
 

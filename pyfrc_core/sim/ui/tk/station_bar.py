@@ -1,4 +1,4 @@
-"""The driver station, along the top: what the robot is to do, whether it may, and the emergency stop."""
+"""The driver station, along the top: modes, enabling, and the emergency stop."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class StationBar:
                 variable=self.mode,
                 command=lambda mode=mode: simulation.choose_mode(mode),  # type: ignore[misc]
                 style="Segment.Toolbutton",
-                # In letters: as wide as when it is chosen, and bold.
+                # In letters; wide enough for the bold text of the chosen mode.
                 width=math.ceil(theme.bold.measure(text) / theme.body.measure("0")),
                 takefocus=False,
             )
@@ -70,11 +70,11 @@ class StationBar:
         self.stop = ttk.Button(
             frame, text="E-STOP", width=8, style="Stop.TButton", command=simulation.emergency_stop, takefocus=False
         )
-        self.stop.pack(side="right", before=self.mode_buttons["teleop"], padx=(px(8), 0))  # never pushed out
+        self.stop.pack(side="right", before=self.mode_buttons["teleop"], padx=(px(8), 0))  # always visible
         tooltip.attach(self.stop, "Emergency stop: the space bar. Only a restart enables the robot again.")
 
     def show(self, snapshot: Snapshot | None, status: Status) -> None:
-        """Show how the robot stands."""
+        """Show the robot's state."""
         text, kind = mode_text(snapshot, status)
         enabled = snapshot is not None and snapshot.enabled
         mode = "teleop" if snapshot is None else snapshot.chosen_mode

@@ -1,4 +1,4 @@
-"""How the window looks: colours, letters, sizes. One place for all of them."""
+"""The look of the window: colours, fonts, sizes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tkinter import font as tk_font
 from tkinter import ttk
 from typing import Any
 
-# Text on backgrounds has a contrast of 4.5 and more.
+# The contrast of text is at least 4.5.
 BACKGROUND, CARD, BORDER = "#eef0f3", "#ffffff", "#d8dde3"
 TEXT, MUTED, FAINT = "#1c2530", "#5d6875", "#c3cad2"
 ACCENT, GREEN, RED, AMBER = "#2563eb", "#15803d", "#c81e1e", "#b45309"
@@ -35,7 +35,7 @@ _DENSE = 1.2
 
 
 def scale_for(dpi: float, width: int, height: int, *, points: bool) -> float:
-    """How many of the screen's pixels one of the design's is.
+    """Return the number of the screen's pixels per pixel of the design.
 
     :param points: whether the system multiplies by itself, as macOS does
     """
@@ -50,7 +50,7 @@ def scale_for(dpi: float, width: int, height: int, *, points: bool) -> float:
 
 @dataclass(frozen=True)
 class Theme:
-    """Sizes and letters for one screen."""
+    """Sizes and fonts for one screen."""
 
     scale: float
     body: tk_font.Font
@@ -61,12 +61,12 @@ class Theme:
     mono: tk_font.Font
 
     def px(self, size: float) -> int:
-        """A length of the design, in the screen's pixels."""
+        """Return a length of the design in the screen's pixels."""
         return max(round(size * self.scale), 1)
 
 
 def make_theme(root: tk.Tk) -> Theme:
-    """Ready the window's styles."""
+    """Prepare the window's styles."""
     scale = scale_for(
         root.winfo_fpixels("1i"), root.winfo_screenwidth(), root.winfo_screenheight(), points=sys.platform == "darwin"
     )
@@ -79,7 +79,7 @@ def make_theme(root: tk.Tk) -> Theme:
         mono = str(tk_font.nametofont("TkFixedFont", root).actual("family"))
 
     def letters(family: str, size: float, weight: str = "normal") -> tk_font.Font:
-        # Negative sizes are pixels, which our scale is about.
+        # Negative sizes are pixels.
         bold = "bold" if weight == "bold" else "normal"
         return tk_font.Font(root, family=family, size=-max(round(size * scale), 8), weight=bold)  # type: ignore[arg-type]
 
@@ -99,7 +99,7 @@ def make_theme(root: tk.Tk) -> Theme:
 def _style(root: tk.Tk, theme: Theme) -> None:
     px = theme.px
     style = ttk.Style(root)
-    style.theme_use("clam")  # the one theme that takes all colours, on every system
+    style.theme_use("clam")  # the only theme that accepts all colours on every system
     root.configure(background=BACKGROUND)
     root.option_add("*TCombobox*Listbox.font", theme.body)
     root.option_add("*TCombobox*Listbox.background", CARD)
@@ -120,7 +120,7 @@ def _style(root: tk.Tk, theme: Theme) -> None:
     flat: dict[str, Any] = {"relief": "flat", "borderwidth": px(1), "focusthickness": 0, "anchor": "center"}
     edge: dict[str, Any] = {"bordercolor": BORDER, "lightcolor": CARD, "darkcolor": CARD}
     style.configure("TButton", background=CARD, padding=(px(10), px(4)), **flat, **edge)
-    style.configure("TButton", relief="raised")  # its border is seen only so
+    style.configure("TButton", relief="raised")  # otherwise it has no border
     style.configure("Tiny.TButton", padding=(px(6), px(1)))
     style.map("TButton", background=[("pressed", TRACK), ("active", "#f5f7f9")], foreground=[("disabled", FAINT)])
     for name, color, active in (("Go", GREEN, "#116632"), ("Stop", RED, "#a51818"), ("Accent", ACCENT, "#1d4ed8")):
@@ -137,7 +137,7 @@ def _style(root: tk.Tk, theme: Theme) -> None:
             darkcolor=[("disabled", "#e6e9ed")],
         )
     style.configure("Accent.TButton", font=theme.body, padding=(px(10), px(4)))  # a button may turn into it
-    # A row of these is one switch: the chosen one stands out.
+    # A row of these is one switch, and the chosen one is highlighted.
     style.configure("Segment.Toolbutton", background=CARD, foreground=MUTED, padding=(px(10), px(5)), **flat, **edge)
     style.map(
         "Segment.Toolbutton",
@@ -185,7 +185,7 @@ def _style(root: tk.Tk, theme: Theme) -> None:
         )
         style.map(f"{way}.TScrollbar", background=[("disabled", BACKGROUND), ("active", MUTED)],
                   lightcolor=[("disabled", BACKGROUND)], darkcolor=[("disabled", BACKGROUND)])  # fmt: skip
-        # Only the thumb: arrows are from another age.
+        # Only the thumb, no arrows.
         sticky = "ns" if way == "Vertical" else "ew"
         thumb = (f"{way}.Scrollbar.thumb", {"expand": "1", "sticky": "nswe"})
         trough = (f"{way}.Scrollbar.trough", {"sticky": sticky, "children": [thumb]})
@@ -195,7 +195,7 @@ def _style(root: tk.Tk, theme: Theme) -> None:
 
 
 def fitting(text: str, font: tk_font.Font, room: float) -> str:
-    """As much of a text as there is room for, in pixels."""
+    """Return as much of a text as fits into a width, in pixels."""
     if font.measure(text) <= room:
         return text
     while text and font.measure(f"{text}…") > room:
@@ -204,6 +204,6 @@ def fitting(text: str, font: tk_font.Font, room: float) -> str:
 
 
 def card(parent: tk.Misc, theme: Theme) -> tk.Frame:
-    """A white field with a thin border, to put things in."""
+    """Return a white frame with a thin border, for other widgets."""
     thin = theme.px(1)
     return tk.Frame(parent, background=CARD, highlightbackground=BORDER, highlightcolor=BORDER, highlightthickness=thin)

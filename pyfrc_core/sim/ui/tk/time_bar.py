@@ -1,4 +1,4 @@
-"""Robot time, along the bottom: let it go on, stop it, step it, change its speed, go back in it."""
+"""Robot time, along the bottom: run, pause, step, speed, and the timeline to go back."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ if TYPE_CHECKING:
 
 
 class TimeBar:
-    """The controls of time, and the line of all that was recorded."""
+    """The controls of time, and the timeline of the recording."""
 
     def __init__(self, parent: tk.Misc, theme: Theme, tooltip: Tooltip, simulation: Simulation) -> None:
         px = theme.px
         self._simulation = simulation
-        #: What came of saving, for the user.
+        #: The result of saving, for the user.
         self.note = ""
         self._shown: object = None
         self._end = 0.0
         self.frame = frame = ttk.Frame(parent)
         self.run = ttk.Button(frame, text="Pause", width=7, command=lambda: toggle(simulation), takefocus=False)
         self.run.pack(side="left")
-        tooltip.attach(self.run, "Let robot time stand still, or go on: F5")
+        tooltip.attach(self.run, "Pause robot time, or go on: F5")
         self.step = ttk.Button(frame, text="Step", width=5, command=simulation.step, takefocus=False)
         self.step.pack(side="left", padx=(px(4), px(14)))
-        tooltip.attach(self.step, "Let one packet's time pass, 0.02 s, and pause: F6")
+        tooltip.attach(self.step, "Let one packet pass, 0.02 s, and pause: F6")
         ttk.Label(frame, text="Speed", style="Muted.TLabel").pack(side="left")
         self.speed = Slider(frame, theme, px(130), self._speed_moved)
         self.speed.pack(side="left", padx=(px(6), px(4)))
-        tooltip.attach(self.speed, "Robot seconds a second, from 0.1 to 8; at the right end: as fast as it goes")
+        tooltip.attach(self.speed, "Robot seconds per second, from 0.1 to 8; at the right end: as fast as possible")
         self._speed_text = ttk.Label(frame, width=5)
         self._speed_text.pack(side="left", padx=(0, px(14)))
         self._time = ttk.Label(frame, font=theme.bold, width=8, anchor="e")
@@ -51,13 +51,13 @@ class TimeBar:
         self._length.pack(side="left")
         self.restart = ttk.Button(frame, text="Restart", command=simulation.restart, takefocus=False)
         self.restart.pack(side="left", padx=(px(8), px(4)))
-        tooltip.attach(self.restart, "Start the robot program anew, at time 0: F9")
+        tooltip.attach(self.restart, "Start the robot program again, at time 0: F9")
         self.save = ttk.Button(frame, text="Save…", command=self._save, takefocus=False)
         self.save.pack(side="left")
         tooltip.attach(self.save, "Save the recording, for pyfrc replay and for tests")
 
     def show(self, snapshot: Snapshot | None, status: Status) -> None:
-        """Show which moment it is, and how fast time goes."""
+        """Show the moment, and the speed of time."""
         time = 0.0 if snapshot is None else snapshot.time
         self._end = max(status.length, time)
         if not self.timeline.held:
@@ -87,8 +87,8 @@ class TimeBar:
             label.configure(text=text)
 
     def give_up_saving(self) -> None:
-        """Close the window that asks for a file's name, where Tk draws it itself: the others are the system's."""
-        # What Tk waits for: the same as "Cancel".
+        """Close the file dialog where Tk draws it itself; other systems have their own."""
+        # Tk waits for this variable; an empty name means "Cancel".
         self.frame.tk.call("set", "::tk::Priv(selectFilePath)", "")
 
     def _speed_moved(self, place: float, let_go: bool) -> None:

@@ -1,4 +1,4 @@
-"""A word of help beside the mouse, when it rests on something."""
+"""Help beside the mouse pointer, when it rests on something."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Tooltip:
         widget.bind("<Button>", lambda event: self.hide(), add="+")
 
     def expect(self, text: str, x: int, y: int) -> None:
-        """The mouse has come to rest on something."""
+        """Show a text at this place soon, unless the mouse moves on."""
         if text == self.text:
             return
         self.hide()

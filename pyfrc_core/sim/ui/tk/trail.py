@@ -1,6 +1,6 @@
 """A line that grows at its end, such as the robot's trail.
 
-Cut into pieces, lest each new point costs a redrawing of the whole line.
+It is cut into pieces, so that a new point does not redraw the whole line.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Trail:
         self._pieces: list[int] = []
 
     def show(self, points: tuple[Point, ...], view: Viewport) -> None:
-        """Go through these points."""
+        """Draw a line through these points."""
         if points is self._points:
             return
         before, self._points = self._points, points
@@ -36,7 +36,7 @@ class Trail:
         self._draw((len(before) - 1) // _PIECE if goes_on else 0, view)
 
     def move(self, view: Viewport) -> None:
-        """Another part of the field is to be seen."""
+        """Place the line for another part of the field."""
         self._draw(0, view)
 
     def _draw(self, first: int, view: Viewport) -> None:

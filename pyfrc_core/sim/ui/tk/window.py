@@ -1,4 +1,4 @@
-"""The window: where everything is, and the loop that draws it."""
+"""The window: its layout, and the loop that draws it."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ from .tooltip import Tooltip
 if TYPE_CHECKING:
     from ...engine.simulation import Simulation
 
-#: How often the window is drawn, in seconds.
+#: The interval of drawing, in seconds.
 _FRAME = 1 / 40
-#: The status line changes at every so many frames: faster, nobody can read it.
+#: The status line changes at this interval, in frames, so that it can be read.
 _STATUS_FRAMES = 6
 
-#: So much of a note is shown; the tooltip has the rest.
+#: The longest note that is shown, in characters; the tooltip shows all of it.
 _MOST_NOTE = 90
-#: In the design's pixels.
+#: In pixels of the design.
 _WIDTH, _HEIGHT, _LEAST_WIDTH, _LEAST_HEIGHT = 1290, 696, 1000, 660
 
 
 class Window:
-    """One simulation's window. Shows snapshots, and passes on what its user does.
+    """Shows one simulation's snapshots, and passes on what the user does.
 
-    :param screen: the X display, where it is not the one of the environment
+    :param screen: the X display, if not the one of the environment
     :raises UsageError: when there is no display
     :raises SettingsError: when the field's picture cannot be shown
     """
@@ -56,18 +56,18 @@ class Window:
     def __init__(self, simulation: Simulation, screen: str | None = None) -> None:
         self._simulation = simulation
         self._project = simulation.project
-        #: How often the window has been drawn.
+        #: The number of frames that were drawn.
         self.frames = 0
         self._snapshot: Snapshot | None = None
         self._status: Status | None = None
         self._due, self._alarm = 0.0, ""
         #: The robot process that the gamepads' states were sent to.
         self._starts = 0
-        #: What other threads have told the user, and is not shown yet.
-        self._told: deque[str] = deque()
-        #: What the field, the time bar and the simulation have to say; and what is shown of it.
+        #: Messages of other threads that are not shown yet.
+        self._announced: deque[str] = deque()
+        #: The notes of the field, the time bar and the simulation; and the one that is shown.
         self._notes, self._noted = ("", "", ""), ""
-        #: What has gone wrong in the window itself, or Ctrl+C.
+        #: An error in the window itself, or Ctrl+C.
         self.failure: BaseException | None = None
         self.root = root = _open(screen)
         root.report_callback_exception = self._on_exception
@@ -146,13 +146,13 @@ class Window:
             return False
 
     def begin(self) -> None:
-        """Begin to draw, as events are handled."""
+        """Begin to draw, between other events."""
         self._stop_drawing()
         self._due = time.monotonic()
         self._frame()
 
     def close(self) -> None:
-        """Take the window away."""
+        """Destroy the window."""
         with contextlib.suppress(tk.TclError):  # the display has gone
             self._stop_drawing()
             self._tooltip.hide()
@@ -164,12 +164,12 @@ class Window:
             self.root.after_cancel(self._alarm)
             self._alarm = ""
 
-    def tell(self, what: str) -> None:
-        """Tell the user what has happened, among the robot's output. From any thread."""
-        self._told.append(what)
+    def announce(self, what: str) -> None:
+        """Show an event among the robot's output. May be called from any thread."""
+        self._announced.append(what)
 
     def focus_field(self) -> None:
-        """Let the keys drive."""
+        """Give the field the keyboard focus, so that keys drive."""
         self.field.canvas.focus_set()
 
     def _frame(self) -> None:
@@ -187,8 +187,8 @@ class Window:
                 self._starts = status.starts
                 self.gamepads.forget()
             self.gamepads.poll()
-        while self._told:
-            self.console.mark(self._told.popleft())
+        while self._announced:
+            self.console.mark(self._announced.popleft())
         self.console.show(status.failure)
         if snapshot is not self._snapshot or status is not self._status:
             self._show(snapshot, status)
@@ -214,7 +214,7 @@ class Window:
         self.time.show(snapshot, status)
         changed = self._status is None or self._status.state != status.state
         if changed:
-            self.center.make_room_for_a_traceback(status.state == "failed")
+            self.center.make_space_for_traceback(status.state == "failed")
             if status.state == "starting":
                 self.console.mark("the robot program starts again")
         self._snapshot, self._status = snapshot, status
@@ -233,7 +233,7 @@ class Window:
         self.center.show_pose(None if snapshot is None else snapshot.scene.robot)
 
     def _on_exception(self, kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
-        # It is raised where the window was opened.
+        # `loop` raises it.
         self.failure = error.with_traceback(traceback)
         self._quit()
 
@@ -250,7 +250,7 @@ def _open(screen: str | None) -> tk.Tk:
     if sys.platform == "win32":
         import ctypes
 
-        ctypes.windll.shcore.SetProcessDpiAwareness(1)  # sharp letters on high-density screens
+        ctypes.windll.shcore.SetProcessDpiAwareness(1)  # sharp text on high-density screens
     try:
         return tk.Tk(screenName=screen, className="pyfrc")
     except tk.TclError as wrong:
