@@ -25,27 +25,27 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 @click.option(
     "--mode",
     type=click.Choice(["practice", "auto", "teleop", "test", "disabled"]),
-    help="With --ui none: what to put the robot through.",
+    help="With --ui none: the mode that the robot is put through.",
 )
 @click.option("--seconds", type=click.FloatRange(min=0.02), metavar="S", help="End, or pause, at this robot time.")
-@click.option("--script", type=_FILE, metavar="FILE", help="Tell the robot what this input script says.")
+@click.option("--script", type=_FILE, metavar="FILE", help="Replay the inputs of this script.")
 @click.option(
     "--from",
     "start_at",
     type=click.FloatRange(min=0),
     default=0.0,
     metavar="T",
-    help="Go to this robot time at once, then on from there.",
+    help="Replay to this robot time at once, and go on from there.",
 )
 @click.option(
     "--speed",
     type=float,
     metavar="X",
-    help="Robot seconds a second; 0: as fast as it goes. Default: 1, or 0 where nobody watches.",
+    help="Robot seconds per second; 0: as fast as possible. Default: 1, or 0 when unattended.",
 )
-@click.option("--paused", is_flag=True, help="Begin with time standing still.")
+@click.option("--paused", is_flag=True, help="Begin paused.")
 @click.option("--start", "start_position", metavar="NAME", help="Start at one of start_positions in sim/config.json.")
-@click.option("--watch", is_flag=True, help="When a file is saved, go on with the new code.")
+@click.option("--watch", is_flag=True, help="When a file is saved, continue with the new code.")
 @click.option("--record", type=_FILE, metavar="FILE", help="Write an input script, for pyfrc replay and tests.")
 @click.option("--wpilog", type=_FILE, metavar="FILE", help="Write a WPILib data log, for AdvantageScope.")
 @click.option("--picture", type=_FILE, metavar="FILE", help="Draw the driven path on the field, such as path.png.")
@@ -53,7 +53,7 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
     "--nt-port",
     type=click.IntRange(0, 65535),
     metavar="PORT",
-    help="Serve NetworkTables to dashboards here; 0: nowhere. Default: 5810, or 0 where nobody watches.",
+    help="Serve NetworkTables to dashboards here; 0: nowhere. Default: 5810, or 0 when unattended.",
 )
 @click.option(
     "--ext",

@@ -87,7 +87,7 @@ class ChangeCursor:
     """One reader's place among the changes. Use it from one thread at a time.
 
     :param run: the run to begin with, from the start of its lines
-    :param lock: held by whoever adds lines or runs
+    :param lock: held while lines or runs are added
     """
 
     def __init__(self, run: RunChanges, lock: threading.Condition) -> None:
