@@ -13,6 +13,8 @@ import wpilib
 import wpilib.drive
 import wpilib.interfaces
 
+from ..runtime.patch_table import Patch, PatchTable
+
 #: Called with the function's name, its numeric arguments, and whether they are powers from -1 to 1.
 OnMotorCall = Callable[[str, tuple[float, ...], bool], None]
 
@@ -25,25 +27,23 @@ _DRIVES = (
 @contextmanager
 def intercept_motor_calls(on_motor_call: OnMotorCall) -> Iterator[None]:
     """Report every call to `on_motor_call` until the context ends; the robot's modules must be imported."""
-    before = []
-    for owner, name, wrapped in list(_wrapped(on_motor_call)):
-        before.append((owner, name, vars(owner)[name]))
-        setattr(owner, name, wrapped)
+    table = PatchTable()
+    for patch in list(_patches(on_motor_call)):
+        table.patch(*patch)
     try:
         yield
     finally:
-        for owner, name, original in before:
-            setattr(owner, name, original)
+        table.undo()
 
 
-def _wrapped(on_motor_call: OnMotorCall) -> Iterator[tuple[type, str, Callable[..., Any]]]:
+def _patches(on_motor_call: OnMotorCall) -> Iterator[Patch]:
     for owner in _with_derived(wpilib.interfaces.MotorController):
         for name, wrap in (("set", _set), ("setVoltage", _set_voltage)):
             if name in vars(owner):
-                yield owner, name, wrap(vars(owner)[name], on_motor_call)
+                yield Patch(owner, name, wrap(vars(owner)[name], on_motor_call))
     for drive, names in _DRIVES:
         for name in names:
-            yield drive, name, _drive(vars(drive)[name], name, on_motor_call)
+            yield Patch(drive, name, _drive(vars(drive)[name], name, on_motor_call))
 
 
 def _with_derived(base: type[Any]) -> Iterator[type[Any]]:

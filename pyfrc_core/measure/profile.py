@@ -18,12 +18,12 @@ from typing import Any
 from ..errors import UsageError
 from ..project import Project
 from ..project.robot_files import RobotFiles
+from ..runtime.patch_table import PatchTable
 from ..text_files import write_whole
 from .figures import Figures, added_up
 from .flame import require_pyinstrument, write_flame
 from .processes import announced, is_announced
 from .profile_report import as_json, as_text
-from .replacements import Replacements
 from .stopwatch_cost import measured_cost
 
 
@@ -94,11 +94,9 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
     stopwatch = Stopwatch(figures, files)
     sampler = Sampler(figures, files, settings["stacks"])
     calls = _CallProfile() if settings["calls"] else None
-    replacements, numbers = Replacements(), count()
-    UserFunctions(stopwatch, files, calls.wrap if calls is not None else lambda function: function).install(
-        replacements
-    )
-    sampler.sample_runs(replacements)
+    table, numbers = PatchTable(), count()
+    UserFunctions(stopwatch, files, calls.wrap if calls is not None else lambda function: function).install(table)
+    sampler.sample_runs(table)
 
     def in_fork() -> None:
         figures.clear()
@@ -118,7 +116,7 @@ def begin(settings: dict[str, Any]) -> Callable[[], None]:
         if calls is not None:
             calls.save(Path(settings["directory"], f"{name}.pstats"))
             calls.clear()
-        replacements.undo()
+        table.undo()
 
     return save
 

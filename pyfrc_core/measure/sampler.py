@@ -14,11 +14,11 @@ from types import FrameType
 
 from ..project.robot_files import RobotFiles, is_pyfrc
 from ..runtime.cooperative import real_thread_start
+from ..runtime.patch_table import PatchTable
 from ..runtime.patches import patches
 from ..runtime.robot import RobotRun
 from ..runtime.threads import real_allocate_lock, real_thread_join
 from .figures import Figures
-from .replacements import Replacements
 from .stopwatch import innermost_line, is_waiting
 
 _SECONDS = 0.0025
@@ -52,8 +52,8 @@ class Sampler:
             self._over.release()
             real_thread_join(thread)
 
-    def sample_runs(self, replacements: Replacements) -> None:
-        """Sample each robot's run, until the replacements are undone."""
+    def sample_runs(self, table: PatchTable) -> None:
+        """Sample each robot's run, until the table is undone."""
         real_open, real_close = RobotRun.open, RobotRun.close
 
         def open_run(run: RobotRun) -> None:
@@ -64,8 +64,8 @@ class Sampler:
             self.stop()
             real_close(run)
 
-        replacements.replace(RobotRun, "open", open_run)
-        replacements.replace(RobotRun, "close", close_run)
+        table.patch(RobotRun, "open", open_run)
+        table.patch(RobotRun, "close", close_run)
 
     def clear(self) -> None:
         """Forget the thread, which does not exist in a fork."""

@@ -20,11 +20,11 @@ import wpiutil
 from ..project.robot_files import RobotFiles
 from ..runtime.clock import to_us
 from ..runtime.notifier import Notifier
+from ..runtime.patch_table import PatchTable
 from ..runtime.robot import RobotRun
 from ..runtime.threads import RobotThreads
 from ..runtime.timed_loop import TimedLoop
 from .figures import Measurand
-from .replacements import Replacements
 from .stopwatch import WHOLE_LOOP, Stopwatch
 
 _MODES = ("robot", "disabled", "autonomous", "teleop", "test", "simulation", "_simulation")
@@ -57,23 +57,23 @@ class UserFunctions:
         self._wrap = wrap
         self._done: set[type] = set()
 
-    def install(self, replacements: Replacements) -> None:
-        """Time the functions that are created from now on, until the replacements are undone."""
+    def install(self, table: PatchTable) -> None:
+        """Time the functions that are created from now on, until the table is undone."""
         for base in (wpilib.RobotBase, wpiutil.Sendable):
-            replacements.replace(base, "__init_subclass__", classmethod(self._when_derived_from(base)))
-        replacements.replace(TimedLoop, "add", self._adding(TimedLoop.add))
-        self._time_arguments(replacements, wpilib.event.EventLoop, "bind", (1,), ("action",))
+            table.patch(base, "__init_subclass__", classmethod(self._when_derived_from(base)))
+        table.patch(TimedLoop, "add", self._adding(TimedLoop.add))
+        self._time_arguments(table, wpilib.event.EventLoop, "bind", (1,), ("action",))
         for name in ("__init__", "setCallback"):
-            self._time_arguments(replacements, Notifier, name, (1,), ("handler",))
+            self._time_arguments(table, Notifier, name, (1,), ("handler",))
         for name in ("sleep_until", "wait"):
-            replacements.replace(RobotThreads, name, self._stopwatch.waiting(getattr(RobotThreads, name)))
+            table.patch(RobotThreads, name, self._stopwatch.waiting(getattr(RobotThreads, name)))
         real_open = RobotRun.open
 
         def open_run(run: RobotRun) -> None:
-            self._time_callbacks_of_commands(replacements)
+            self._time_callbacks_of_commands(table)
             real_open(run)
 
-        replacements.replace(RobotRun, "open", open_run)
+        table.patch(RobotRun, "open", open_run)
 
     def timed(self, function: Callable[..., Any], kind: str, name: str = "", period_ns: int | None = None) -> Any:
         """Return the function with timing."""
@@ -142,7 +142,7 @@ class UserFunctions:
 
         return add
 
-    def _time_callbacks_of_commands(self, replacements: Replacements) -> None:
+    def _time_callbacks_of_commands(self, table: PatchTable) -> None:
         """Time the functions that commands and triggers take; if the robot uses commands2, it is imported by now."""
         if "commands2" not in sys.modules:
             return
@@ -150,13 +150,13 @@ class UserFunctions:
 
         for where, method, positions, names in _GIVEN_TO_COMMANDS:
             owner = getattr(commands2, where, None) or getattr(commands2.button, where)
-            self._time_arguments(replacements, owner, method, positions, names)
+            self._time_arguments(table, owner, method, positions, names)
 
     def _time_arguments(
-        self, replacements: Replacements, owner: type, name: str, positions: Iterable[int], names: Iterable[str]
+        self, table: PatchTable, owner: type, name: str, positions: Iterable[int], names: Iterable[str]
     ) -> None:
         """Time the callbacks that a method takes, if they are the robot's own functions."""
-        if (owner, name) in replacements:
+        if (owner, name) in table:
             return
         real = getattr(owner, name)
 
@@ -171,7 +171,7 @@ class UserFunctions:
                     by_name[each] = self._callback(by_name[each])
             return real(*given, **by_name)
 
-        replacements.replace(owner, name, call)
+        table.patch(owner, name, call)
 
     def _callback(self, function: Any) -> Any:
         code = _code_of(function)

@@ -10,6 +10,7 @@ from typing import Any
 import wpilib
 
 from ..errors import RobotCodeError
+from .patch_table import PatchTable
 
 
 @contextmanager
@@ -20,17 +21,18 @@ def without_first_alarm() -> Iterator[None]:
     waits after ``super().__init__()`` would hang.
     """
     original = wpilib.TimedRobot.__init__
+    table = PatchTable()
 
     def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
         __tracebackhide__ = True
         original(self, *args, **kwargs)
         endCompetition(self)
 
-    wpilib.TimedRobot.__init__ = __init__  # type: ignore[method-assign]
+    table.patch(wpilib.TimedRobot, "__init__", __init__)
     try:
         yield
     finally:
-        wpilib.TimedRobot.__init__ = original  # type: ignore[method-assign]
+        table.undo()
 
 
 def missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:

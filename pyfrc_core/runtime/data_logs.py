@@ -27,6 +27,7 @@ from wpiutil.log import DataLog, IntegerLogEntry, StringLogEntry
 from ..disk_space import check_disk_space
 from ..processes.exit import before_sudden_exit
 from .clock import KICKOFF, OBSERVE, PACKET_US, Clock, to_us
+from .patch_table import Patch
 
 #: Where logs are kept, in the robot project; those of tests are in its subdirectory.
 LOGS = Path(".pyfrc", "logs")
@@ -299,13 +300,13 @@ class DataLogs:
 # -- in place of WPILib's names --------------------------------------------------------------------------------------
 
 
-def replacements(current: Callable[[], DataLogs | None]) -> list[tuple[Any, str, Any]]:
-    """Return what to set on WPILib's classes and modules: owner, name, value.
+def patches(current: Callable[[], DataLogs | None]) -> list[Patch]:
+    """Return the names of WPILib's to replace.
 
     :param current: returns the logs of the run that goes on, if one does
     """
 
-    def manager_call(name: str) -> tuple[Any, str, Any]:
+    def manager_call(name: str) -> Patch:
         real = getattr(wpilib.DataLogManager, name)
 
         def call(*args: Any, **kwargs: Any) -> Any:
@@ -315,7 +316,7 @@ def replacements(current: Callable[[], DataLogs | None]) -> list[tuple[Any, str,
                 return None
             return (real if logs is None else getattr(logs, name))(*args, **kwargs)
 
-        return wpilib.DataLogManager, name, staticmethod(call)
+        return Patch(wpilib.DataLogManager, name, staticmethod(call))
 
     def writer(filename: str, extraHeader: str = "") -> DataLog:
         logs = current()
@@ -337,13 +338,13 @@ def replacements(current: Callable[[], DataLogs | None]) -> list[tuple[Any, str,
             manager_call(name)
             for name in ("start", "stop", "log", "getLog", "getLogDir", "logNetworkTables", "logConsoleOutput")
         ),
-        (wpiutil, "DataLogWriter", _StandsFor("DataLogWriter", (_RealWriter,), writer)),
-        (
+        Patch(wpiutil, "DataLogWriter", _StandsFor("DataLogWriter", (_RealWriter,), writer)),
+        Patch(
             wpiutil,
             "DataLogBackgroundWriter",
             _StandsFor("DataLogBackgroundWriter", (_RealBackgroundWriter, _RealWriter), background_writer),
         ),
-        (_RealWriter, "setFilename", set_filename),
+        Patch(_RealWriter, "setFilename", set_filename),
     ]
 
 

@@ -1,7 +1,7 @@
-"""WPILib's functions for driver-station data, replaced where its simulation differs from a robot.
+"""Replace WPILib's functions for driver-station data where its simulation differs from a robot.
 
-In the simulation, match information is read directly from what the driver station sends, without a packet; a packet
-that a test delivers attaches a driver station that was lost; and waiting for a connection waits in wall time.
+In the simulation, match information is available before the first packet; a packet that a test delivers attaches a
+driver station that was lost; and waiting for a connection waits in wall time.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ import wpilib.simulation
 
 from . import cooperative
 from .clock import to_us
+from .patch_table import Patch
 
 if TYPE_CHECKING:
     from .robot import RobotRun
     from .threads import RobotThread
 
 _CurrentRun = Callable[[], "RobotRun | None"]
-_Replacement = tuple[Any, str, Any]
 
 
-def replacements(current_run: _CurrentRun) -> list[_Replacement]:
-    """What to set where: (module or class, name, value).
+def patches(current_run: _CurrentRun) -> list[Patch]:
+    """Return the names of WPILib's to replace.
 
     :param current_run: returns the run that is active in this process
     """
@@ -37,8 +37,8 @@ def _text(characters: memoryview) -> str:
     return characters.tobytes().partition(b"\0")[0].decode(errors="replace")
 
 
-def _match_information(current_run: _CurrentRun) -> list[_Replacement]:
-    def held_back(name: str, read: Callable[[hal.MatchInfo], Any]) -> _Replacement:
+def _match_information(current_run: _CurrentRun) -> list[Patch]:
+    def held_back(name: str, read: Callable[[hal.MatchInfo], Any]) -> Patch:
         real = getattr(wpilib.DriverStation, name)
 
         def get() -> Any:
@@ -46,7 +46,7 @@ def _match_information(current_run: _CurrentRun) -> list[_Replacement]:
             held = None if run is None else run.connection.held
             return real() if held is None else read(held)
 
-        return wpilib.DriverStation, name, get
+        return Patch(wpilib.DriverStation, name, get)
 
     return [
         held_back("getEventName", lambda info: _text(info.eventName)),
@@ -60,7 +60,7 @@ def _match_information(current_run: _CurrentRun) -> list[_Replacement]:
     ]
 
 
-def _waiting(current_run: _CurrentRun) -> _Replacement:
+def _waiting(current_run: _CurrentRun) -> Patch:
     real = wpilib.DriverStation.waitForDsConnection
 
     def wait_for_connection(timeout: float) -> bool:
@@ -80,13 +80,13 @@ def _waiting(current_run: _CurrentRun) -> _Replacement:
         finally:
             run.connection.when_connected.remove(wake)
 
-    return wpilib.DriverStation, "waitForDsConnection", wait_for_connection
+    return Patch(wpilib.DriverStation, "waitForDsConnection", wait_for_connection)
 
 
-def _packets(current_run: _CurrentRun) -> list[_Replacement]:
-    """Packets that a test delivers out of turn; a recorder has to know of them."""
+def _packets(current_run: _CurrentRun) -> list[Patch]:
+    """Return the functions by which a test delivers packets out of turn: a recorder must record them."""
 
-    def delivering(owner: Any, name: str, refreshes: bool) -> _Replacement:
+    def delivering(owner: Any, name: str, refreshes: bool) -> Patch:
         real = getattr(owner, name)
 
         def notify() -> None:
@@ -100,7 +100,7 @@ def _packets(current_run: _CurrentRun) -> list[_Replacement]:
             if refreshes:
                 wpilib.DriverStation.refreshData()
 
-        return owner, name, notify
+        return Patch(owner, name, notify)
 
     return [
         delivering(wpilib.simulation.DriverStationSim, "notifyNewData", refreshes=True),
@@ -108,10 +108,10 @@ def _packets(current_run: _CurrentRun) -> list[_Replacement]:
     ]
 
 
-def _resets(current_run: _CurrentRun) -> list[_Replacement]:
-    """A test that resets the driver station's data does not mean to lose the connection."""
+def _resets(current_run: _CurrentRun) -> list[Patch]:
+    """Return the functions by which a test resets the driver station's data: that must not end the connection."""
 
-    def resetting(owner: Any, name: str) -> _Replacement:
+    def resetting(owner: Any, name: str) -> Patch:
         real = getattr(owner, name)
 
         def reset() -> None:
@@ -119,7 +119,7 @@ def _resets(current_run: _CurrentRun) -> list[_Replacement]:
             if current_run() is not None:
                 hal.simulation.setDriverStationDsAttached(True)
 
-        return owner, name, reset
+        return Patch(owner, name, reset)
 
     return [
         resetting(wpilib.simulation.DriverStationSim, "resetData"),

@@ -16,12 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 from .clock import to_us
 from .cooperative import join_thread, on_behalf_of_robot_code, scope, start_thread
+from .patch_table import Patch
 from .replacements import BuiltinClassReplacement, replaces
 from .threads import real_allocate_lock
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from .threads import RobotThread
 
 _real_rlock = threading.RLock
@@ -133,16 +132,13 @@ class CooperativeSimpleQueue(BuiltinClassReplacement, _PythonSimpleQueue):  # ty
     def __init__(self) -> None: ...
 
 
-def replaced_names() -> list[tuple[Any, str, Any]]:
-    """What to set where: (module or class, name, value)."""
-    functions: list[tuple[Any, str, Callable[..., Any]]] = [
-        (threading, "_allocate_lock", allocate_lock),
-        (threading, "RLock", new_rlock),
-        (threading.Thread, "start", start_thread),
-        (threading.Thread, "join", join_thread),
-    ]
+def patches() -> list[Patch]:
+    """Return the names of `threading` and `queue` to replace."""
     return [
-        *functions,
-        (threading, "Lock", CooperativeLock if isinstance(threading.Lock, type) else allocate_lock),
-        (queue, "SimpleQueue", CooperativeSimpleQueue),
+        Patch(threading, "_allocate_lock", allocate_lock),
+        Patch(threading, "RLock", new_rlock),
+        Patch(threading.Thread, "start", start_thread),
+        Patch(threading.Thread, "join", join_thread),
+        Patch(threading, "Lock", CooperativeLock if isinstance(threading.Lock, type) else allocate_lock),
+        Patch(queue, "SimpleQueue", CooperativeSimpleQueue),
     ]

@@ -1,9 +1,9 @@
-"""Robot code's ways to wait and to ask the time, led to the clock of the run.
+"""Replace the functions by which robot code waits and reads the time, so that they follow the clock of the run.
 
-One table says what is replaced where. It is set once, before the robot's modules are imported (they bind names when
-they are); while no robot runs, and for callers that take no part in the run, each replacement does what the
-original did. `time`'s functions are robot time only when the robot project's own files call them: pytest and
-other libraries keep the real ones.
+All replaced names are in one table. They are replaced once, before the robot's modules are imported, since modules bind
+names when they are imported. While no robot runs, and for callers outside the run, each replacement does what the
+original does. `time`'s functions return robot time only when the robot project's own files call them: pytest and other
+libraries get real time.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from .clock import to_us
 from .exceptions import TestEnded
 from .loop_watchdog import Watchdog
 from .notifier import Notifier
+from .patch_table import Patch, PatchTable
 from .replacements import as_original
 from .robot import RobotRun, active_run
 
@@ -39,11 +40,11 @@ _real_sleep = time.sleep
 
 
 class Patches:
-    """The replaced names of this process. There is one, since what it replaces is the process's own."""
+    """The names that are replaced in this process. There is one instance, `patches`, as there is one of each module."""
 
     def __init__(self) -> None:
-        self._files: RobotFiles  # of the project that it was installed for
-        self._originals: list[tuple[Any, str, Any]] = []
+        self._files: RobotFiles  # of the project that they were installed for
+        self._table = PatchTable()
 
     @property
     def run(self) -> RobotRun | None:
@@ -52,10 +53,10 @@ class Patches:
 
     @property
     def installed(self) -> bool:
-        return bool(self._originals)
+        return bool(self._table)
 
     def install(self, files: RobotFiles) -> None:
-        """Replace the names, for the robot project with these files. Doing it again only changes the project."""
+        """Replace the names, for the robot project with these files. Calling it again only changes the project."""
         self._files = files
         cooperative.scope.is_robot_code = files.is_robot_code
         cooperative.scope.line_of = files.line_of_frame
@@ -64,51 +65,46 @@ class Patches:
         if hasattr(os, "register_at_fork"):
             # A process that robot code has forked lives in real time: it has neither the clock nor the HAL's threads.
             os.register_at_fork(after_in_child=active_run.forget)
-        for owner, name, replacement in self._replacements():
+        for owner, name, replacement in self._patches():
             original = vars(owner).get(name, getattr(owner, name, None))
-            self._originals.append((owner, name, original))
-            setattr(owner, name, as_original(owner, name, original, replacement))
+            self._table.patch(owner, name, as_original(owner, name, original, replacement))
         robot_stack.show_robots_lines(lambda: self._files)
 
     def uninstall(self) -> None:
-        while self._originals:
-            owner, name, original = self._originals.pop()
-            if original is None:  # it was not there
-                delattr(owner, name)
-            else:
-                setattr(owner, name, original)
+        """Restore the original names."""
+        self._table.undo()
         cooperative.scope.is_robot_code = lambda filename: False
         cooperative.scope.line_of = lambda frame: None
         robot_stack.show_all_lines()
 
     # -- the table --------------------------------------------------------------------------------------------
 
-    def _replacements(self) -> list[tuple[Any, str, Any]]:
+    def _patches(self) -> list[Patch]:
         return [
             *self._time_functions(),
-            *locks.replaced_names(),
+            *locks.patches(),
             *self._waiting_in_wpilib(),
             *self._stepping_in_tests(),
-            *driver_station.replacements(lambda: self.run),
+            *driver_station.patches(lambda: active_run.run),
             *self._timed_robot(),
             *self._directories(),
-            *robot_stack.reports(lambda: self._files),
-            *data_logs.replacements(lambda: None if self.run is None else self.run.data_logs),
+            *robot_stack.patches(lambda: self._files),
+            *data_logs.patches(lambda: None if active_run.run is None else active_run.run.data_logs),
         ]
 
-    def _time_functions(self) -> list[tuple[Any, str, Any]]:
+    def _time_functions(self) -> list[Patch]:
         def asked_by_robot_code() -> bool:
             return cooperative.on_behalf_of_robot_code(sys._getframe(2))
 
-        def reading(name: str, from_us: Callable[[int], float]) -> tuple[Any, str, Any]:
+        def reading(name: str, from_us: Callable[[int], float]) -> Patch:
             real = getattr(time, name)
 
             def read() -> Any:
                 if not asked_by_robot_code():
                     return real()
-                return from_us(self.run.clock.now_us if self.run is not None else 0)
+                return from_us(active_run.run.clock.now_us if active_run.run is not None else 0)
 
-            return time, name, read
+            return Patch(time, name, read)
 
         def sleep(seconds: float, /) -> None:
             __tracebackhide__ = True
@@ -129,18 +125,18 @@ class Patches:
 
         real_monotonic = time.monotonic
         return [
-            (time, "sleep", sleep),
+            Patch(time, "sleep", sleep),
             reading("time", lambda us: KICKOFF + us / 1_000_000),
             reading("time_ns", lambda us: KICKOFF * 1_000_000_000 + us * 1_000),
             reading("monotonic", lambda us: us / 1_000_000),
             reading("monotonic_ns", lambda us: us * 1_000),
             reading("perf_counter", lambda us: us / 1_000_000),
             reading("perf_counter_ns", lambda us: us * 1_000),
-            (threading, "_time", waits_in_threading),
-            (queue, "time", waits_in_threading),
+            Patch(threading, "_time", waits_in_threading),
+            Patch(queue, "time", waits_in_threading),
         ]
 
-    def _waiting_in_wpilib(self) -> list[tuple[Any, str, Any]]:
+    def _waiting_in_wpilib(self) -> list[Patch]:
         def wait(seconds: float) -> None:
             __tracebackhide__ = True
             threads = cooperative.scope.taking_part()
@@ -148,47 +144,47 @@ class Patches:
                 return _real_sleep(seconds)
             return threads.sleep_until(threads.clock.now_us + max(0, to_us(seconds)))
 
-        def notifier_call(name: str, ours: str) -> tuple[Any, str, Any]:
+        def notifier_call(name: str, ours: str) -> Patch:
             real = getattr(hal, name)
 
             def call(*args: Any, **kwargs: Any) -> Any:
                 __tracebackhide__ = True
-                run = self.run
+                run = active_run.run
                 handle = args[0] if args else kwargs.get("notifierHandle")
                 if run is not None and (handle is None or handle in run.alarms):
                     return getattr(run.alarms, ours)(*args, **kwargs)
                 return real(*args, **kwargs)
 
-            return hal, name, call
+            return Patch(hal, name, call)
 
         real_set_name = hal.setNotifierName
 
         def set_notifier_name(notifierHandle: int, name: str) -> Any:
-            ours = self.run is not None and notifierHandle in self.run.alarms
+            ours = active_run.run is not None and notifierHandle in active_run.run.alarms
             return 0 if ours else real_set_name(notifierHandle, name)
 
         return [
-            (wpilib, "wait", wait),
-            (wpilib, "Notifier", Notifier),
-            (wpilib, "Watchdog", Watchdog),
+            Patch(wpilib, "wait", wait),
+            Patch(wpilib, "Notifier", Notifier),
+            Patch(wpilib, "Watchdog", Watchdog),
             notifier_call("initializeNotifier", "initialize"),
             notifier_call("updateNotifierAlarm", "update"),
             notifier_call("cancelNotifierAlarm", "cancel"),
             notifier_call("waitForNotifierAlarm", "wait"),
             notifier_call("stopNotifier", "stop"),
             notifier_call("cleanNotifier", "clean"),
-            (hal, "setNotifierName", set_notifier_name),
+            Patch(hal, "setNotifierName", set_notifier_name),
         ]
 
-    def _stepping_in_tests(self) -> list[tuple[Any, str, Any]]:
+    def _stepping_in_tests(self) -> list[Patch]:
         """Tests that step WPILib's simulated time themselves move the robot with it."""
 
-        def stepping(owner: Any, name: str, in_us: Callable[[float], int]) -> tuple[Any, str, Any]:
+        def stepping(owner: Any, name: str, in_us: Callable[[float], int]) -> Patch:
             real = getattr(owner, name)
 
             def step(delta: float) -> None:
                 __tracebackhide__ = True
-                run = self.run
+                run = active_run.run
                 if run is None:
                     real(delta)
                     return
@@ -202,16 +198,16 @@ class Patches:
                         raise
                     raise run.threads.failure from None  # to the test, which has called this
 
-            return owner, name, step
+            return Patch(owner, name, step)
 
-        def left_to_the_run(owner: Any, name: str) -> tuple[Any, str, Any]:
+        def left_to_the_run(owner: Any, name: str) -> Patch:
             real = getattr(owner, name)
 
             def call() -> None:
-                if self.run is None:
+                if active_run.run is None:
                     real()
 
-            return owner, name, call
+            return Patch(owner, name, call)
 
         table = []
         for owner, in_us in ((wpilib.simulation, to_us), (hal.simulation, int)):
@@ -221,7 +217,7 @@ class Patches:
             table.append(left_to_the_run(owner, "waitForProgramStart"))
         return table
 
-    def _timed_robot(self) -> list[tuple[Any, str, Any]]:
+    def _timed_robot(self) -> list[Patch]:
         TimedRobot = wpilib.TimedRobot
         real_add, real_start = TimedRobot.addPeriodic, TimedRobot.startCompetition
         real_loop_start = TimedRobot.getLoopStartTime
@@ -230,7 +226,7 @@ class Patches:
         # Of this name, since profiles tell the loop from other callbacks by it.
         def _loopFunc(robot: wpilib.IterativeRobotBase) -> None:
             __tracebackhide__ = True
-            run = self.run
+            run = active_run.run
             if run is None:
                 return real_turn(robot)
             began_us = run.clock.now_us
@@ -242,33 +238,33 @@ class Patches:
         def add_periodic(
             robot: wpilib.TimedRobot, callback: Callable[[], None], period: float, offset: float = 0.0
         ) -> None:
-            if self.run is None:
+            if active_run.run is None:
                 real_add(robot, callback, period, offset)
             else:
-                self.run.timed_loop.add(callback, period, offset)
+                active_run.run.timed_loop.add(callback, period, offset)
 
         def start_competition(robot: wpilib.TimedRobot) -> None:
             __tracebackhide__ = True
-            if self.run is None:
+            if active_run.run is None:
                 return real_start(robot)
-            self.run.timed_loop.begin(robot)
-            return self.run.timed_loop.run_blocking(self.run.threads)
+            active_run.run.timed_loop.begin(robot)
+            return active_run.run.timed_loop.run_blocking(active_run.run.threads)
 
         def loop_start_time(robot: wpilib.TimedRobot) -> Any:
-            return real_loop_start(robot) if self.run is None else self.run.timed_loop.loop_start_us
+            return real_loop_start(robot) if active_run.run is None else active_run.run.timed_loop.loop_start_us
 
         return [
-            (TimedRobot, "addPeriodic", add_periodic),
-            (TimedRobot, "startCompetition", start_competition),
-            (TimedRobot, "getLoopStartTime", loop_start_time),
-            (wpilib.IterativeRobotBase, "_loopFunc", _loopFunc),
+            Patch(TimedRobot, "addPeriodic", add_periodic),
+            Patch(TimedRobot, "startCompetition", start_competition),
+            Patch(TimedRobot, "getLoopStartTime", loop_start_time),
+            Patch(wpilib.IterativeRobotBase, "_loopFunc", _loopFunc),
         ]
 
-    def _directories(self) -> list[tuple[Any, str, Any]]:
+    def _directories(self) -> list[Patch]:
         """WPILib takes the directory of whichever program was started for the robot's."""
         return [
-            (wpilib, "getOperatingDirectory", lambda: str(Path(self._files.root))),
-            (wpilib, "getDeployDirectory", lambda: str(Path(self._files.root, "deploy"))),
+            Patch(wpilib, "getOperatingDirectory", lambda: str(Path(self._files.root))),
+            Patch(wpilib, "getDeployDirectory", lambda: str(Path(self._files.root, "deploy"))),
         ]
 
 

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import wpilib
 import wpiutil._wpiutil
 
+from .patch_table import Patch
+
 if TYPE_CHECKING:
     from ..project.robot_files import RobotFiles
 
@@ -33,10 +35,10 @@ def show_all_lines() -> None:
         _hook_of_wpilib(_stack_trace_hook)
 
 
-def reports(files: Callable[[], RobotFiles]) -> list[tuple[Any, str, Any]]:
-    """`wpilib.reportError` and its kin, which have a stack of their own."""
+def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
+    """Return the replacements of `wpilib.reportError` and `reportWarning`, which print a stack of their own."""
 
-    def reporting(name: str) -> tuple[Any, str, Any]:
+    def reporting(name: str) -> Patch:
         real = getattr(wpilib, name)
 
         def report(error: str, printTrace: bool = False) -> None:
@@ -47,7 +49,7 @@ def reports(files: Callable[[], RobotFiles]) -> list[tuple[Any, str, Any]]:
             real(error, printTrace)
 
         report.__name__ = name
-        return wpilib, name, report
+        return Patch(wpilib, name, report)
 
     return [reporting("reportError"), reporting("reportWarning")]
 
