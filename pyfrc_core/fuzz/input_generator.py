@@ -7,8 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-import wpilib
-
+from ..compat.wpilib_private import simulation_periodic_of
 from ..config.settings import MatchSettings
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.targets import MODE
@@ -157,5 +156,4 @@ class InputGenerator:
 
 def _is_simulated(run: RobotRun) -> bool:
     """Return whether the robot has a simulation, which may drive its sensors."""
-    own = getattr(type(run.robot), "_simulationPeriodic", None)
-    return run.physics is not None or own not in (None, wpilib.IterativeRobotBase._simulationPeriodic)
+    return run.physics is not None or simulation_periodic_of(run.robot) is not None

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from types import FrameType
 
+from ..compat.cpython_private import current_frames, get_frame
 from ..config.settings import FuzzSettings
 from ..hal import modes
 from ..project import Project
@@ -99,7 +99,7 @@ class _Oracle:
         )
 
     def _caller(self) -> tuple[str, str]:
-        return place_of(user_frame(sys._getframe(2), self._files), self._files)
+        return place_of(user_frame(get_frame(2), self._files), self._files)
 
     # -- each packet --------------------------------------------------------------------------------------------
 
@@ -111,7 +111,7 @@ class _Oracle:
 
     def after_packet(self, now: float) -> None:
         """Check the run after a packet; robot code may be in the middle of a longer call."""
-        frame = user_frame(sys._getframe(1), self._files)
+        frame = user_frame(get_frame(1), self._files)
         if frame is not None:
             self._waiting_at = place_of(frame, self._files)
         if self._reports is not None and (report := self._reports.error()) is not None:
@@ -134,7 +134,7 @@ class _Oracle:
 
     def _place_of_own_loop(self) -> tuple[str, str]:
         thread = self._run.own_loop
-        frame = sys._current_frames().get(thread.ident) if thread is not None and thread.ident is not None else None
+        frame = current_frames().get(thread.ident) if thread is not None and thread.ident is not None else None
         return place_of(user_frame(frame, self._files), self._files)
 
     # -- loops --------------------------------------------------------------------------------------------------

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 import hal
 import wpilib
 from wpilib import simulation as sim
 
+from ..compat import wpilib_private
 from .containers import NOT_SET
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind
 from .kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
@@ -30,16 +30,9 @@ def _initialize_relay(relay: sim.RelaySim, value: bool) -> None:
 
 def encoder_channels(index: int) -> dict[str, int | None]:
     """Return the digital channels of an encoder; None where the HAL does not know them."""
-    # WPILib's C interface has them, its Python interface does not. The library is already loaded.
-    try:
-        native = import_module("native.wpihal._init_robotpy_native_wpihal")
-        library = vars(native)["__lib"]
-        a, b = library.HALSIM_GetEncoderDigitalChannelA, library.HALSIM_GetEncoderDigitalChannelB
-    except (ImportError, KeyError, AttributeError):
-        return {"ASource_Channel": None, "BSource_Channel": None}
-    if not sim.EncoderSim.createForIndex(index).getInitialized():
-        return {"ASource_Channel": None, "BSource_Channel": None}
-    return {"ASource_Channel": int(a(index)), "BSource_Channel": int(b(index))}
+    channels = wpilib_private.encoder_channels(index) if sim.EncoderSim.createForIndex(index).getInitialized() else None
+    a, b = channels or (None, None)
+    return {"ASource_Channel": a, "BSource_Channel": b}
 
 
 def led_data(strip: sim.AddressableLEDSim) -> list[list[int]]:

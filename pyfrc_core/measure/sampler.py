@@ -6,12 +6,12 @@ the robot. pyinstrument samples the thread that started it; it only draws the fl
 
 from __future__ import annotations
 
-import sys
 import threading
-from _thread import get_ident
+from threading import get_ident
 from time import perf_counter_ns
 from types import FrameType
 
+from ..compat.cpython_private import current_frames
 from ..project.robot_files import RobotFiles, is_pyfrc
 from ..runtime.cooperative import real_thread_start
 from ..runtime.patch_table import PatchTable
@@ -87,7 +87,7 @@ class Sampler:
             return
         running = run.threads.running
         ident = running.ident if running is not None else run.threads.driver
-        frame = sys._current_frames().get(ident) if ident is not None and ident != get_ident() else None
+        frame = current_frames().get(ident) if ident is not None and ident != get_ident() else None
         line = innermost_line(frame, self._files)
         if line is None or is_waiting(frame, self._files):
             return

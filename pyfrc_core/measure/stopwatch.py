@@ -6,19 +6,19 @@ passes while it waits (`wpilib.wait`, `time.sleep`, a lock). In a test, waiting 
 
 from __future__ import annotations
 
-import sys
-from _thread import get_ident
 from collections import deque
 from collections.abc import Callable
 from functools import partial, wraps
 from inspect import CO_VARARGS, CO_VARKEYWORDS
 from os import environ
+from threading import get_ident
 from time import perf_counter_ns, thread_time_ns
 from types import FrameType, FunctionType
 from typing import Any, NamedTuple
 
 from wpilib import TimedRobot
 
+from ..compat.cpython_private import get_frame
 from ..hal import modes
 from ..project.robot_files import RobotFiles
 from ..runtime.patches import patches
@@ -193,8 +193,8 @@ class Stopwatch:
         def wait(threads: RobotThreads, *args: Any) -> Any:
             __tracebackhide__ = True
             # The quick check comes first: a notifier, or a loop between two iterations, waits often.
-            if self.calls and _in_timed_call(sys._getframe(1)):
-                return self._call_waits(sys._getframe(1), threads, partial(original, threads, *args))
+            if self.calls and _in_timed_call(get_frame(1)):
+                return self._call_waits(get_frame(1), threads, partial(original, threads, *args))
             if self._is_own_loop():
                 return self._own_loop_waits(partial(original, threads, *args))
             return original(threads, *args)

@@ -17,6 +17,7 @@ import wpilib
 import wpilib.event
 import wpiutil
 
+from ..compat.wpilib_private import LOOP_FUNCTION
 from ..project.robot_files import RobotFiles
 from ..runtime.clock import to_us
 from ..runtime.notifier import Notifier
@@ -134,7 +135,7 @@ class UserFunctions:
 
         def add(loop: TimedLoop, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
             period_ns = to_us(period) * 1000
-            if getattr(call, "__name__", "") == "_loopFunc":
+            if getattr(call, "__name__", "") == LOOP_FUNCTION.name:
                 call = self._stopwatch.timed(self._wrap(call), WHOLE_LOOP, period_ns)
             else:
                 call = self.timed(call, "periodic", period_ns=period_ns)

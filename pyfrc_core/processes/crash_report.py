@@ -15,6 +15,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from itertools import takewhile
 
+from ..compat.cpython_private import get_frame
 from ..project.robot_files import RobotFiles, is_pyfrc
 from .exit import EXIT_HANGS, call_before_sudden_exit, exit_now
 
@@ -79,7 +80,7 @@ class CrashLog:
         self.enable_fault_handler()
 
         def exit_with_report(status: int) -> None:
-            frame = sys._getframe(1)
+            frame = get_frame(1)
             self.write(
                 f'os._exit({status}) was called:\n  File "{frame.f_code.co_filename}", line {frame.f_lineno}'
                 f" in {frame.f_code.co_name}\n"
@@ -101,7 +102,7 @@ def reported_exit(files: RobotFiles) -> Iterator[None]:
         return
 
     def exit_with_line(status: int) -> None:
-        frame = sys._getframe(1)
+        frame = get_frame(1)
         place = f"{files.relative(frame.f_code.co_filename)}:{frame.f_lineno}"
         print(f"error: {place}: os._exit({status}) was called while the robot's code was imported", file=sys.stderr)
         sys.stderr.flush()

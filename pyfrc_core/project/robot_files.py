@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 from types import FrameType, TracebackType
+
+from ..compat.cpython_private import current_frames
 
 # A virtual environment inside the project contains libraries.
 _NOT_OURS = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
@@ -70,7 +71,7 @@ class RobotFiles:
 
     def line_of_thread(self, ident: int) -> str | None:
         """Return the user's line that a running thread is at, such as ``robot.py:12``, if it is in the user's code."""
-        frame = sys._current_frames().get(ident)
+        frame = current_frames().get(ident)
         while frame is not None:
             if (line := self.line_of_frame(frame)) is not None:
                 return line

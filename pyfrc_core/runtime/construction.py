@@ -9,6 +9,7 @@ from typing import Any
 
 import wpilib
 
+from ..compat.wpilib_private import end_competition
 from ..errors import RobotCodeError
 from .patch_table import PatchTable
 
@@ -26,7 +27,7 @@ def without_first_alarm() -> Iterator[None]:
     def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
         __tracebackhide__ = True
         original(self, *args, **kwargs)
-        endCompetition(self)
+        end_competition(self)
 
     table.patch(wpilib.TimedRobot, "__init__", __init__)
     try:
@@ -45,9 +46,3 @@ def missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeErr
         where=f"{Path(code.co_filename).name}:{code.co_firstlineno}",
         remedy="Make that its first line.",
     )
-
-
-def endCompetition(self: wpilib.TimedRobot) -> None:
-    """Call WPILib's own method, never the robot's: called from a function of this name, the bindings take it for a call
-    of `super()`."""
-    wpilib.TimedRobot.endCompetition(self)

@@ -7,12 +7,12 @@ threads that take no part in a robot run they behave as the originals do.
 
 from __future__ import annotations
 
-import sys
 import threading
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..compat.cpython_private import get_frame, is_initialized
 from .clock import to_us
 from .threads import real_thread_join
 
@@ -67,8 +67,8 @@ def start_thread(thread: threading.Thread) -> None:
     """`Thread.start`: a thread that robot code starts gets its turns from the clock; a library's own does not."""
     if scope.threads is None:
         _note_start(thread)
-    initialized = getattr(thread, "_initialized", False) and thread.ident is None  # else the real one raises an error
-    if initialized and on_behalf_of_robot_code(sys._getframe(1)):
+    initialized = is_initialized(thread) and thread.ident is None  # else the real one raises an error
+    if initialized and on_behalf_of_robot_code(get_frame(1)):
         start_in_robot_time(thread)
     else:
         _start_really(thread)
@@ -113,7 +113,7 @@ def begin_waiting_threads() -> None:
 
 def _note_start(thread: threading.Thread) -> None:
     """Note which line of the project, if any, has a thread started outside a run: a fork would lack the thread."""
-    frame: FrameType | None = sys._getframe(2)
+    frame: FrameType | None = get_frame(2)
     while frame is not None:
         # A robot.py that is run as the program has everything on its stack, pytest's plugins too.
         if (line := scope.line_of(frame)) is not None and frame.f_globals.get("__name__") != "__main__":

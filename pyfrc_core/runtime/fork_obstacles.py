@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 
+from ..compat.cpython_private import target_of
 from ..hal import devices_exist, existing_devices
 from .cooperative import threads_of_the_project
 
@@ -21,7 +22,7 @@ def reasons_not_to_fork() -> list[str]:
 
 
 def _described(thread: threading.Thread) -> str:
-    target = getattr(thread, "_target", None) or type(thread)
+    target = target_of(thread) or type(thread)
     name = getattr(target, "__qualname__", type(thread).__qualname__)
     module = getattr(target, "__module__", None)
     return f"the thread {thread.name!r}, which runs {module}.{name}" if module else f"the thread {thread.name!r}"

@@ -7,12 +7,9 @@ that moves is ever judged by it.
 
 from __future__ import annotations
 
-import _thread
-import ctypes
 import faulthandler
 import os
 import signal
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -21,6 +18,7 @@ from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from ..compat.cpython_private import allocate_lock, current_frames, raise_in_thread
 from ..processes.exit import EXIT_HANGS, call_before_sudden_exit
 from .exceptions import TestFroze
 
@@ -38,7 +36,7 @@ STUCK_FACTOR = 6
 
 _SIGNAL = getattr(signal, "SIGVTALRM", None)  # not on Windows
 _wait, _wall, _cpu = time.sleep, time.monotonic, time.process_time
-_allocate_lock = _thread.allocate_lock
+_get_ident = threading.get_ident
 _start_thread, _join_thread = threading.Thread.start, threading.Thread.join
 _exit = os._exit
 
@@ -54,7 +52,7 @@ class _Interruption:
     @contextmanager
     def possible(self) -> Iterator[None]:
         """While this lasts, the calling thread can be interrupted."""
-        if _SIGNAL is None or _thread.get_ident() != threading.main_thread().ident:
+        if _SIGNAL is None or _get_ident() != threading.main_thread().ident:
             yield
             return
 
@@ -79,7 +77,7 @@ class _Interruption:
             return
         # Only a class can be raised in another thread, so the message travels in one.
         froze = type("TestFroze", (TestFroze,), {"__str__": lambda self: message, "__module__": TestFroze.__module__})
-        ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(ident), ctypes.py_object(froze))
+        raise_in_thread(ident, froze)
 
 
 @contextmanager
@@ -89,14 +87,14 @@ def importing(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
     :param hang_seconds: processor seconds in the project's own files, after which it does; what libraries take while
         they are imported does not count
     """
-    ident, cpu = _thread.get_ident(), _cpu_of_this_thread()
-    interruption, returned = _Interruption(), _allocate_lock()
+    ident, cpu = _get_ident(), _cpu_of_this_thread()
+    interruption, returned = _Interruption(), allocate_lock()
     returned.acquire()
 
     def watch() -> None:
         seen, busy = cpu(), 0.0
         while not returned.acquire(timeout=min(0.25, hang_seconds / 4)):
-            frame = sys._current_frames().get(ident)
+            frame = current_frames().get(ident)
             now = cpu()
             if frame is not None and files.is_project_file(frame.f_code.co_filename):
                 busy += now - seen
@@ -122,7 +120,7 @@ def _cpu_of_this_thread() -> Callable[[], float]:
     told apart."""
     if not hasattr(time, "pthread_getcpuclockid"):
         return _cpu
-    return partial(time.clock_gettime, time.pthread_getcpuclockid(_thread.get_ident()))
+    return partial(time.clock_gettime, time.pthread_getcpuclockid(_get_ident()))
 
 
 class HangDetector:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import builtins
-import sys
 from typing import TYPE_CHECKING
 
+from ..compat.cpython_private import get_frame
 from ..errors import RobotCodeError
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def refuse_keyboard_input(files: RobotFiles) -> None:
 
 def _input(prompt: object = "", /) -> str:
     __tracebackhide__ = True
-    caller = sys._getframe(1)
+    caller = get_frame(1)
     filename = caller.f_code.co_filename
     if not any(files.is_robot_code(filename) for files in _files):
         return _real_input(prompt)

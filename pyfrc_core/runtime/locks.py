@@ -6,14 +6,19 @@ the other, by who calls it, and both count as instances of the same class.
 
 from __future__ import annotations
 
-import _queue
-import _thread
 import queue
-import sys
 import threading
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from ..compat.cpython_private import (
+    ALLOCATE_LOCK,
+    PYTHON_RLOCK,
+    PYTHON_SIMPLE_QUEUE,
+    LockType,
+    RLockType,
+    get_frame,
+)
 from .clock import to_us
 from .cooperative import join_thread, on_behalf_of_robot_code, scope, start_thread
 from .patch_table import Patch
@@ -24,20 +29,20 @@ if TYPE_CHECKING:
     from .threads import RobotThread
 
 _real_rlock = threading.RLock
-_real_simple_queue = _queue.SimpleQueue
-_PythonRLock: Any = threading._PyRLock  # type: ignore[attr-defined]
-_PythonSimpleQueue: Any = queue._PySimpleQueue  # type: ignore[attr-defined]
+_real_simple_queue = queue.SimpleQueue
+_PythonRLock: Any = PYTHON_RLOCK.find()
+_PythonSimpleQueue: Any = PYTHON_SIMPLE_QUEUE.find()
 
 
-@replaces(_thread.LockType, "threading:Lock")
+@replaces(LockType, "threading:Lock")
 class CooperativeLock(BuiltinClassReplacement):
     __slots__ = ("__weakref__", "_lock", "_waiters")
 
-    _lock: _thread.LockType
+    _lock: LockType
     _waiters: list[RobotThread]
 
     def __new__(cls) -> Any:
-        return make_lock() if on_behalf_of_robot_code(sys._getframe(1)) else real_allocate_lock()
+        return make_lock() if on_behalf_of_robot_code(get_frame(1)) else real_allocate_lock()
 
     def __init_subclass__(cls) -> None:
         raise TypeError("type '_thread.lock' is not an acceptable base type")
@@ -92,12 +97,12 @@ def make_lock() -> CooperativeLock:
     return lock
 
 
-def allocate_lock() -> CooperativeLock | _thread.LockType:
+def allocate_lock() -> CooperativeLock | LockType:
     """`threading.Lock` where it is a function (before Python 3.13), and what `threading` itself calls."""
-    return make_lock() if on_behalf_of_robot_code(sys._getframe(1)) else real_allocate_lock()
+    return make_lock() if on_behalf_of_robot_code(get_frame(1)) else real_allocate_lock()
 
 
-@replaces(_thread.RLock, "_thread:RLock")
+@replaces(RLockType, "_thread:RLock")
 class CooperativeRLock(BuiltinClassReplacement, _PythonRLock):  # type: ignore[misc]
     def __init__(self) -> None:
         super().__init__()
@@ -115,7 +120,7 @@ class CooperativeRLock(BuiltinClassReplacement, _PythonRLock):  # type: ignore[m
 
 def new_rlock(*args: Any, **kwargs: Any) -> Any:
     """`threading.RLock`, which is a function in all versions of Python."""
-    if args or kwargs or not on_behalf_of_robot_code(sys._getframe(1)):
+    if args or kwargs or not on_behalf_of_robot_code(get_frame(1)):
         return _real_rlock(*args, **kwargs)
     return CooperativeRLock()
 
@@ -123,7 +128,7 @@ def new_rlock(*args: Any, **kwargs: Any) -> Any:
 @replaces(_real_simple_queue, "queue:SimpleQueue")
 class CooperativeSimpleQueue(BuiltinClassReplacement, _PythonSimpleQueue):  # type: ignore[misc]
     def __new__(cls, *args: Any, **kwargs: Any) -> Any:
-        if cls is CooperativeSimpleQueue and (args or kwargs or not on_behalf_of_robot_code(sys._getframe(1))):
+        if cls is CooperativeSimpleQueue and (args or kwargs or not on_behalf_of_robot_code(get_frame(1))):
             return _real_simple_queue(*args, **kwargs)
         made = super().__new__(cls)
         _PythonSimpleQueue.__init__(made)  # here, since a derived class need not call `__init__`
@@ -135,7 +140,7 @@ class CooperativeSimpleQueue(BuiltinClassReplacement, _PythonSimpleQueue):  # ty
 def patches() -> list[Patch]:
     """Return the names of `threading` and `queue` to replace."""
     return [
-        Patch(threading, "_allocate_lock", allocate_lock),
+        Patch(*ALLOCATE_LOCK.place, allocate_lock),
         Patch(threading, "RLock", new_rlock),
         Patch(threading.Thread, "start", start_thread),
         Patch(threading.Thread, "join", join_thread),

@@ -7,11 +7,12 @@ never waits costs nothing here.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from ..compat.cpython_private import current_frames, get_frame
+from ..compat.wpilib_private import LOOP_FUNCTION
 from ..config.settings import Settings
 from ..hal import modes
 from ..project.robot_files import RobotFiles, is_pyfrc
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
     from .robot import RobotRun
 
 #: Functions of ours that call a loop's body: what is further out on the stack is not part of the turn.
-_CALLERS = {"_turn", "_loopFunc"}
+_CALLERS = {"_turn", LOOP_FUNCTION.name}
+_LOOP_FUNCTION = LOOP_FUNCTION.name
 
 
 class LoopWaitsError(NamesItsPlace):
@@ -99,7 +101,7 @@ class LoopLimit:
         """The thread of a robot with a loop of its own is about to wait."""
         if not self._run.timed_loop.in_turn:
             was_us, now_us = self._own_turn_us, self._run.clock.now_us
-            if not self._in_periodic_function(sys._getframe(1)):
+            if not self._in_periodic_function(get_frame(1)):
                 self._own_turn_us = None
                 if was_us is not None and now_us - was_us > self._own_period_us():
                     self._run.overruns.count(now_us - was_us)
@@ -119,7 +121,7 @@ class LoopLimit:
         in_robot_code = False
         while frame is not None:
             code = frame.f_code
-            if code.co_name == "_loopFunc" and is_pyfrc(code.co_filename):
+            if code.co_name == _LOOP_FUNCTION and is_pyfrc(code.co_filename):
                 return True
             if code.co_name == "robotInit":
                 return False
@@ -153,9 +155,9 @@ class LoopLimit:
 
     def _error(self, seconds: float) -> LoopWaitsError:
         own_loop = self._run.own_loop
-        frame: FrameType | None = sys._getframe(1)
+        frame: FrameType | None = get_frame(1)
         if own_loop is not None and own_loop.ident is not None:
-            frame = sys._current_frames().get(own_loop.ident)
+            frame = current_frames().get(own_loop.ident)
         place = begins_at = function = ""
         while frame is not None:
             code = frame.f_code

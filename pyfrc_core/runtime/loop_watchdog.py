@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable
-from functools import cache
 
 import hal
 import wpilib
 
+from ..compat.wpilib_threads import end_watchdog_thread
 from . import cooperative
 from .clock import WAKE_UP, Clock, to_us
 
@@ -20,7 +20,6 @@ from .clock import WAKE_UP, Clock, to_us
 _BETWEEN_REPORTS_US = 1_000_000
 
 _ERROR_CODE = 1
-_initialize, _clean, _stop = hal.initializeNotifier, hal.cleanNotifier, hal.stopNotifier
 _WPILibs = wpilib.Watchdog
 
 
@@ -32,7 +31,7 @@ class Watchdog(_WPILibs):
     """
 
     def __init__(self, timeout: float, callback: Callable[[], None]) -> None:
-        end_wpilibs_thread()
+        end_watchdog_thread()
         super().__init__(timeout, callback)
         self._callback = callback
         self._silent = self._expired = False
@@ -135,12 +134,3 @@ class LoopOverruns:
         )
         hal.sendError(True, _ERROR_CODE, False, message, type(robot).__name__, "", True)
         robot.printWatchdogEpochs()
-
-
-@cache
-def end_wpilibs_thread() -> None:
-    """End the thread, of which a process has one: of its HAL notifier, which gets the first handle that is free."""
-    handle, _ = _initialize()
-    _clean(handle)
-    _WPILibs(1.0, lambda: None)  # the first one starts the thread
-    _stop(handle)

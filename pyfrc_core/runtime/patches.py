@@ -9,9 +9,6 @@ libraries get real time.
 from __future__ import annotations
 
 import os
-import queue
-import sys
-import threading
 import time
 from collections.abc import Callable
 from operator import index
@@ -23,6 +20,8 @@ import hal.simulation
 import wpilib
 import wpilib.simulation
 
+from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
+from ..compat.wpilib_private import LOOP_FUNCTION
 from . import cooperative, data_logs, driver_station, locks, robot_stack
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
@@ -94,7 +93,7 @@ class Patches:
 
     def _time_functions(self) -> list[Patch]:
         def asked_by_robot_code() -> bool:
-            return cooperative.on_behalf_of_robot_code(sys._getframe(2))
+            return cooperative.on_behalf_of_robot_code(get_frame(2))
 
         def reading(name: str, from_us: Callable[[int], float]) -> Patch:
             real = getattr(time, name)
@@ -132,8 +131,8 @@ class Patches:
             reading("monotonic_ns", lambda us: us * 1_000),
             reading("perf_counter", lambda us: us / 1_000_000),
             reading("perf_counter_ns", lambda us: us * 1_000),
-            Patch(threading, "_time", waits_in_threading),
-            Patch(queue, "time", waits_in_threading),
+            Patch(*THREADING_TIME.place, waits_in_threading),
+            Patch(*QUEUE_TIME.place, waits_in_threading),
         ]
 
     def _waiting_in_wpilib(self) -> list[Patch]:
@@ -221,9 +220,9 @@ class Patches:
         TimedRobot = wpilib.TimedRobot
         real_add, real_start = TimedRobot.addPeriodic, TimedRobot.startCompetition
         real_loop_start = TimedRobot.getLoopStartTime
-        real_turn = wpilib.IterativeRobotBase._loopFunc
+        real_turn: Callable[[wpilib.IterativeRobotBase], None] = LOOP_FUNCTION.find()
 
-        # Of this name, since profiles tell the loop from other callbacks by it.
+        # Under its original name: profiles and the limit of a loop recognize it by that.
         def _loopFunc(robot: wpilib.IterativeRobotBase) -> None:
             __tracebackhide__ = True
             run = active_run.run
@@ -257,7 +256,7 @@ class Patches:
             Patch(TimedRobot, "addPeriodic", add_periodic),
             Patch(TimedRobot, "startCompetition", start_competition),
             Patch(TimedRobot, "getLoopStartTime", loop_start_time),
-            Patch(wpilib.IterativeRobotBase, "_loopFunc", _loopFunc),
+            Patch(*LOOP_FUNCTION.place, _loopFunc),
         ]
 
     def _directories(self) -> list[Patch]:

@@ -16,6 +16,8 @@ from typing import Any, Protocol
 import ntcore
 import wpilib
 
+from ..compat.wpilib_private import MAGIC_SIMULATION_INIT
+from ..compat.wpilib_threads import end_watchdog_thread
 from ..hal import HalData, devices_exist, modes, timing
 from ..hal.ds_connection import DriverStationConnection
 from ..hal.output_gate import OutputGate
@@ -24,12 +26,14 @@ from .clock import OBSERVE, PACKET_US, Clock
 from .construction import missing_super_init, without_first_alarm
 from .data_logs import DataLogs, LogPlace
 from .exceptions import TestEnded, TestFroze, WrongThread
-from .loop_watchdog import LoopOverruns, end_wpilibs_thread
+from .loop_watchdog import LoopOverruns
 from .motor_safety import MotorSafetyCheck
 from .notifier import Alarms, Notifier
 from .simulation_periodic import gate_robot, gate_subsystems
 from .threads import RobotThread, RobotThreads
 from .timed_loop import TimedLoop
+
+_SIMULATION_INIT = MAGIC_SIMULATION_INIT.name
 
 
 class ExternalWrites(Protocol):
@@ -132,7 +136,7 @@ class RobotRun:
         # What the first packet brings: it may still be changed.
         modes.reset_driver_station()
         self.clock.before_packet.append(MotorSafetyCheck().on_packet)
-        end_wpilibs_thread()
+        end_watchdog_thread()
         self.data_logs.start_as_at_import()
         cooperative.begin_waiting_threads()
 
@@ -155,7 +159,7 @@ class RobotRun:
     def initializes(self) -> bool:
         """Whether it can be told when `robotInit` is over: of robots with WPILib's loop, and of `MagicRobot`."""
         return isinstance(self.robot, wpilib.TimedRobot) or (
-            hasattr(self.robot, "_simulationInit") and not isinstance(self.robot, wpilib.IterativeRobotBase)
+            hasattr(self.robot, _SIMULATION_INIT) and not isinstance(self.robot, wpilib.IterativeRobotBase)
         )
 
     def _on_initialized(self) -> None:
@@ -171,10 +175,10 @@ class RobotRun:
         def initialized() -> None:
             __tracebackhide__ = True
             of = robot()
-            type(of)._simulationInit(of)  # type: ignore[union-attr]
+            getattr(type(of), _SIMULATION_INIT)(of)
             self._on_initialized()
 
-        self.robot._simulationInit = initialized
+        setattr(self.robot, _SIMULATION_INIT, initialized)
 
     @cached_property
     def hal_data(self) -> HalData:

@@ -8,31 +8,26 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import wpilib
-import wpiutil._wpiutil
 
+from ..compat.cpython_private import get_frame
+from ..compat.wpilib_private import show_stack, show_whole_stack
 from .patch_table import Patch
 
 if TYPE_CHECKING:
     from ..project.robot_files import RobotFiles
 
-_hook_of_wpilib: Callable[[Any], None] | None = getattr(wpiutil._wpiutil, "_setup_stack_trace_hook", None)
-
 
 def show_robots_lines(files: Callable[[], RobotFiles]) -> None:
     """From now on, what is reported from C++ comes with the lines of the project that led there."""
-    if _hook_of_wpilib is not None:
-        _hook_of_wpilib(lambda offset: _lines(files(), sys._getframe(1)))
+    show_stack(lambda: _lines(files(), get_frame(1)))
 
 
 def show_all_lines() -> None:
     """From now on, it comes with all lines, as without this module."""
-    from wpiutil._stacktrace import _stack_trace_hook
-
-    if _hook_of_wpilib is not None:
-        _hook_of_wpilib(_stack_trace_hook)
+    show_whole_stack()
 
 
 def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
@@ -44,7 +39,7 @@ def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
         def report(error: str, printTrace: bool = False) -> None:
             # Of an exception that is being handled they print the traceback, which has nothing of ours.
             if printTrace and sys.exc_info()[1] is None:
-                error = f"{error}\n{_lines(files(), sys._getframe(1))}"
+                error = f"{error}\n{_lines(files(), get_frame(1))}"
                 printTrace = False
             real(error, printTrace)
 

@@ -10,8 +10,7 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-import wpilib
-
+from ..compat.wpilib_private import SIMULATION_PERIODIC, registered_subsystems, simulation_periodic_of
 from ..hal import modes
 
 if TYPE_CHECKING:
@@ -23,9 +22,8 @@ def gate_robot(robot: Any, gate: Callable[[], OutputGate]) -> None:
 
     :param gate: returns what turns the outputs off
     """
-    own = getattr(type(robot), "_simulationPeriodic", None)
-    if own is not None and own is not wpilib.IterativeRobotBase._simulationPeriodic:
-        robot._simulationPeriodic = _gated(robot, "_simulationPeriodic", gate)
+    if simulation_periodic_of(robot) is not None:
+        setattr(robot, SIMULATION_PERIODIC.name, _gated(robot, SIMULATION_PERIODIC.name, gate))
 
 
 def gate_subsystems(gate: Callable[[], OutputGate]) -> None:
@@ -33,8 +31,7 @@ def gate_subsystems(gate: Callable[[], OutputGate]) -> None:
     commands2 = sys.modules.get("commands2")
     if commands2 is None:
         return
-    # There is no public way to ask for them.
-    for subsystem in commands2.CommandScheduler.getInstance()._subsystems:
+    for subsystem in registered_subsystems():
         if type(subsystem).simulationPeriodic is not commands2.Subsystem.simulationPeriodic:
             subsystem.simulationPeriodic = _gated(subsystem, "simulationPeriodic", gate)
 

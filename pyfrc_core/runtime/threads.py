@@ -15,7 +15,6 @@ the next thing it does in robot time. What such a thread does is as repeatable a
 
 from __future__ import annotations
 
-import _thread
 import contextlib
 import threading
 import time
@@ -24,13 +23,14 @@ from functools import partial
 from pathlib import Path
 from types import TracebackType
 
+from ..compat.cpython_private import LockType, allocate_lock
 from .clock import WAKE_UP, Clock
 from .exceptions import TestEnded, TestFroze
 
 # Bound before these names are patched for robot code: this module needs the real ones.
-real_allocate_lock = _thread.allocate_lock
+real_allocate_lock = allocate_lock
 real_thread_join = threading.Thread.join
-_process_time = time.process_time
+_process_time, _get_ident = time.process_time, threading.get_ident
 
 #: How often a thread is told that the run is over, before it counts as one that will not stop.
 _TELL_TO_STOP = 1000
@@ -59,7 +59,7 @@ class RobotThread:
         return self.detached and self.thread is not None and self.thread.daemon
 
 
-def _taken_lock() -> _thread.LockType:
+def _taken_lock() -> LockType:
     lock = real_allocate_lock()
     lock.acquire()
     return lock
@@ -88,7 +88,7 @@ class RobotThreads:
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
-        self.driver = _thread.get_ident()
+        self.driver = _get_ident()
         #: The thread whose turn it is; None while the driver itself runs.
         self.running: RobotThread | None = None
         self._threads: dict[int, RobotThread] = {}
@@ -108,11 +108,11 @@ class RobotThreads:
 
     def current(self) -> RobotThread | None:
         """The robot thread that calls this, if it is one."""
-        return self._threads.get(_thread.get_ident())
+        return self._threads.get(_get_ident())
 
     def takes_part(self) -> bool:
         """Whether the calling thread lives in robot time (the driver does, while it is in charge)."""
-        ident = _thread.get_ident()
+        ident = _get_ident()
         return (ident == self.driver and not self._over) or ident in self._threads
 
     def start(self, thread: threading.Thread | None = None) -> RobotThread:
@@ -124,7 +124,7 @@ class RobotThreads:
 
     def run_body(self, record: RobotThread, body: Callable[[], object]) -> None:
         """What the new thread itself executes: wait for its turn, do its work, hand the turn back for good."""
-        record.ident = _thread.get_ident()
+        record.ident = _get_ident()
         self._threads[record.ident] = record
         record.go.acquire()
         try:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import hal
 
+from ..compat.wpilib_private import LOOP_FUNCTION, SIMULATION_INIT
 from .clock import ROBOT_LOOP, Clock, to_us
 
 if TYPE_CHECKING:
@@ -86,10 +87,10 @@ class TimedLoop:
         """What WPILib does before its first loop: the robot's own initialisation, then the loop's schedule."""
         __tracebackhide__ = True
         robot.robotInit()
-        robot._simulationInit()
+        SIMULATION_INIT.of(robot)()
         self._on_initialized()
         hal.observeUserProgramStarting()
-        self.add(robot._loopFunc, robot.getPeriod())
+        self.add(LOOP_FUNCTION.of(robot), robot.getPeriod())
         self._callbacks.insert(0, self._callbacks.pop())  # WPILib schedules it before all others
 
     def run_in_place(self) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from ..compat import pytest_private
 
 if TYPE_CHECKING:
     import pytest
@@ -21,23 +23,8 @@ def put_first(report: pytest.TestReport, text: str, only: bool = False) -> None:
 
     :param only: leave out everything else
     """
-    from _pytest._code.code import ExceptionChainRepr, ReprEntryNative
-
-    longrepr = report.longrepr
-    if isinstance(longrepr, ExceptionChainRepr):
-        entry: Any = ReprEntryNative([*(f"{line}\n" for line in text.splitlines()), "\n"])
-        if only:
-            longrepr.chain = longrepr.chain[-1:]
-        traceback = longrepr.chain[0][0]  # the first part that pytest shows
-        traceback.reprentries = [entry] if only else [entry, *traceback.reprentries]
-        traceback.extraline = None if only else traceback.extraline
-        for _, crash, _ in longrepr.chain[-1:]:
-            if crash is not None:
-                crash.message = text.splitlines()[0]
-        if longrepr.reprcrash is not None:
-            longrepr.reprcrash.message = text.splitlines()[0]
-    else:
-        report.longrepr = f"{text}\n\n{longrepr}" if longrepr else text
+    if not pytest_private.put_into_traceback(report, text, only):
+        report.longrepr = f"{text}\n\n{report.longrepr}" if report.longrepr else text
 
 
 def bug_of(headline: str | None) -> str | None:

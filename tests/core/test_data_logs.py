@@ -155,7 +155,7 @@ def test_in_place_of_wpilibs_names(tmp_path: Path, timeline: Timeline, monkeypat
     monkeypatch.setattr(data_logs, "_started_at_import", [])
     logs = DataLogs(timeline.clock, place(tmp_path))
     current: list[DataLogs | None] = [None]
-    table = {name: value for _, name, value in data_logs.replacements(lambda: current[0])}
+    table = {name: value for _, name, value in data_logs.patches(lambda: current[0])}
     start, writer, background = table["start"].__func__, table["DataLogWriter"], table["DataLogBackgroundWriter"]
     start("", "at-import")
     logs.start_as_at_import()

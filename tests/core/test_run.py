@@ -231,7 +231,7 @@ def test_a_process_has_one_run(run: RobotRun) -> None:
 
 
 def test_match_information_comes_with_the_first_packet(run: RobotRun) -> None:
-    table = {(owner, name): value for owner, name, value in driver_station.replacements(lambda: run)}
+    table = {(owner, name): value for owner, name, value in driver_station.patches(lambda: run)}
     station = wpilib.DriverStation
 
     def seen() -> list[object]:
@@ -253,7 +253,7 @@ def test_match_information_comes_with_the_first_packet(run: RobotRun) -> None:
 
 
 def test_waiting_for_a_connection_takes_robot_time(run: RobotRun) -> None:
-    (_, _, wait) = next(each for each in driver_station.replacements(lambda: run) if each[1] == "waitForDsConnection")
+    (_, _, wait) = next(each for each in driver_station.patches(lambda: run) if each[1] == "waitForDsConnection")
     assert wait(0.015) is False
     assert run.clock.now_us == 15_000
     assert wait(0) is True
@@ -264,7 +264,7 @@ def test_waiting_for_a_connection_takes_robot_time(run: RobotRun) -> None:
 
 
 def test_packets_out_of_turn_and_resets(run: RobotRun) -> None:
-    table = {(owner.__name__, name): value for owner, name, value in driver_station.replacements(lambda: run)}
+    table = {(owner.__name__, name): value for owner, name, value in driver_station.patches(lambda: run)}
     told: list[str] = []
 
     class Recorder:

@@ -19,6 +19,7 @@ from typing import Any
 
 import pytest
 
+from ...compat import pytest_private
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.worker import wait_for_any
 from ...project.robot_files import RobotFiles
@@ -220,50 +221,36 @@ def _would_tear_down_fixtures(session: pytest.Session, item: pytest.Item) -> boo
     chain = set(item.listchain())
     return any(
         len(finalizers) > 1  # the first is the node's own teardown
-        for node, (finalizers, _) in session._setupstate.stack.items()
+        for node, finalizers in pytest_private.finalizers_of(session).items()
         if node not in chain
     )
 
 
 def _set_up_shared(session: pytest.Session, item: pytest.Item) -> None:
     """Set up what `item` shares with others. What fails here fails again, and is reported, in the test's process."""
-    state: Any = session._setupstate
-    names = getattr(item, "fixturenames", ())
-    with _captured(item), contextlib.suppress(Exception, pytest.fail.Exception, pytest.skip.Exception):
-        state.setup(item.parent)
-        # A fixture may only be asked for while its test is being set up: for this long, it looks as if it were.
-        state.stack[item] = ([], None)
-        try:
-            request = item._request  # type: ignore[attr-defined]
-            if "tmp_path_factory" in names:
-                # One numbered directory for the whole run, not one for each process.
-                request.getfixturevalue("tmp_path_factory").getbasetemp()
-            known = item._fixtureinfo.name2fixturedefs  # type: ignore[attr-defined]
-            for name in names:
-                if name in known and known[name][-1].scope != "function":
-                    request.getfixturevalue(name)
-        finally:
-            del state.stack[item]
+    with (
+        _captured(item),
+        contextlib.suppress(Exception, pytest.fail.Exception, pytest.skip.Exception),
+        pytest_private.shared_fixtures(session, item) as (request, shared),
+    ):
+        if "tmp_path_factory" in getattr(item, "fixturenames", ()):
+            # One numbered directory for the whole run, not one for each process.
+            request.getfixturevalue("tmp_path_factory").getbasetemp()
+        for name in shared:
+            request.getfixturevalue(name)
 
 
 def _other_parameters(before: pytest.Item, item: pytest.Item) -> bool:
     """Whether a fixture that both share is to be made anew for `item`, with another parameter."""
-    old, new = _shared_parameters(before), _shared_parameters(item)
+    old, new = pytest_private.shared_parameters(before), pytest_private.shared_parameters(item)
     return any(old[name] != new[name] for name in old.keys() & new.keys())
-
-
-def _shared_parameters(item: pytest.Item) -> dict[str, int]:
-    callspec: Any = getattr(item, "callspec", None)
-    if callspec is None:
-        return {}
-    return {name: index for name, index in callspec.indices.items() if callspec._arg2scope[name].value != "function"}
 
 
 def _tear_down_shared(session: pytest.Session, last: pytest.Item | None, nextitem: pytest.Item | None) -> None:
     """What outlived the last test ends with it; a failure in that is that test's."""
     if last is None:
         return
-    call = pytest.CallInfo.from_call(lambda: session._setupstate.teardown_exact(nextitem), when="teardown")
+    call = pytest.CallInfo.from_call(lambda: pytest_private.tear_down(session, nextitem), when="teardown")
     if call.excinfo is not None:
         # Plugins with a protocol of their own (pytest-rerunfailures) have seen the test in its own process only.
         plugins = session.config.pluginmanager
@@ -275,7 +262,7 @@ def _tear_down_shared(session: pytest.Session, last: pytest.Item | None, nextite
 
 def _is_foreign(hook: Any) -> bool:
     """Return whether a hook is neither pytest's nor pyfrc's."""
-    return not hook.function.__module__.startswith(("_pytest.", "pyfrc_core."))
+    return not hook.function.__module__.startswith((pytest_private.HOOKS_OF_PYTEST, "pyfrc_core."))
 
 
 @contextlib.contextmanager

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from ...compat.pytest_private import run_test_protocol
 from ...processes.worker import Send
 
 Message = tuple[str, Any]
@@ -47,9 +48,7 @@ class ReportSender:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: Any) -> bool:
-        from _pytest.runner import runtestprotocol
-
-        runtestprotocol(item, log=False, nextitem=nextitem)
+        run_test_protocol(item, nextitem)
         return True
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)

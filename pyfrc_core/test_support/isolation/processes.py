@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import tempfile
 from functools import partial
-from typing import IO, Any
+from typing import IO
 
 import pytest
 
+from ...compat.pytest_private import capture_into
 from ...processes.crash_report import CrashLog
 from ...processes.worker import ForkedWorker, Send, SpawnedWorker, Worker
 from ..pytest_plugin import PyFrcPlugin
@@ -82,21 +82,7 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
 
 def _run_in_fork(item: pytest.Item, plugin: PyFrcPlugin, files: tuple[int, int], send: Send, log: CrashLog) -> None:
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    _capture_anew(item.config, files)
+    capture_into(item.config, files)
     plugin.crash_log = log
     log.enable_fault_handler()  # pytest has one of its own
     ReportSender(send).run(item)
-
-
-def _capture_anew(config: pytest.Config, files: tuple[int, int]) -> None:
-    """Capture output in files that the parent can still read when this process is gone."""
-    capture: Any = config.pluginmanager.getplugin("capturemanager")
-    if capture is None or not capture.is_globally_capturing():
-        return
-    capture.stop_global_capturing()
-    capture.start_global_capturing()
-    streams = capture._global_capturing.out, capture._global_capturing.err
-    for stream, file in zip(streams, files, strict=True):
-        if hasattr(stream, "targetfd"):  # captures the file descriptor, not only sys.stdout
-            os.dup2(file, stream.tmpfile.fileno())
-    capture.suspend_global_capture(in_=False)
