@@ -8,46 +8,46 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import chosen_project, project_options
-from .robot_options import conversation, errors_shown, json_option, project_if_any, robot_options
+from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
 
 if TYPE_CHECKING:
-    from pyfrc_core.deploy.reach import RobotChoice
+    from pyfrc_core.deploy.target_connection import RobotChoice
 
 
 @click.command("deploy", context_settings={"help_option_names": ["-h", "--help"]})
 @project_options
 @robot_options
 @click.option("--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own.")
-@click.option("--skip-tests", is_flag=True, help="Run no tests before.")
-@click.option("--large", is_flag=True, help="Upload files over 250,000 bytes, too.")
+@click.option("--skip-tests", is_flag=True, help="Do not run the tests.")
+@click.option("--large", is_flag=True, help="Also upload files over 250,000 bytes.")
 @click.option(
     "-n",
     "--no-version-check",
     is_flag=True,
-    help="Deploy to a robot with another wpilib, Python or image, or without packages that the program needs, too.",
+    help="Also deploy to a robot with another wpilib, Python or image, or without packages that the program needs.",
 )
-@click.option("--nonstandard", is_flag=True, help="Let the main file have another name than robot.py.")
-@click.option("--debug", is_flag=True, help="Start the program with debugging on: asserts run, and it logs more.")
+@click.option("--nonstandard", is_flag=True, help="Allow a main file with another name than robot.py.")
+@click.option("--debug", is_flag=True, help="Start the program with asserts and verbose logging.")
 @click.option(
     "--in-place",
     is_flag=True,
-    help="Overwrite the files of the program that runs; delete nothing, do not restart. Cannot be rolled back.",
+    help="Overwrite files of the running program. Delete nothing, do not restart. Cannot be rolled back.",
 )
 @click.option("--dry-run", is_flag=True, help="Only show what would be added, changed and removed.")
 @click.option(
     "--auto-rollback",
     is_flag=True,
-    help="Go back to the program before if the new one ends at its start.",
+    help="Go back to the previous program if the new one ends during its start.",
 )
 @click.option(
     "--rollback",
     metavar="[ID]",
     is_flag=False,
     flag_value="",
-    help="Deploy nothing: start an earlier release again, the one before or the one named.",
+    help="Deploy nothing. Start an earlier release: the previous one, or the given one.",
 )
-@click.option("--nc", "--netconsole", "netconsole", is_flag=True, help="Then show what the program prints.")
-@click.option("--nc-ds", is_flag=True, help="The same, also when no Driver Station is connected to the robot.")
+@click.option("--nc", "--netconsole", "netconsole", is_flag=True, help="Then show the program's output.")
+@click.option("--nc-ds", is_flag=True, help="The same, even if no Driver Station is connected to the robot.")
 @json_option
 def command(
     directory: Path | None,
@@ -68,28 +68,28 @@ def command(
     nc_ds: bool,
     as_json: bool,
 ) -> None:
-    """Bring the robot program onto the robot, and start it there.
+    """Deploy the robot program and start it.
 
-    Only what has changed is sent, beside the program that is there; that goes on until the new one is
-    whole. Whatever happens on the way, the robot has a whole program to start.
+    Only changed files are sent. The old program keeps running until the new one is complete. If the deploy
+    is interrupted, the robot still has a complete program.
 
     \b
-    Exit codes: 0 deployed, and the program runs; 1 not deployed, the robot has the program it had;
-    2 wrong usage or no project, or Ctrl-C; 3 deployed, but the program ended while its start was watched;
-    4 deployed or perhaps deployed, but not seen to run: the message says what is so.
+    Exit codes: 0 deployed, and the program runs; 1 not deployed, the robot has its old program;
+    2 wrong usage or no project, or Ctrl-C; 3 deployed, but the program ended during its start;
+    4 deployed or possibly deployed, but not confirmed to run: the message explains the robot's state.
     """
     if (netconsole or nc_ds) and (as_json or dry_run):
-        raise click.UsageError(f"--netconsole and {'--json' if as_json else '--dry-run'} cannot both be.")
+        raise click.UsageError(f"--netconsole and {'--json' if as_json else '--dry-run'} are mutually exclusive.")
     if in_place and auto_rollback:
-        raise click.UsageError("--in-place and --auto-rollback cannot both be: nothing is restarted.")
+        raise click.UsageError("--in-place and --auto-rollback are mutually exclusive: --in-place restarts nothing.")
     if rollback is not None and (in_place or dry_run or auto_rollback):
-        raise click.UsageError("--rollback deploys nothing: it takes no --in-place, --dry-run or --auto-rollback.")
+        raise click.UsageError("--rollback excludes --in-place, --dry-run and --auto-rollback: it deploys nothing.")
     if rollback and not rollback.isdecimal():
         raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
     with errors_shown(choice, as_json):
         from pyfrc_core.deploy import session
 
-        talk = conversation(choice, as_json)
+        talk = user_interface(choice, as_json)
         if rollback is not None:
             release = int(rollback) if rollback else None
             address = session.rollback(project_if_any(directory, main, robot_class, choice), choice, release, talk)
@@ -114,5 +114,5 @@ def command(
 
         try:
             follow_console(address, without_driver_station=nc_ds, quiet=talk.progress.quiet)
-        except NoConsoleError as error:  # exit code 1 would say that the robot has its old program
+        except NoConsoleError as error:  # exit code 1 would mean that the robot has its old program
             talk.progress.warning(str(error))

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import project_options
-from .robot_options import conversation, errors_shown, json_option, project_if_any, robot_options
+from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
 
 if TYPE_CHECKING:
-    from pyfrc_core.deploy.reach import RobotChoice
+    from pyfrc_core.deploy.target_connection import RobotChoice
 
 
 @click.command("deploy-info", context_settings={"help_option_names": ["-h", "--help"]})
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 def command(
     directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice, as_json: bool
 ) -> None:
-    """Show what is on the robot: who deployed it, when, from which commit; and the earlier releases that are kept.
+    """Show the program on the robot: who deployed it, when, from which commit; and the kept releases.
 
     \b
-    Exit codes: 0 shown, 1 the robot cannot be asked, 2 wrong usage or no project.
+    Exit codes: 0 shown, 1 the robot cannot be reached, 2 wrong usage or no project.
     """
     with errors_shown(choice, as_json):
-        from pyfrc_core.deploy.telling import show_info
+        from pyfrc_core.deploy.robot_info import show_info
 
-        show_info(project_if_any(directory, main, robot_class, choice), choice, conversation(choice, as_json))
+        show_info(project_if_any(directory, main, robot_class, choice), choice, user_interface(choice, as_json))

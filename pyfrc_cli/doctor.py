@@ -25,8 +25,8 @@ _COLOURS = {"ok": "green", "hint": "cyan", "problem": "red"}
     help="The robot's address, instead of your team's addresses.",
 )
 @click.option("--team", type=click.IntRange(min=1), metavar="N", help="Your team's number.")
-@click.option("--no-robot", is_flag=True, help="Do not look for the robot.")
-@click.option("--json", "as_json", is_flag=True, help="For tools: all findings as one JSON object.")
+@click.option("--no-robot", is_flag=True, help="Do not check the robot.")
+@click.option("--json", "as_json", is_flag=True, help="For tools: print all results as one JSON object.")
 def command(
     directory: Path | None,
     main: Path | None,
@@ -36,25 +36,25 @@ def command(
     no_robot: bool,
     as_json: bool,
 ) -> None:
-    """Find out what is missing on this computer or in your project, or does not fit together, and what to do about it.
+    """Check this computer, your project and the robot for problems, and show how to solve them.
 
-    A problem keeps something from working. A hint is of what could be there, or does not matter yet. Nothing is
-    changed, here or on the robot.
+    A problem prevents something from working. A hint is optional, or not important yet. Nothing is changed, on
+    this computer or on the robot.
 
     \b
-    Exit codes: 0 there is no problem, 1 there is one, 2 wrong usage.
+    Exit codes: 0 no problems, 1 problems found, 2 wrong usage.
     """
     if sum((robot is not None, team is not None, no_robot)) > 1:
-        raise click.UsageError("Only one of --robot, --team and --no-robot can be.")
-    # With `python -m pyfrc`, Python looks for modules here first: those of the project are not to be in our way.
+        raise click.UsageError("--robot, --team and --no-robot are mutually exclusive.")
+    # With `python -m pyfrc`, the current directory is first on the path, where the project may hide libraries.
     sys.path[:] = [place for place in sys.path if place and Path(place) != Path.cwd()]
-    from pyfrc_core.deploy.robot_commands import naming_robot
-    from pyfrc_core.doctor import Examination, examine
+    from pyfrc_core.deploy.robot_commands import with_robot_option
+    from pyfrc_core.doctor import DoctorOptions, examine
     from pyfrc_core.wording import counted
 
     findings = []
-    for finding in examine(Examination(directory, main, robot_class, not no_robot, robot, team)):
-        finding = replace(finding, remedy=finding.remedy and naming_robot(finding.remedy, robot, team))
+    for finding in examine(DoctorOptions(directory, main, robot_class, not no_robot, robot, team)):
+        finding = replace(finding, remedy=finding.remedy and with_robot_option(finding.remedy, robot, team))
         findings.append(finding)
         if not as_json and (finding.status == "problem" or not verbosity().quiet):
             click.secho(f"{finding.status:<8}", fg=_COLOURS[finding.status], nl=False)

@@ -37,7 +37,7 @@ COMMANDS = {
     "deploy": ("pyfrc_cli.deploy", "Deploy the robot program, and start it."),
     "deploy-info": ("pyfrc_cli.deploy_info", "Show the program on the robot and its earlier releases."),
     "undeploy": ("pyfrc_cli.undeploy", "Stop the robot program and remove it from the robot."),
-    "console": ("pyfrc_cli.console", "Show what the robot program prints."),
+    "console": ("pyfrc_cli.console", "Show the robot program's output."),
     "virtual-robot": ("pyfrc_cli.virtual_robot", "Start a virtual robot on this computer, to deploy to."),
     "config": ("pyfrc_cli.config", "Check and show sim/config.json, and print its JSON Schema."),
     "doctor": ("pyfrc_cli.doctor", "Find missing packages, wrong settings and connection problems."),

@@ -1,4 +1,4 @@
-"""The options of the commands that talk to a robot: which robot, how they tell of it, and what they ask."""
+"""Options of the commands that connect to a robot, and their output, questions and errors."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ import click
 from .verbosity import verbosity
 
 if TYPE_CHECKING:
-    from pyfrc_core.deploy.progress import Conversation
-    from pyfrc_core.deploy.reach import RobotChoice
+    from pyfrc_core.deploy.progress import UserInterface
+    from pyfrc_core.deploy.target_connection import RobotChoice
     from pyfrc_core.project import Project
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-json_option = click.option("--json", "as_json", is_flag=True, help="For tools: one JSON object a line. Asks nothing.")
+json_option = click.option("--json", "as_json", is_flag=True, help="For tools: one JSON object per line. Asks nothing.")
 
 
 def refuse_option_as_value(context: click.Context, option: click.Parameter, value: Any) -> Any:
     """Check that the value of an option is not the next option, as in ``--robot --skip-tests``.
 
-    :raises click.BadParameter: when it begins with a dash
+    :raises click.BadParameter: if it begins with a dash
     """
     if value is not None and str(value).startswith("-"):
         raise click.BadParameter(f"{str(value)!r} begins with '-': the value is missing.", context, option)
@@ -35,7 +35,7 @@ def refuse_option_as_value(context: click.Context, option: click.Parameter, valu
 
 
 def robot_options(command: Function) -> Function:
-    """Add the options of commands that log in to a robot, which become ``choice``: about its address and about keys."""
+    """Add the options for logging in to a robot (address and keys), which become ``choice``."""
 
     @wraps(command)
     def with_keys(
@@ -61,13 +61,13 @@ def robot_options(command: Function) -> Function:
 
 
 def address_options(command: Function) -> Function:
-    """Add the options about a robot's address, which become ``choice``."""
+    """Add the options for a robot's address, which become ``choice``."""
 
     @wraps(command)
     def with_address(*, robot: str | None, team: int | None, no_resolve: bool, **others: Any) -> Any:
         if robot is not None and team is not None:
             raise click.UsageError("--robot and --team are mutually exclusive.")
-        from pyfrc_core.deploy.reach import RobotChoice
+        from pyfrc_core.deploy.target_connection import RobotChoice
 
         return command(choice=RobotChoice(robot=robot, team=team, resolve=not no_resolve), **others)
 
@@ -75,29 +75,29 @@ def address_options(command: Function) -> Function:
 
 
 _KEY_OPTIONS = (
-    click.option("--ssh-agent", is_flag=True, help="Offer the robot the keys of your SSH agent."),
+    click.option("--ssh-agent", is_flag=True, help="Log in with the keys of your SSH agent."),
     click.option(
         "--identity",
         type=click.Path(path_type=Path),
         metavar="FILE",
         callback=refuse_option_as_value,
-        help="Offer the robot the private key in this file.",
+        help="Log in with the private key in this file.",
     ),
     click.option(
         "--robot-name",
         metavar="NAME",
         callback=refuse_option_as_value,
-        help="Keep this name with the robot's key, and show it.",
+        help="Store this name with the robot's key, and show it.",
     ),
     click.option(
         "--accept-host-key",
         metavar="SHA256:...",
         callback=refuse_option_as_value,
-        help="Accept the robot's changed key, by the fingerprint that the refusal has shown.",
+        help="Accept the robot's changed key. The error message shows its fingerprint.",
     ),
 )
 _ADDRESS_OPTIONS = (
-    click.option("--no-resolve", is_flag=True, help="Try addresses only: look no names up."),
+    click.option("--no-resolve", is_flag=True, help="Try only addresses, no host names."),
     click.option("--team", type=int, metavar="N", help="Your team's number."),
     click.option(
         "--robot",
@@ -117,7 +117,10 @@ def _with_options(command: Any, options: Iterable[Callable[[Any], Any]]) -> Any:
 def project_if_any(
     directory: Path | None, main: Path | None, robot_class: str | None, choice: RobotChoice
 ) -> Project | None:
-    """The project; none where nothing names one, there is none here, and the options name the robot."""
+    """Return the project, or None outside of a project if the options specify the robot.
+
+    :raises ProjectError: if there is no project otherwise
+    """
     from pyfrc_core.errors import ProjectError
     from pyfrc_core.project import find_project
 
@@ -128,14 +131,14 @@ def project_if_any(
             raise
         if choice.names_robot:
             return None
-        remedy = f"{error.remedy or ''}\n  Without a project, name the robot: --robot HOST or --team NUMBER."
+        remedy = f"{error.remedy or ''}\n  Without a project, specify the robot: --robot HOST or --team NUMBER."
         raise ProjectError(error.message, where=error.where, remedy=remedy.strip()) from error
 
 
-def conversation(choice: RobotChoice, as_json: bool = False) -> Conversation:
-    """Return how a command shows what it does, and asks; without a terminal it asks nothing."""
-    from pyfrc_core.deploy.progress import Conversation, Questions, progress_for
-    from pyfrc_core.deploy.robot_commands import naming_robot
+def user_interface(choice: RobotChoice, as_json: bool = False) -> UserInterface:
+    """Return the output and the questions of a command. Without a terminal, it cannot ask."""
+    from pyfrc_core.deploy.progress import Questions, UserInterface, progress_for
+    from pyfrc_core.deploy.robot_commands import with_robot_option
 
     ask = None
     if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
@@ -144,28 +147,28 @@ def conversation(choice: RobotChoice, as_json: bool = False) -> Conversation:
             yes=lambda question: click.confirm(question),
         )
     progress = progress_for(as_json, verbosity().quiet)
-    progress.name_robot = lambda text: naming_robot(text, choice.robot, choice.team)
-    return Conversation(progress, ask)
+    progress.add_robot_option = lambda text: with_robot_option(text, choice.robot, choice.team)
+    return UserInterface(progress, ask)
 
 
 @contextmanager
 def errors_shown(choice: RobotChoice, as_json: bool = False) -> Iterator[None]:
-    """Name the robot that was typed in the commands that errors suggest; write errors as JSON, too, where asked for."""
+    """Add the robot's option to commands in error messages. Also print errors as JSON if requested."""
     from pyfrc_core.errors import PyfrcError, UsageError
 
     try:
         yield
     except (PyfrcError, OSError, KeyboardInterrupt) as error:
         if isinstance(error, PyfrcError) and error.remedy is not None:
-            from pyfrc_core.deploy.robot_commands import naming_robot
+            from pyfrc_core.deploy.robot_commands import with_robot_option
 
-            error.remedy = naming_robot(error.remedy, choice.robot, choice.team)
+            error.remedy = with_robot_option(error.remedy, choice.robot, choice.team)
         if as_json:
             from pyfrc_core.deploy.progress import JsonProgress
 
             if isinstance(error, KeyboardInterrupt):
-                told: PyfrcError = UsageError("interrupted")
+                shown: PyfrcError = UsageError("interrupted")
             else:
-                told = error if isinstance(error, PyfrcError) else PyfrcError(str(error))
-            JsonProgress().failure(told)
+                shown = error if isinstance(error, PyfrcError) else PyfrcError(str(error))
+            JsonProgress().failure(shown)
         raise

@@ -8,17 +8,19 @@ from typing import TYPE_CHECKING
 import click
 
 from .project_options import project_options
-from .robot_options import conversation, errors_shown, json_option, project_if_any, robot_options
+from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
 
 if TYPE_CHECKING:
-    from pyfrc_core.deploy.reach import RobotChoice
+    from pyfrc_core.deploy.target_connection import RobotChoice
 
 
 @click.command("undeploy", context_settings={"help_option_names": ["-h", "--help"]})
 @project_options
 @robot_options
 @click.option(
-    "--java-cpp", is_flag=True, help="Remove programs in Java and C++ and their libraries instead; Python's stays."
+    "--java-cpp",
+    is_flag=True,
+    help="Remove programs in Java and C++ and their libraries, but not a program in Python.",
 )
 @click.option("-y", "--yes", is_flag=True, help="Do not ask.")
 @json_option
@@ -31,13 +33,15 @@ def command(
     yes: bool,
     as_json: bool,
 ) -> None:
-    """Stop the robot program and remove it from the robot, with all its earlier releases.
+    """Stop the robot program, and remove it from the robot with all earlier releases.
 
     \b
-    Exit codes: 0 removed, 1 not removed, 2 wrong usage or no project, 4 perhaps removed in part: the message says so.
+    Exit codes: 0 removed, 1 not removed, 2 wrong usage or no project, 4 possibly removed in part: see the message.
     """
     with errors_shown(choice, as_json):
         from pyfrc_core.deploy import session
 
         remove = session.undeploy_other_languages if java_cpp else session.undeploy
-        remove(project_if_any(directory, main, robot_class, choice), choice, conversation(choice, as_json), sure=yes)
+        remove(
+            project_if_any(directory, main, robot_class, choice), choice, user_interface(choice, as_json), confirmed=yes
+        )

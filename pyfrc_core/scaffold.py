@@ -145,10 +145,10 @@ def _values(template: Template, team: int | None) -> Mapping[str, str]:
     if team is None:
         number = "# team_number = 9999  # your team's, for: pyfrc deploy"
     else:
-        from .deploy.discovery import MOST_TEAM
+        from .deploy.discovery import MAX_TEAM
 
-        if not 1 <= team <= MOST_TEAM:
-            raise UsageError(f"{team} is no team number: one is from 1 to {MOST_TEAM}", where="--team")
+        if not 1 <= team <= MAX_TEAM:
+            raise UsageError(f"{team} is no team number: one is from 1 to {MAX_TEAM}", where="--team")
         number = f"team_number = {team}"
     by_extras = template.packages if template.extras else ()
     return {

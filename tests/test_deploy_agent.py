@@ -21,8 +21,8 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_
 
 from pyfrc_core.deploy import agent
 from pyfrc_core.deploy.agent import console, wire
+from pyfrc_core.deploy.agent_client import COMMAND, DeployRequest, Watched, agent_package
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
-from pyfrc_core.deploy.robot import COMMAND, DeployRequest, Watched, agent_package
 
 SOURCES = sorted(Path(agent.__file__).parent.glob("*.py"))
 
@@ -115,21 +115,21 @@ def test_a_laptop_that_is_gone_loses_its_turn() -> None:
     """A radio that is switched off ends no connection: the agent would hold its lock for hours."""
     ours, theirs = socket.socketpair()
     with ours, theirs, theirs.makefile("rb", buffering=0) as source:
-        waiting = wire.Wire(source, io.BytesIO(), patience=0.01)
-        waiting.impatient = True
-        ours.sendall(wire.said_frame({"op": "deploy"})[:-1])
-        with pytest.raises(wire.WireError, match=r"nothing has come for 0.01 s"):
-            waiting.hear()
+        waiting = wire.Wire(source, io.BytesIO(), silence_limit=0.01)
+        waiting.limits_silence = True
+        ours.sendall(wire.message_frame({"op": "deploy"})[:-1])
+        with pytest.raises(wire.WireError, match=r"no data for 0.01 s"):
+            waiting.receive()
 
 
-SAID = st.dictionaries(st.text(), st.recursive(st.none() | st.integers() | st.text(), st.lists, max_leaves=5))
+MESSAGE = st.dictionaries(st.text(), st.recursive(st.none() | st.integers() | st.text(), st.lists, max_leaves=5))
 
 
-@given(SAID, st.lists(st.binary()), st.data())
-def test_frames_come_as_they_were_sent(said: wire.Said, pieces: list[bytes], data: st.DataObject) -> None:
-    stream = wire.said_frame(said) + b"".join(wire.frame(wire.CONTENT, piece) for piece in pieces)
+@given(MESSAGE, st.lists(st.binary()), st.data())
+def test_frames_come_as_they_were_sent(said: wire.Message, pieces: list[bytes], data: st.DataObject) -> None:
+    stream = wire.message_frame(said) + b"".join(wire.frame(wire.CONTENT, piece) for piece in pieces)
     reading = io.BytesIO(stream)
-    assert wire.said_in(*wire.read_frame(reading.read)) == said
+    assert wire.parse_message(*wire.read_frame(reading.read)) == said
     assert [wire.read_frame(reading.read) for _ in pieces] == [(wire.CONTENT, piece) for piece in pieces]
     cut = io.BytesIO(stream[: data.draw(st.integers(0, len(stream) - 1))])
     with pytest.raises(wire.EndedError):
@@ -139,13 +139,13 @@ def test_frames_come_as_they_were_sent(said: wire.Said, pieces: list[bytes], dat
 @given(st.binary(max_size=50))
 def test_what_is_no_frame_is_refused(noise: bytes) -> None:
     with pytest.raises(wire.WireError):
-        wire.said_in(*wire.read_frame(io.BytesIO(noise).read))
+        wire.parse_message(*wire.read_frame(io.BytesIO(noise).read))
 
 
 def test_a_frame_that_unpacks_to_too_much() -> None:
-    bomb = wire.frame(wire.SAID, zlib.compress(b'{"a": "' + bytes(wire.LONGEST) + b'"}'))
+    bomb = wire.frame(wire.MESSAGE, zlib.compress(b'{"a": "' + bytes(wire.MAX_FRAME_BYTES) + b'"}'))
     with pytest.raises(wire.WireError):
-        wire.said_in(*wire.read_frame(io.BytesIO(bomb).read))
+        wire.parse_message(*wire.read_frame(io.BytesIO(bomb).read))
 
 
 @settings(max_examples=30)
@@ -171,9 +171,9 @@ def test_what_it_does_not_understand_is_told(
     robot: LocalRobot, agents: Agents, request_: dict[str, object], told: str
 ) -> None:
     session = robot.start(agents)
-    robot.channel.sendall(wire.said_frame(request_))
+    robot.channel.sendall(wire.message_frame(request_))
     with pytest.raises(DeployError, match=rf"the agent on the robot has failed: .*{told}.*\n.*left half written"):
-        session._stream.answer(lambda told: None)
+        session._stream.read_response(lambda fields: None)
     assert session.info().current is None
     session.close()
 
@@ -186,13 +186,13 @@ def test_a_python_that_cannot_run_it(robot: LocalRobot) -> None:
 
 def test_something_else_that_prints_before(robot: LocalRobot) -> None:
     """A login script's greeting, say."""
-    with pytest.raises(DeployError, match=r"what the robot sends is not from our agent: .*Welco"):
+    with pytest.raises(DeployError, match=r"the robot sent data that is not from pyfrc's agent: .*Welco"):
         robot.start(Processes(shell="echo 'Welcome to the robot'; exec cat >/dev/null"))
 
 
 def test_the_link_is_cut_while_the_agent_is_sent(robot: LocalRobot) -> None:
     for place in (1, 8, 9, 1000, len(agent_package())):
-        with pytest.raises(ConnectionFailedError, match=r"the link to the robot was lost"):
+        with pytest.raises(ConnectionFailedError, match=r"the connection to the robot was lost"):
             robot.start(Processes(), cut_to_robot=place)
         assert list(robot.home.iterdir()) == []
 

@@ -24,10 +24,10 @@ from roborio import Proxy, Roborio, require_roborio
 from skips import missing_programs, require
 
 from pyfrc_core.deploy import session
-from pyfrc_core.deploy.preparing import image_problem
-from pyfrc_core.deploy.progress import Conversation, Phase, Progress
-from pyfrc_core.deploy.reach import RobotChoice
+from pyfrc_core.deploy.progress import DeployProgress, Phase, UserInterface
+from pyfrc_core.deploy.robot_setup import image_problem
 from pyfrc_core.deploy.session import DeployOptions
+from pyfrc_core.deploy.target_connection import RobotChoice
 from pyfrc_core.project import find_project
 
 #: As the tool of today has it.
@@ -167,7 +167,7 @@ def test_what_was_deployed_from_a_checkout_says_which_commit(robot: Roborio, mak
     assert info["deploy_json"]["git-hash"] == commit
     assert info["deploy_json"]["git-branch"] == "main"
     shown = deploy(project, robot, command="deploy-info").stdout
-    assert f"{commit[:7]} on main, with changes that are not committed" in shown
+    assert f"{commit[:7]} on main, with uncommitted changes" in shown
     assert f"release {info['current']}, running" in shown
 
 
@@ -242,7 +242,7 @@ def test_a_program_that_dies_is_shown_with_its_traceback_and_the_way_back(robot:
     result = deploy(project, robot)
     assert result.code == 3
     assert "| RuntimeError: no such gyro" in result.stdout
-    assert f"Go back to the program before with: pyfrc deploy --robot {robot.where} --rollback" in result.stderr
+    assert f"Go back to the previous program with: pyfrc deploy --robot {robot.where} --rollback" in result.stderr
     assert "number 2" in code_on(robot)
     error = events(deploy(project, robot, "--json"))[-1]
     assert f"pyfrc deploy --robot {robot.where} --rollback" in error["remedy"]
@@ -267,7 +267,7 @@ def test_a_first_program_that_dies_has_nothing_to_go_back_to(robot: Roborio, mak
     project = make_project(program(1, DIES))
     result = deploy(project, robot, "--auto-rollback")
     assert result.code == 3
-    assert "There is no program before to go back to" in result.stderr
+    assert "There is no earlier program to go back to" in result.stderr
 
 
 def test_a_release_that_had_to_make_room_is_not_gone_back_to(robot: Roborio, make_project) -> None:
@@ -278,7 +278,7 @@ def test_a_release_that_had_to_make_room_is_not_gone_back_to(robot: Roborio, mak
     robot.run("rm", "-r", "/home/lvuser/.pyfrc/releases/1", "/home/lvuser/.pyfrc/releases/1.json")
     result = deploy(project, robot, "--auto-rollback")
     assert result.code == 3
-    assert "There is no program before to go back to" in result.stderr
+    assert "There is no earlier program to go back to" in result.stderr
 
 
 def test_rolling_back_goes_to_the_release_before_or_the_one_named(robot: Roborio, make_project) -> None:
@@ -308,7 +308,7 @@ def test_what_another_tool_has_left_is_kept_and_can_be_gone_back_to(robot: Robor
     assert "by           kim on pit" in shown
     result = deploy(project, robot)
     assert result.code == 0, result.output
-    assert "another tool has left there is kept as release 1" in result.stdout
+    assert "the program of another tool is kept as release 1" in result.stdout
     shown = deploy(project, robot, command="deploy-info").stdout
     assert "release 1   yesterday, kim on pit, left by another tool" in shown
     result = deploy(project, robot, "--rollback")
@@ -321,7 +321,7 @@ def test_undeploying_has_to_be_meant(robot: Roborio, make_project) -> None:
     assert deploy(project, robot).code == 0
     result = deploy(project, robot, command="undeploy")
     assert (result.code, "--yes" in result.stderr) == (2, True)
-    code, shown = run_at_terminal(project.path, ["undeploy", "--robot", robot.where], [("Is that meant?", "n")])
+    code, shown = run_at_terminal(project.path, ["undeploy", "--robot", robot.where], [("Continue?", "n")])
     assert (code, "nothing was removed" in shown) == (1, True)
     assert "number 1" in code_on(robot)
     result = deploy(project, robot, "--yes", "--json", command="undeploy")
@@ -344,7 +344,7 @@ def test_a_failing_test_hinders_the_deploy_unless_the_user_says_so(robot: Robori
     assert not (robot.home / "py").exists()
     for answer, expected in (("n", 1), ("y", 0)):
         args = ["deploy", "--robot", robot.where]
-        code, shown = run_at_terminal(project.path, args, [("Deploy all the same?", answer)])
+        code, shown = run_at_terminal(project.path, args, [("Deploy anyway?", answer)])
         assert code == expected, shown
     assert "number 1" in code_on(robot)
 
@@ -389,7 +389,7 @@ OURS = version("wpilib")
     ("how", "what", "remedy"),
     [
         ({"password": "secret"}, "refuses lvuser with an empty password", "passwd -d lvuser"),
-        ({"image": None}, "this is no roboRIO", "--robot HOST"),
+        ({"image": None}, "this is not a roboRIO", "--robot HOST"),
         ({"python": None}, "there is no Python on the robot", "python -m robotpy sync"),
         ({"wpilib": None}, "there is no wpilib", "python -m robotpy deploy"),
         ({"wpilib": "2026.1.1"}, f"the robot has wpilib 2026.1.1, this computer has {OURS}", "--no-version-check"),
@@ -462,7 +462,7 @@ def test_a_key_is_taken_from_a_file_when_the_user_says_so(new_robot, make_projec
     for file, refusal in (
         ("wrong", f"the robot refuses lvuser with {user_keys / 'wrong'}"),
         ("locked", f"{user_keys / 'locked'}: this key has a passphrase"),
-        ("right.pub", f"{user_keys / 'right.pub'}: this is no private key"),
+        ("right.pub", f"{user_keys / 'right.pub'}: this is not a private key"),
         ("none", f"{user_keys / 'none'}: this key cannot be read"),
     ):
         result = deploy(project, robot, "--identity", str(user_keys / file))
@@ -504,10 +504,10 @@ def test_a_changed_host_key_is_refused_until_it_is_accepted(robot: Roborio, make
     assert option[0] == "--accept-host-key"
     accepted = deploy(project, robot, *option, "--robot-name", "practice")
     assert accepted.code == 0
-    assert "a key not seen before, now pinned for" in accepted.stdout
+    assert "a new key, now pinned for" in accepted.stdout
     info = deploy(project, robot, command="deploy-info")
     assert info.code == 0, info.output
-    assert "its key is the known one (practice)" in info.stdout
+    assert "its key is known (practice)" in info.stdout
     assert "name       practice" in info.stdout
     told = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
     assert told["robot_name"] == "practice"
@@ -530,7 +530,7 @@ def test_a_lost_link_is_told_and_the_next_deploy_needs_no_help(robot: Roborio, m
     with Proxy((robot.host, robot.port), cut_to_robot=60_000) as proxy:
         result = deploy(project, proxy)
     assert result.code == 1
-    assert "the link to the robot was lost" in result.stderr
+    assert "the connection to the robot was lost" in result.stderr
     assert "run the command again" in result.stderr
     assert "Traceback" not in result.output
     result = deploy(project, robot)
@@ -570,7 +570,7 @@ def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) ->
     assert "number 2" in code_on(robot)
 
 
-class Holding(Progress):
+class Holding(DeployProgress):
     """Holds a deploy up in the middle of its contents, for something else to be done."""
 
     def __init__(self, do: Callable[[], object]) -> None:
@@ -595,7 +595,7 @@ def test_two_deploys_at_once_one_wins_and_the_other_says_so(robot: Roborio, make
     project = make_project({**program(1), "noise.txt": os.urandom(120_000).hex()})
     holding = Holding(lambda: deploy(project, robot))
     options = DeployOptions(choice=RobotChoice(robot=robot.where), skip_tests=True)
-    session.deploy(find_project(project.path), options, Conversation(holding))
+    session.deploy(find_project(project.path), options, UserInterface(holding))
     (second,) = holding.done
     assert second.code == 1
     assert "is deploying to this robot right now" in second.stderr

@@ -57,7 +57,7 @@ def test_what_is_no_ssh_server_is_told(says: bytes, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("says", [b"SSH-2.0-robot\r\n", b"SSH-2.0-robot\r\n" + b"\0" * 64])
 def test_an_ssh_server_that_goes_no_further(says: bytes, tmp_path: Path) -> None:
-    with server(says) as address, pytest.raises(ConnectionFailedError, match="began as an SSH server") as caught:
+    with server(says) as address, pytest.raises(ConnectionFailedError, match="violated the SSH protocol") as caught:
         connect(address, HostKeys(tmp_path).of_robot(address))
     assert "Error" not in str(caught.value)
 

@@ -86,7 +86,7 @@ def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> No
     for option in ([], ["--nc-ds"]):
         with running(project, "console", "--robot", "127.0.0.1", *option) as console:
             port = 1740 if option else 1741
-            wait_for(console, f"nothing listens at 127.0.0.1:{port}: is it a robot, and is it on?")
+            wait_for(console, f"127.0.0.1:{port} refuses the connection: check the address, and that the robot is on")
         assert console.returncode == 0
 
 
@@ -191,7 +191,7 @@ def follow(monkeypatch: pytest.MonkeyPatch) -> Follow:
 def test_what_is_no_console_is_named_in_one_sentence(content: bytes, follow: Follow) -> None:
     error = follow(info("before") + content)
     assert error.exit_code == 1
-    assert re.match(r"127\.0\.0\.1:\d+: what listens there is not a robot's console: .+\n  \S", str(error)), str(error)
+    assert re.match(r"127\.0\.0\.1:\d+: the server is not a robot's console: .+\n  \S", str(error)), str(error)
 
 
 @pytest.mark.parametrize("content", [bytes(1 << 16), b"HTTP/1.1 200 OK\r\n" * 4000], ids=["empty frames", "HTTP"])
@@ -219,8 +219,7 @@ def test_after_a_loss_it_connects_again(follow: Follow, capsys: pytest.CaptureFi
     follow(info("one") + info("cut")[:-1], None, None, None, info("two"), EMPTY_INFO)
     printed = capsys.readouterr()
     assert printed.out == "[1.50] one\n[1.50] two\n"
-    assert printed.err.count("nothing listens at 127.0.0.1:") == 1
-    assert printed.err.count("is it a robot, and is it on?") == 1
+    assert printed.err.count(" refuses the connection: ") == 1
     assert printed.err.count("the connection was lost") == 2
 
 

@@ -18,14 +18,15 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
 from pyfrc_core.deploy import session
 from pyfrc_core.deploy.agent import serve, wire
-from pyfrc_core.deploy.agent.places import Places
+from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.robot_paths import RobotPaths
+from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError, StoppedError
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.progress import Conversation, Phase, Progress
-from pyfrc_core.deploy.reach import RobotChoice
-from pyfrc_core.deploy.robot import DeployRequest, Robot
+from pyfrc_core.deploy.progress import DeployProgress, Phase, UserInterface
+from pyfrc_core.deploy.recovery_hints import explain_interruption
 from pyfrc_core.deploy.session import DeployOptions
-from pyfrc_core.deploy.standing import told_what_is_so
+from pyfrc_core.deploy.target_connection import RobotChoice
 from pyfrc_core.project import find_project
 
 REQUEST = DeployRequest("robot.py", {})
@@ -40,13 +41,13 @@ def interrupt(*_: object) -> None:
     raise KeyboardInterrupt
 
 
-def interrupt_after(do: Callable[[Robot, Manifest], object], agent: Robot, project: Manifest) -> None:
-    with told_what_is_so(agent):
+def interrupt_after(do: Callable[[AgentClient, Manifest], object], agent: AgentClient, project: Manifest) -> None:
+    with explain_interruption(agent):
         do(agent, project)
         interrupt()
 
 
-def refuse(agent: Robot, project: Manifest) -> None:
+def refuse(agent: AgentClient, project: Manifest) -> None:
     with pytest.raises(RefusedError):
         agent.rollback(77)
 
@@ -66,25 +67,25 @@ def in_switch(phase: str, done: int, total: int) -> None:
 
 
 #: What has been done, what is told, and the command that helps.
-CUT_SHORT: dict[str, tuple[Callable[[Robot, Manifest], object], str, str]] = {
+CUT_SHORT: dict[str, tuple[Callable[[AgentClient, Manifest], object], str, str]] = {
     "switching": (
         lambda agent, project: agent.deploy(project, REQUEST, in_switch),
-        "still runs the one before",
+        "still runs the previous one",
         "pyfrc deploy.",
     ),
     "deployed": (
         lambda agent, project: agent.deploy(project, REQUEST),
-        "release 2 is on the robot, which starts it when it is switched on, but may still run the program from before",
-        "pyfrc deploy. Or go back to the one before: pyfrc deploy --rollback.",
+        "release 2 is on the robot, which will start it when it is switched on, but may still run the previous program",
+        "pyfrc deploy. Or go back to the previous release: pyfrc deploy --rollback.",
     ),
     "restarted": (
         lambda agent, project: (agent.deploy(project, REQUEST), agent.restart()),
-        "release 2 was started, but not seen to run",
-        "pyfrc deploy-info. To go back to the one before: pyfrc deploy --rollback.",
+        "release 2 was started, but not confirmed to run",
+        "pyfrc deploy-info. To go back to the previous release: pyfrc deploy --rollback.",
     ),
     "went back": (
         lambda agent, project: (agent.deploy(project, REQUEST), agent.rollback()),
-        "the robot starts release 1 when it is switched on, but may still run the program from before",
+        "the robot will start release 1 when it is switched on, but may still run the previous program",
         "pyfrc deploy --rollback 1.",
     ),
 }
@@ -110,7 +111,7 @@ def test_ctrl_c_tells_what_is_so_on_the_robot(
 def test_of_a_first_release_there_is_no_way_back(
     restarted: bool, robot: LocalRobot, agents: Agents, project: Manifest
 ) -> None:
-    def do(agent: Robot, project: Manifest) -> None:
+    def do(agent: AgentClient, project: Manifest) -> None:
         agent.deploy(project, REQUEST)
         if restarted:
             agent.restart()
@@ -133,7 +134,7 @@ def test_of_a_first_release_there_is_no_way_back(
     ids=["plan", "in place", "watched", "undeployed", "refused"],
 )
 def test_where_nothing_is_half_done_ctrl_c_is_just_that(
-    do: Callable[[Robot, Manifest], object], robot: LocalRobot, agents: Agents, project: Manifest
+    do: Callable[[AgentClient, Manifest], object], robot: LocalRobot, agents: Agents, project: Manifest
 ) -> None:
     robot.deploy(agents, project)
     agent = robot.start(agents)
@@ -194,33 +195,33 @@ def test_nobody_else_restarts_in_between(robot: LocalRobot, agents: Agents, proj
         second.restart()
 
 
-def test_a_laptop_that_says_nothing_while_the_lock_is_held_loses_its_turn(robot: LocalRobot) -> None:
-    """Before a restart the user is asked nothing; after it, perhaps."""
+def test_a_silent_laptop_counts_as_disconnected_while_it_holds_the_lock(robot: LocalRobot) -> None:
+    """A command may wait for its user only after the watch, when the lock is free."""
 
-    class Listening(wire.Wire):
-        def hear(self) -> wire.Said:
-            impatient.append(self.impatient)
-            return super().hear()
+    class LoggingWire(wire.Wire):
+        def receive(self) -> wire.Message:
+            limited.append(self.limits_silence)
+            return super().receive()
 
-    impatient: list[bool] = []
+    limited: list[bool] = []
     ours, theirs = socket.socketpair()
     nothing = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"  # SHA-256
     with ours, theirs, theirs.makefile("rb", buffering=0) as source:
-        for said in (
-            wire.said_frame({"op": "deploy", "main": "robot.py", "files": [["robot.py", 0, nothing, False]]}),
+        for data in (
+            wire.message_frame({"op": "deploy", "main": "robot.py", "files": [["robot.py", 0, nothing, False]]}),
             wire.frame(wire.CONTENT, zlib.compress(b"")),
-            *(wire.said_frame(each) for each in ({"op": "restart"}, {"op": "watch", "seconds": 0.0})),
+            *(wire.message_frame(each) for each in ({"op": "restart"}, {"op": "watch", "seconds": 0.0})),
         ):
-            ours.sendall(said)
+            ours.sendall(data)
         ours.shutdown(socket.SHUT_WR)
-        serve.Agent(Listening(source, io.BytesIO()), Places(str(robot.root)), {}).serve()
-    assert impatient == [False, True, True, False]
+        serve.Agent(LoggingWire(source, io.BytesIO()), RoboRio(RobotPaths(str(robot.root))), {}).serve()
+    assert limited == [False, True, True, False]
 
 
 # -- as it is seen -----------------------------------------------------------------------------------------------------
 
 
-class Cutting(Progress):
+class Cutting(DeployProgress):
     """Does something when the program is to be started."""
 
     def __init__(self, do: Callable[[], object]) -> None:
@@ -240,17 +241,17 @@ def test_a_deploy_that_is_cut_before_the_start_tells_what_is_so(make_project, mo
     project = find_project(make_project({"robot.py": ROBOT_PY}).path)
     with Roborio(wpilib=version("wpilib")) as robot:
 
-        def deploy_by(where: str, progress: Progress) -> None:
+        def deploy_by(where: str, progress: DeployProgress) -> None:
             options = DeployOptions(choice=RobotChoice(robot=where), skip_tests=True)
-            session.deploy(project, options, Conversation(progress))
+            session.deploy(project, options, UserInterface(progress))
 
         with pytest.raises(StoppedError, match=r"interrupted; release 1 is on the robot"):
             deploy_by(robot.where, Cutting(interrupt))
         with contextlib.ExitStack() as link:
             proxy = link.enter_context(Proxy((robot.host, robot.port)))
-            what = r"link to the robot was lost: .*; release 1 is on the robot"
+            what = r"connection to the robot was lost: .*; release 1 is on the robot"
             with pytest.raises(ConnectionFailedError, match=what) as caught:
                 deploy_by(f"{proxy.host}:{proxy.port}", Cutting(link.close))
         assert "pyfrc deploy --rollback" in str(caught.value.remedy)
-        deploy_by(robot.where, Progress(io.StringIO()))
+        deploy_by(robot.where, DeployProgress(io.StringIO()))
         robot.said("Robot program startup complete")

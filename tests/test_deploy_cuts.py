@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
 
+from pyfrc_core.deploy.agent_client import AgentClient
 from pyfrc_core.deploy.errors import DeployError
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.robot import Robot
 
 Files = dict[str, bytes]
 
@@ -129,7 +129,7 @@ def test_power_lost_at_each_step(name: str, directory: Path, agents: Agents) -> 
 
 
 @contextlib.contextmanager
-def agent(robot: LocalRobot, agents: Agents, **options: int | bool) -> Generator[Robot]:
+def agent(robot: LocalRobot, agents: Agents, **options: int | bool) -> Generator[AgentClient]:
     session = robot.start(agents, **options)
     try:
         yield session

@@ -59,7 +59,7 @@ def servers() -> Iterator[Servers]:
         yield Servers(stack)
 
 
-def find(servers: Servers, *candidates: Address, station: Address | None = None, **how: bool) -> discovery.Found:
+def find(servers: Servers, *candidates: Address, station: Address | None = None, **how: bool) -> discovery.FoundRobot:
     where = station or servers.nobody()
     return find_robot(
         [(address, "a place") for address in candidates], "team 1234", driver_station=(where.host, where.port), **how
@@ -200,7 +200,7 @@ def test_an_address_has_one_form(text: str, address: Address) -> None:
     ],
 )
 def test_an_old_spelling_of_an_address_is_refused_with_the_right_one(text: str, remedy: str) -> None:
-    with pytest.raises(UsageError, match="not how an address is written") as caught:
+    with pytest.raises(UsageError, match="not a valid address") as caught:
         parse_address(text)
     assert remedy in str(caught.value)
 

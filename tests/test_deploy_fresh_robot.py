@@ -15,8 +15,8 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.facts import RobotFacts
 from pyfrc_core.deploy.robot_checks import refuse_unfit_robot
-from pyfrc_core.doctor import Finding
-from pyfrc_core.doctor.robot import RobotSearch, examine_facts
+from pyfrc_core.doctor import CheckResult
+from pyfrc_core.doctor.robot import RobotSearch, check_robot_facts
 from pyfrc_core.project import find_project
 
 OURS = version("wpilib")
@@ -52,7 +52,7 @@ def look_at(robot: LocalRobot) -> RobotFacts:
     return session.facts
 
 
-def doctor(project, robot: Roborio) -> list[Finding]:
+def doctor(project, robot: Roborio) -> list[CheckResult]:
     """What `pyfrc doctor` says about the robot, after the line that it was found."""
     found, *others = RobotSearch(find_project(project.path), robot.where).findings()
     assert found.status == "ok"
@@ -157,7 +157,7 @@ def test_the_doctor_says_what_a_deploy_would_refuse(wrong: dict[str, Any]) -> No
     facts = replace(READY, **wrong)
     with pytest.raises(RefusedError) as refused:
         refuse_unfit_robot(facts, "10.12.34.2", check_versions=True)
-    (finding,) = examine_facts(facts, None)
+    (finding,) = check_robot_facts(facts, None)
     assert finding.status == "problem"
     assert finding.text == refused.value.message
     assert finding.remedy is not None
@@ -166,19 +166,19 @@ def test_the_doctor_says_what_a_deploy_would_refuse(wrong: dict[str, Any]) -> No
 
 def test_a_robot_that_is_ready() -> None:
     refuse_unfit_robot(READY, "10.12.34.2", check_versions=True)
-    (finding,) = examine_facts(READY, None)
+    (finding,) = check_robot_facts(READY, None)
     assert finding.status == "ok"
 
 
 def test_the_doctor_says_all_that_is_wrong_at_once() -> None:
     facts = replace(READY, wpilib=None, python="3.9.1", image="FRC_roboRIO_2025_v2.0")
-    assert [each.status for each in examine_facts(facts, None)] == ["problem"] * 3
+    assert [each.status for each in check_robot_facts(facts, None)] == ["problem"] * 3
 
 
 def test_packages_that_the_project_asks_for_and_the_robot_lacks(tmp_path: Path) -> None:
     (tmp_path / "robot.py").write_text(ROBOT_PY)
     (tmp_path / "pyproject.toml").write_text('[tool.robotpy]\ncomponents = ["commands2"]\n')
-    (finding,) = examine_facts(READY, find_project(tmp_path))
+    (finding,) = check_robot_facts(READY, find_project(tmp_path))
     assert (
         finding.text == "pyproject.toml:2: components has commands2, but the robot has no package robotpy-commands-v2"
     )

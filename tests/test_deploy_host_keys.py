@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 from skips import missing_programs, require
 
-from pyfrc_core.deploy.discovery import USB_CABLE, Address, Found, addresses_of, team_of
+from pyfrc_core.deploy.discovery import USB_CABLE, Address, FoundRobot, addresses_of, team_of
 from pyfrc_core.deploy.errors import HostKeyError, KeyFileError
 from pyfrc_core.deploy.host_keys import KNOWN_HOSTS, HostKey, HostKeys, RobotKeys
-from pyfrc_core.deploy.reach import keys_of_robot
-from pyfrc_core.deploy.team import Target
+from pyfrc_core.deploy.target_connection import load_robot_keys
+from pyfrc_core.deploy.team import RobotTarget
 from pyfrc_core.errors import UsageError
 from pyfrc_core.project import Project
 
@@ -140,7 +140,7 @@ def test_another_team_s_robot_named_by_robot_in_a_team_s_project(
     if own_is_pinned:
         at(tmp_path).check(ONE)
     with socket.socket() as unused:
-        keys = keys_of_robot(project, Target(robot=str(named)), Found(named, "by the command", unused))
+        keys = load_robot_keys(project, RobotTarget(robot=str(named)), FoundRobot(named, "by the command", unused))
     assert "this key is pinned for 10.99.99.2" in refused(keys, THEIRS)
     assert (keys.check(ONE).new_for is None) is (own_is_pinned and named == USB)
     if named == USB:
@@ -155,7 +155,9 @@ def test_another_team_s_address_named_by_robot_in_a_team_s_project(tmp_path: Pat
     theirs = Address("10.99.99.2")
     HostKeys(tmp_path).of_robot(theirs).check(THEIRS)
     with socket.socket() as unused:
-        keys = keys_of_robot(Project(tmp_path / "robot.py"), Target(robot=str(theirs)), Found(theirs, "named", unused))
+        keys = load_robot_keys(
+            Project(tmp_path / "robot.py"), RobotTarget(robot=str(theirs)), FoundRobot(theirs, "named", unused)
+        )
     assert keys.check(THEIRS).new_for is None
     refused(keys, UNKNOWN)
 
@@ -378,7 +380,7 @@ def test_a_file_that_cannot_be_written_is_named_with_what_to_do(home: Path) -> N
         with pytest.raises(KeyFileError, match="cannot write the file with the keys of robots: file exists") as caught:
             keys.of_robot(RADIO).check(ONE)
         assert caught.value.where == str(home / ".pyfrc")
-        assert f"Make sure that you may write {whose}" in str(caught.value.remedy)
+        assert f"Make sure that you can write {whose}" in str(caught.value.remedy)
 
 
 def test_a_file_that_cannot_be_read_is_named_with_what_to_do(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,10 +16,10 @@ from roborio.local import project_of
 
 from pyfrc_core.deploy import agent_stream
 from pyfrc_core.deploy.agent import wire
+from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.agent_stream import TimeLimits
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.robot import DeployRequest, Robot
 
 Script = Iterable[bytes]
 
@@ -68,12 +68,12 @@ DEPLOYED = {
     "bytes": 10,
 }
 STATE = {"seconds": 1.5, "age": 1.0, "heard": True, "seen": True, "replaced": False}
-HELLO = wire.said_frame({"done": FACTS})
+HELLO = wire.message_frame({"done": FACTS})
 REQUEST = DeployRequest("robot.py", {})
 
 
 def packed(text: bytes) -> bytes:
-    return wire.frame(wire.SAID, zlib.compress(text))
+    return wire.frame(wire.MESSAGE, zlib.compress(text))
 
 
 class FakeRobot:
@@ -124,10 +124,10 @@ class FakeRobot:
         self.closed = True
 
 
-def nonsense(robot: FakeRobot, do: Callable[[Robot], object] = lambda robot: None, **limits: float) -> str:
+def protocol_error(robot: FakeRobot, do: Callable[[AgentClient], object] = lambda robot: None, **limits: float) -> str:
     """What is said of it, in one sentence and a remedy."""
     with pytest.raises(DeployError) as caught:
-        do(Robot.start(robot, limits=TimeLimits(**limits)))
+        do(AgentClient.start(robot, limits=TimeLimits(**limits)))
     error = caught.value
     assert error.exit_code == 1
     assert "\n" not in error.message
@@ -142,11 +142,11 @@ def nonsense(robot: FakeRobot, do: Callable[[Robot], object] = lambda robot: Non
 FRAMES = {
     "wrong kind": wire.frame(b"X", b"{}"),
     "contents": wire.frame(wire.CONTENT, b"abc"),
-    "length 0": wire.frame(wire.SAID, b""),
-    "length 4 GB": b"\xff\xff\xff\xff" + wire.SAID + bytes(100),
-    "just too long": struct.pack(">I", agent_stream.LONGEST_ANSWER + 1) + wire.SAID,
-    "no zlib": wire.frame(wire.SAID, b"{}"),
-    "zlib without an end": wire.frame(wire.SAID, zlib.compress(b"{}")[:-4]),
+    "length 0": wire.frame(wire.MESSAGE, b""),
+    "length 4 GB": b"\xff\xff\xff\xff" + wire.MESSAGE + bytes(100),
+    "just too long": struct.pack(">I", agent_stream.MAX_RESPONSE_BYTES + 1) + wire.MESSAGE,
+    "no zlib": wire.frame(wire.MESSAGE, b"{}"),
+    "zlib without an end": wire.frame(wire.MESSAGE, zlib.compress(b"{}")[:-4]),
     "zlib bomb": packed(b'{"done": "' + bytes(50_000_000) + b'"}'),
     "no UTF-8": packed(b'{"done": "\xff"}'),
     "no JSON": packed(b"{'done': 1}"),
@@ -162,13 +162,13 @@ FRAMES = {
     "many keys": packed(b'{"done": {' + b",".join(b'"%x":0' % each for each in range(400_000)) + b"}}"),
     "wide letters": packed(('{"done": "\U0001f600' + "x" * 4_000_000 + '"}').encode()),
     "a banner": b"\r\n*** Welcome to the robot! ***\x1b[2J\r\n",
-    "nothing that is known": wire.said_frame({"hello": 1}),
-    "no object as the answer": wire.said_frame({"done": [FACTS]}),
-    "no answer": wire.said_frame({"done": None}),
-    "an error that is a number": wire.said_frame({"error": 1, "message": "x", "remedy": ""}),
-    "an error without a message": wire.said_frame({"error": "bug"}),
-    "an error with a list": wire.said_frame({"error": "bug", "message": "x", "remedy": "", "traceback": []}),
-    "an error with a remedy that is none": wire.said_frame({"error": "x", "message": "x", "remedy": {"a": 1}}),
+    "nothing that is known": wire.message_frame({"hello": 1}),
+    "no object as the answer": wire.message_frame({"done": [FACTS]}),
+    "no response": wire.message_frame({"done": None}),
+    "an error that is a number": wire.message_frame({"error": 1, "message": "x", "remedy": ""}),
+    "an error without a message": wire.message_frame({"error": "bug"}),
+    "an error with a list": wire.message_frame({"error": "bug", "message": "x", "remedy": "", "traceback": []}),
+    "an error with a remedy that is none": wire.message_frame({"error": "x", "message": "x", "remedy": {"a": 1}}),
 }
 
 
@@ -176,11 +176,11 @@ FRAMES = {
 def test_a_frame_that_is_none(frame: bytes) -> None:
     tracemalloc.start()
     try:
-        message = nonsense(FakeRobot(frame))
+        message = protocol_error(FakeRobot(frame))
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert message.startswith("what the robot sends is not from our agent: ")
+    assert message.startswith("the robot sent data that is not from pyfrc's agent: ")
     assert peak < 40_000_000
 
 
@@ -195,27 +195,27 @@ def test_a_frame_that_is_none(frame: bytes) -> None:
     ],
 )
 def test_what_is_wrong_with_a_frame(frame: str, what: str) -> None:
-    message = nonsense(FakeRobot(FRAMES[frame]))
-    assert message == f"what the robot sends is not from our agent: {what}"
+    message = protocol_error(FakeRobot(FRAMES[frame]))
+    assert message == f"the robot sent data that is not from pyfrc's agent: {what}"
 
 
 def test_the_longest_real_answer_is_read(project: Manifest) -> None:
     """The changes of a project with 50,000 files, with as many commas in their names."""
     paths = [f"deploy/trajectories, and choreo/{number:05}.traj" for number in range(50_000)]
     plan = {"added": paths, "changed": [], "removed": [], "files": 50_000, "bytes": 1}
-    robot = Robot.start(FakeRobot(HELLO, wire.said_frame({"done": plan})))
+    robot = AgentClient.start(FakeRobot(HELLO, wire.message_frame({"done": plan})))
     assert len(robot.plan(project).added) == 50_000
 
 
 @pytest.mark.parametrize("cut", [0, 1, 5, 6, len(HELLO) - 1])
 @pytest.mark.parametrize("status", [-1, None, 0])
 def test_a_link_that_is_closed_in_the_middle(cut: int, status: int | None) -> None:
-    message = nonsense(FakeRobot(HELLO[:cut], status=status), start=0.01)
-    assert message.startswith("the link to the robot was lost: the stream has ended")
+    message = protocol_error(FakeRobot(HELLO[:cut], status=status), start=0.01)
+    assert message.startswith("the connection to the robot was lost: the stream has ended")
 
 
 def test_many_errors_printed() -> None:
-    message = nonsense(FakeRobot(status=1, errors=b"x\n" * 1_000_000 + b"\x1b]0;pwned\x07" + b"y" * 1_000_000))
+    message = protocol_error(FakeRobot(status=1, errors=b"x\n" * 1_000_000 + b"\x1b]0;pwned\x07" + b"y" * 1_000_000))
     assert message.startswith("the agent on the robot has ended: ")
 
 
@@ -261,8 +261,8 @@ def _long_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_facts_with_a_wrong_field() -> None:
     count = 0
     for what, facts in variants(FACTS):
-        message = nonsense(FakeRobot(of_json({"done": facts})))
-        assert message.startswith("what the robot sends is not from our agent: "), what
+        message = protocol_error(FakeRobot(of_json({"done": facts})))
+        assert message.startswith("the robot sent data that is not from pyfrc's agent: "), what
         count += 1
     assert count > 150
 
@@ -270,8 +270,8 @@ def test_facts_with_a_wrong_field() -> None:
 def test_a_release_with_a_wrong_field() -> None:
     for what, release in variants(FACTS["releases"][0]):
         if what not in ("no main", "no from", "no debug"):  # an old record may lack them
-            message = nonsense(FakeRobot(of_json({"done": {**FACTS, "releases": [release]}})))
-            assert message.startswith("what the robot sends is not from our agent: "), what
+            message = protocol_error(FakeRobot(of_json({"done": {**FACTS, "releases": [release]}})))
+            assert message.startswith("the robot sent data that is not from pyfrc's agent: "), what
 
 
 @pytest.fixture
@@ -283,9 +283,9 @@ def test_an_answer_to_a_deploy_with_a_wrong_field(project: Manifest) -> None:
     for what, deployed in variants(DEPLOYED):
         if what in ("no release", "no previous", "no taken"):
             continue
-        reply = wire.said_frame({"need": []}) + of_json({"done": deployed})
-        message = nonsense(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
-        assert message.startswith("what the robot sends is not from our agent: "), what
+        reply = wire.message_frame({"need": []}) + of_json({"done": deployed})
+        message = protocol_error(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
+        assert message.startswith("the robot sent data that is not from pyfrc's agent: "), what
 
 
 NEEDS: list[Any] = [
@@ -302,32 +302,32 @@ NEEDS: list[Any] = [
 
 @pytest.mark.parametrize("need", NEEDS, ids=str)
 def test_contents_that_were_not_offered(need: dict[str, Any], project: Manifest) -> None:
-    message = nonsense(FakeRobot(HELLO, wire.said_frame(need)), lambda robot: robot.deploy(project, REQUEST))
+    message = protocol_error(FakeRobot(HELLO, wire.message_frame(need)), lambda robot: robot.deploy(project, REQUEST))
     assert "'need'" in message
 
 
 @pytest.mark.parametrize("phase", [None, 1, [], {"a": "b"}])
 def test_a_phase_that_is_none(phase: object, project: Manifest) -> None:
-    reply = wire.said_frame({"need": []}) + wire.said_frame({"phase": phase})
-    assert "'phase'" in nonsense(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
+    reply = wire.message_frame({"need": []}) + wire.message_frame({"phase": phase})
+    assert "'phase'" in protocol_error(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
 
 
 def test_a_phase_that_is_not_known_is_one_of_a_later_agent(project: Manifest) -> None:
-    reply = b"".join(map(wire.said_frame, ({"need": []}, {"phase": "\x1b[2Jpolish"}, {"done": DEPLOYED})))
+    reply = b"".join(map(wire.message_frame, ({"need": []}, {"phase": "\x1b[2Jpolish"}, {"done": DEPLOYED})))
     phases: list[str] = []
-    robot = Robot.start(FakeRobot(HELLO, reply))
+    robot = AgentClient.start(FakeRobot(HELLO, reply))
     assert robot.deploy(project, REQUEST, lambda phase, done, total: phases.append(phase)).release == 2
     assert phases == ["\\x1b[2Jpolish"]
 
 
 def test_an_answer_that_comes_twice(project: Manifest) -> None:
-    reply = b"".join(map(wire.said_frame, ({"need": []}, {"done": DEPLOYED}, {"done": DEPLOYED})))
+    reply = b"".join(map(wire.message_frame, ({"need": []}, {"done": DEPLOYED}, {"done": DEPLOYED})))
 
-    def do(robot: Robot) -> None:
+    def do(robot: AgentClient) -> None:
         robot.deploy(project, REQUEST)
         robot.restart()
 
-    assert "something came that was not asked for" in nonsense(FakeRobot(HELLO, reply), do)
+    assert "it sent a message without a request" in protocol_error(FakeRobot(HELLO, reply), do)
 
 
 @pytest.mark.parametrize(
@@ -351,20 +351,20 @@ def test_an_answer_that_comes_twice(project: Manifest) -> None:
         (lambda robot: robot.plan(Manifest(())), {"added": [], "changed": [], "removed": [], "files": -1, "bytes": 0}),
     ],
 )
-def test_other_answers_with_a_wrong_field(op: Callable[[Robot], object], answer: object) -> None:
-    message = nonsense(FakeRobot(HELLO, wire.said_frame({"done": answer})), op)
-    assert message.startswith("what the robot sends is not from our agent: ")
+def test_other_answers_with_a_wrong_field(op: Callable[[AgentClient], object], answer: object) -> None:
+    message = protocol_error(FakeRobot(HELLO, wire.message_frame({"done": answer})), op)
+    assert message.startswith("the robot sent data that is not from pyfrc's agent: ")
 
 
 @pytest.mark.parametrize("state", [None, [], {}, {"seconds": "long"}, {"seconds": True}])
 def test_a_state_that_is_none(state: object) -> None:
-    message = nonsense(FakeRobot(HELLO, wire.said_frame({"watching": state})), lambda robot: robot.watch(1.0))
-    assert message.startswith("what the robot sends is not from our agent: ")
+    message = protocol_error(FakeRobot(HELLO, wire.message_frame({"watching": state})), lambda robot: robot.watch(1.0))
+    assert message.startswith("the robot sent data that is not from pyfrc's agent: ")
 
 
 @pytest.mark.parametrize("output", [None, 1, ["x"]])
 def test_output_that_is_no_text(output: object) -> None:
-    message = nonsense(FakeRobot(HELLO, wire.said_frame({"output": output})), lambda robot: robot.watch(1.0))
+    message = protocol_error(FakeRobot(HELLO, wire.message_frame({"output": output})), lambda robot: robot.watch(1.0))
     assert "'output'" in message
 
 
@@ -373,7 +373,7 @@ def test_output_that_is_no_text(output: object) -> None:
 
 def for_ever(*frames: dict[str, Any]) -> Iterator[bytes]:
     while True:
-        yield from map(wire.said_frame, frames)
+        yield from map(wire.message_frame, frames)
 
 
 @pytest.mark.parametrize(
@@ -382,22 +382,24 @@ def for_ever(*frames: dict[str, Any]) -> Iterator[bytes]:
 def test_frames_without_an_end(frame: dict[str, Any]) -> None:
     tracemalloc.start()
     try:
-        message = nonsense(FakeRobot(HELLO, then=for_ever(frame)), lambda robot: robot.watch(3600.0))
+        message = protocol_error(FakeRobot(HELLO, then=for_ever(frame)), lambda robot: robot.watch(3600.0))
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
-    assert "no answer" in message
+    assert "no response" in message
     assert peak < 10_000_000
 
 
 def test_a_frame_that_drips_for_ever() -> None:
     """The clock is real here, and the robot as quick as this machine: what ends it is the limit for a frame."""
     drips = (bytes(1) for _ in iter(int, 1))
-    with pytest.raises(ConnectionFailedError, match="its answer began, and did not end"):
-        Robot.start(FakeRobot(struct.pack(">Ic", 1 << 22, wire.SAID), then=drips), limits=TimeLimits(frame=0.1))
+    with pytest.raises(ConnectionFailedError, match="its response is incomplete"):
+        AgentClient.start(
+            FakeRobot(struct.pack(">Ic", 1 << 22, wire.MESSAGE), then=drips), limits=TimeLimits(frame=0.1)
+        )
 
 
 def test_the_connection_is_closed_afterwards() -> None:
     robot = FakeRobot(FRAMES["a list"])
-    nonsense(robot)
+    protocol_error(robot)
     assert robot.closed

@@ -239,11 +239,11 @@ def test_a_file_that_the_program_does_not_use_may_be_anything(
 
 def test_the_robots_own_python_decides(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
     """The robot is asked with the first frame; it says which modules it cannot find."""
-    from pyfrc_core.deploy.robot import Robot
+    from pyfrc_core.deploy.agent_client import AgentClient
 
     robot._agents, robot._options = agents, {}
     hello = {"root": str(robot.root), "modules": ["wpilib", "no_such", "json.no_such", "json.decoder"]}
-    session = Robot.start(robot, hello=hello)
+    session = AgentClient.start(robot, hello=hello)
     assert session.facts.missing_modules == ("no_such", "json.no_such")
     assert session.facts.packages["wpilib"] == session.facts.wpilib
     session.close()

@@ -17,10 +17,10 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import Compiler
-from pyfrc_core.deploy.agent.places import Refusal
+from pyfrc_core.deploy.agent.robot_paths import Refusal
+from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.manifest import Manifest
 from pyfrc_core.deploy.progress import wording_of_work
-from pyfrc_core.deploy.robot import DeployRequest, Robot
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="an agent runs on Linux")
 
@@ -124,7 +124,7 @@ def large_project(directory: Path, modules: int, **more: str | bytes) -> Manifes
 
 
 #: What is done, and the work for which the agent gives signs of life then.
-WORK: dict[str, tuple[Callable[[Robot, Manifest, Callable[[str, int, int], None]], object], set[str]]] = {
+WORK: dict[str, tuple[Callable[[AgentClient, Manifest, Callable[[str, int, int], None]], object], set[str]]] = {
     "deploy": (
         lambda agent, project, on: agent.deploy(project, REQUEST, on),
         {"check", "link", "receive", "copy", "compile", "sync", "switch", "carry", "remove"},
@@ -160,7 +160,7 @@ def test_signs_of_life_during_all_work(what: str, robot: LocalRobot, agents: Age
 
 def test_work_as_the_terminal_shows_it() -> None:
     assert wording_of_work("check", 2300, 5000) == "checking 2,300 of 5,000 files"
-    assert wording_of_work("carry", 5003, 0) == "looking through 5,003 files for what the program has written"
+    assert wording_of_work("carry", 5003, 0) == "searching 5,003 files for files that the program wrote"
     assert wording_of_work("sync", 0, 0) == "waiting for the robot's disk"
     assert wording_of_work("a word of a newer agent", 1, 2) == "working"
 
@@ -168,7 +168,7 @@ def test_work_as_the_terminal_shows_it() -> None:
 # -- linear work -------------------------------------------------------------------------------------------------------
 
 
-def calls_of(robot: LocalRobot, agents: Agents, do: Callable[[Robot], object]) -> int:
+def calls_of(robot: LocalRobot, agents: Agents, do: Callable[[AgentClient], object]) -> int:
     agent = robot.start(agents, calls=True)
     do(agent)
     agent.close()
@@ -183,7 +183,7 @@ def test_the_work_is_linear_in_the_files_of_a_directory(robot: LocalRobot, agent
         there = robot.copy(robot.root.with_name(str(files)))
         first = large_project(tmp_path / f"first {files}", files)
         changed = large_project(tmp_path / f"changed {files}", files, **{"generated/m7.py": "x = 'changed'\n"})
-        steps: list[Callable[[Robot], object]] = [
+        steps: list[Callable[[AgentClient], object]] = [
             lambda agent, project=first: agent.deploy(project, REQUEST),  # type: ignore[misc]
             lambda agent, project=first: agent.deploy(project, REQUEST),  # type: ignore[misc]
             lambda agent, project=changed: agent.deploy(project, REQUEST),  # type: ignore[misc]

@@ -11,8 +11,9 @@ import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import LocalRobot
 
-from pyfrc_core.deploy.agent import places, releases, serve, wire
-from pyfrc_core.deploy.agent.places import Lock, Places, Refusal
+from pyfrc_core.deploy.agent import releases, robot_paths, serve, wire
+from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.robot_paths import Lock, Refusal, RobotPaths
 
 
 def is_held(lock: Path) -> bool:
@@ -25,7 +26,7 @@ def is_held(lock: Path) -> bool:
 
 
 def test_a_lock_that_is_removed_while_it_is_waited_for(robot: LocalRobot, monkeypatch: pytest.MonkeyPatch) -> None:
-    there = Places(str(robot.root))
+    there = RobotPaths(str(robot.root))
     flock, calls = fcntl.flock, []
 
     def late_flock(stream: Any, how: int) -> None:
@@ -35,7 +36,7 @@ def test_a_lock_that_is_removed_while_it_is_waited_for(robot: LocalRobot, monkey
         flock(stream, how)
 
     monkeypatch.setattr(fcntl, "flock", late_flock)
-    monkeypatch.setattr(places, "_GRACE", 0.0)
+    monkeypatch.setattr(robot_paths, "_GRACE", 0.0)
     with Lock(there, "first"):
         with pytest.raises(Refusal, match="first is deploying to this robot right now"), Lock(there, "second"):
             pass
@@ -49,10 +50,10 @@ class NeverWaitedFor(io.BytesIO):
         raise AssertionError("the agent would give the laptop up after 20 seconds")
 
 
-def test_an_undeploy_holds_the_lock_until_all_is_removed_and_the_agent_is_patient_then(
+def test_an_undeploy_holds_the_lock_until_everything_is_removed_and_limits_no_silence_then(
     robot: LocalRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    there = Places(str(robot.root))
+    there = RobotPaths(str(robot.root))
     (there.releases / "1").mkdir(parents=True)
     there.code.symlink_to(".pyfrc/releases/1")
     held, remove = {}, serve.remove
@@ -63,13 +64,13 @@ def test_an_undeploy_holds_the_lock_until_all_is_removed_and_the_agent_is_patien
 
     for module in (serve, releases):
         monkeypatch.setattr(module, "remove", watched_remove)
-    answers = io.BytesIO()
+    responses = io.BytesIO()
     serve.Agent(
-        wire.Wire(NeverWaitedFor(wire.said_frame({"op": "undeploy"})), answers), there, {"who": "somebody"}
+        wire.Wire(NeverWaitedFor(wire.message_frame({"op": "undeploy"})), responses), RoboRio(there), {"who": "alice"}
     ).serve()
-    answers.seek(0)
-    wire.read_frame(answers.read)  # the facts
-    assert wire.said_in(*wire.read_frame(answers.read)) == {"done": {"removed": True}}
+    responses.seek(0)
+    wire.read_frame(responses.read)  # the facts
+    assert wire.parse_message(*wire.read_frame(responses.read)) == {"done": {"removed": True}}
     assert {there.code, there.releases, there.lock} <= held.keys()
     assert all(held.values())
     assert not there.own.exists()

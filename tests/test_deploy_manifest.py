@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pyfrc_core.deploy.errors import RefusedError
-from pyfrc_core.deploy.manifest import LARGE, is_excluded, survey
+from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="names and links that Windows has not")
 
@@ -25,14 +25,14 @@ def make(root: Path, *names: str, content: bytes = b"x") -> None:
 
 
 def paths(root: Path, *exclude: str) -> list[str]:
-    return [entry.path for entry in survey(root, exclude).entries]
+    return [entry.path for entry in build_manifest(root, exclude).entries]
 
 
 def test_a_programs_files_are_told_by_size_and_content(tmp_path: Path) -> None:
     make(tmp_path, "robot.py", content=b"print()\n")
     make(tmp_path, "components/arm.py", content=b"")
     (tmp_path / "robot.py").chmod(0o755)
-    manifest = survey(tmp_path)
+    manifest = build_manifest(tmp_path)
     arm, robot = manifest.entries
     assert (arm.path, arm.size) == ("components/arm.py", 0)
     assert (robot.path, robot.size, robot.file) == ("robot.py", 8, tmp_path / "robot.py")
@@ -94,7 +94,7 @@ def test_names_that_are_not_utf8_are_refused_by_name(tmp_path: Path) -> None:
     except OSError:
         pytest.skip("this file system has no such names")
     with pytest.raises(RefusedError, match=r"'caf\\udce9\.py'"):
-        survey(tmp_path)
+        build_manifest(tmp_path)
 
 
 @posix
@@ -102,7 +102,7 @@ def test_links_inside_the_project_are_uploaded_as_what_they_lead_to(tmp_path: Pa
     make(tmp_path, "real/one.py", content=b"one")
     (tmp_path / "file.py").symlink_to("real/one.py")
     (tmp_path / "directory").symlink_to("real")
-    manifest = survey(tmp_path)
+    manifest = build_manifest(tmp_path)
     assert {entry.path: entry.size for entry in manifest.entries} == {
         "directory/one.py": 3,
         "file.py": 3,
@@ -118,7 +118,7 @@ def test_links_that_cannot_be_uploaded_are_refused_by_name(leads_to: str, tmp_pa
     link = "package/round.link"
     (project / link).symlink_to(leads_to)
     with pytest.raises(RefusedError) as caught:
-        survey(project)
+        build_manifest(project)
     assert str(caught.value).startswith(f"{link}: this link leads ")
     assert "exclude" in str(caught.value)
     assert paths(project, "*.link") == ["package/x.py", "robot.py"]
@@ -128,7 +128,7 @@ def test_links_that_cannot_be_uploaded_are_refused_by_name(leads_to: str, tmp_pa
 def test_what_is_no_file_is_refused_by_name(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(RefusedError, match=r"^pipe: .*a pipe"):
-        survey(tmp_path)
+        build_manifest(tmp_path)
 
 
 def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -143,7 +143,7 @@ def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, monkeypatch: pyt
 
     monkeypatch.setattr(Path, "read_bytes", guarded)
     with pytest.raises(RefusedError, match=r"secret.txt: this cannot be read: Permission denied\n.*exclude"):
-        survey(tmp_path)
+        build_manifest(tmp_path)
 
 
 def test_large_files_are_uploaded_only_when_they_are_meant(tmp_path: Path) -> None:
@@ -151,6 +151,6 @@ def test_large_files_are_uploaded_only_when_they_are_meant(tmp_path: Path) -> No
     assert paths(tmp_path) == ["just.bin"]
     make(tmp_path, *(f"{number:02}.bin" for number in range(12)), content=bytes(LARGE + 1))
     with pytest.raises(RefusedError, match=r"00\.bin \(250,001 bytes\), .* and 2 more\n.*--large.*exclude"):
-        survey(tmp_path)
-    assert len(survey(tmp_path, large=True).entries) == 13
+        build_manifest(tmp_path)
+    assert len(build_manifest(tmp_path, large=True).entries) == 13
     assert paths(tmp_path, "[01]*.bin") == ["just.bin"]

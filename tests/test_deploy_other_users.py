@@ -10,8 +10,8 @@ from roborio import Roborio, require_roborio
 from roborio.local import project_of
 from roborio.ssh import SshConnection
 
+from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
 from pyfrc_core.deploy.errors import RefusedError
-from pyfrc_core.deploy.robot import Deployed, DeployRequest, Robot
 
 ADMIN = 0
 ROBOT = "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    NUMBER = {number}\n"
@@ -27,7 +27,7 @@ def roborio() -> Generator[Roborio]:
 def deploy(roborio: Roborio, directory: Path, number: int, *, start: bool = False) -> Deployed:
     project = project_of(directory, {"robot.py": ROBOT.format(number=number)})
     with SshConnection(roborio.host, roborio.port, "lvuser") as connection:
-        robot = Robot.start(connection)
+        robot = AgentClient.start(connection)
         try:
             deployed = robot.deploy(project, DeployRequest("robot.py", {}))
             if start:

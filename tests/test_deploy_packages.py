@@ -20,9 +20,9 @@ from roborio.local import Agents, LocalRobot, project_of
 from pyfrc_core.config.robotpy import RobotPackages, load_robot_packages
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.facts import RobotFacts
-from pyfrc_core.deploy.preparing import VIRTUAL_IMAGE
-from pyfrc_core.deploy.progress import Conversation, Progress, Questions
-from pyfrc_core.deploy.robot_packages import ImportSearch, Problem, check_packages, unfit_packages
+from pyfrc_core.deploy.progress import DeployProgress, Questions, UserInterface
+from pyfrc_core.deploy.robot_packages import ImportSearch, PackageProblem, check_packages, unfit_packages
+from pyfrc_core.deploy.robot_setup import VIRTUAL_IMAGE
 from pyfrc_core.errors import SettingsError
 
 GUIDE = (Path(__file__).parents[1] / "docs/deploy.md").read_text("utf-8")
@@ -40,14 +40,16 @@ def facts(robot: LocalRobot, agents: Agents) -> RobotFacts:
     return dataclasses.replace(session.facts, python="3.14.0", machine="armv7l", packages={"wpilib": OURS})
 
 
-Problems = Callable[..., list[Problem]]
+Problems = Callable[..., list[PackageProblem]]
 
 
 @pytest.fixture
 def problems(facts: RobotFacts, tmp_path: Path) -> Problems:
     """What is wrong with a program of these files, on a robot without these modules."""
 
-    def find(files: dict[str, str], missing: tuple[str, ...], packages: RobotPackages = NOTHING) -> list[Problem]:
+    def find(
+        files: dict[str, str], missing: tuple[str, ...], packages: RobotPackages = NOTHING
+    ) -> list[PackageProblem]:
         search = ImportSearch(project_of(tmp_path, files), tmp_path, "robot.py")
         absent = tuple(each for each in search.modules() if each in missing)
         return search.problems(dataclasses.replace(facts, missing_modules=absent), packages)
@@ -101,7 +103,7 @@ def problems(facts: RobotFacts, tmp_path: Path) -> Problems:
             {"robot.py": "import telnetlib\n" if "telnetlib" in sys.stdlib_module_names else "import curses\n"},
             ("telnetlib", "curses"),
             "Python 3.14.0 on the robot has no such module",
-            "do without it",
+            "use another module",
         ),
         (
             {"robot.py": "import fast\n", "fast.cp399-win_arm.pyd": ""},
@@ -170,7 +172,7 @@ def test_an_import_that_perhaps_never_runs_is_only_a_warning(problems: Problems)
         ),
         (
             "some_library",
-            "Is the name right? If it is a package: in the environment in which pyfrc virtual-robot runs: "
+            "Check the name. If it is a package: in the environment in which pyfrc virtual-robot runs: "
             "python -m pip install PACKAGE.",
         ),
     ],
@@ -272,7 +274,7 @@ def test_the_user_is_asked(facts: RobotFacts, tmp_path: Path, agrees: bool | Non
         return bool(agrees)
 
     ask = None if agrees is None else Questions(lambda question: "", answer)
-    talk = Conversation(Progress(io.StringIO()), ask)
+    talk = UserInterface(DeployProgress(io.StringIO()), ask)
     robot = dataclasses.replace(facts, missing_modules=("commands2",))
     if agrees:
         check_packages(search, NOTHING, robot, talk)
@@ -325,7 +327,7 @@ def test_deploying_all_the_same(roborio: Roborio, make_project) -> None:
     code, shown = run_at_terminal(
         project.path,
         ["deploy", "--skip-tests", "--robot", roborio.where],
-        [("no package robotpy-commands-v2. Deploy all the same?", "y")],
+        [("no package robotpy-commands-v2. Deploy anyway?", "y")],
     )
     assert code == 3, shown  # it has ended at once
     project.write({"robot.py": ROBOT.format(imports="import commands2 as c")})

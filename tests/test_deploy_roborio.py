@@ -15,9 +15,9 @@ from roborio import Proxy, Roborio, require_roborio
 from roborio.local import LocalRobot, project_of
 from roborio.ssh import SshConnection
 
+from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest, Watched
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.robot import Deployed, DeployRequest, Robot, Watched
 
 ROBOT = """\
 import wpilib
@@ -43,10 +43,10 @@ def roborio() -> Generator[Roborio]:
 
 
 @contextlib.contextmanager
-def agent(roborio: Roborio | Proxy, user: str = "lvuser") -> Generator[Robot]:
+def agent(roborio: Roborio | Proxy, user: str = "lvuser") -> Generator[AgentClient]:
     """An agent on it."""
     with SshConnection(roborio.host, roborio.port, user) as connection:
-        robot = Robot.start(connection)
+        robot = AgentClient.start(connection)
         try:
             yield robot
         finally:
@@ -58,7 +58,7 @@ def deploy(roborio: Roborio | Proxy, project: Manifest, user: str = "lvuser") ->
         return robot.deploy(project, DeployRequest("robot.py", {"deploy-host": "here"}))
 
 
-def started(robot: Robot, seconds: float = 20) -> Watched:
+def started(robot: AgentClient, seconds: float = 20) -> Watched:
     robot.restart()
     return robot.watch(seconds)
 
@@ -306,7 +306,7 @@ def test_a_kill_script_that_cannot_stop_the_program(roborio: Roborio, tmp_path: 
         assert started(robot).started, "what counts is that it has stopped it"
         roborio.put(kill_script, "", owner=0, mode=0o644)
         with pytest.raises(
-            RefusedError, match=r"frcKillRobot.sh cannot be run: .*Permission denied\n  Switch the robot off"
+            RefusedError, match=r"frcKillRobot.sh cannot be executed: .*Permission denied\n  Switch the robot off"
         ):
             robot.restart()
         (roborio.disk / kill_script).unlink()

@@ -8,11 +8,11 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from pyfrc_cli.robot_options import conversation, errors_shown, json_option, robot_options
-from pyfrc_core.deploy import preparing, standing, starting
+from pyfrc_cli.robot_options import errors_shown, json_option, robot_options, user_interface
+from pyfrc_core.deploy import recovery_hints, robot_setup, starting
 from pyfrc_core.deploy.facts import StartState
-from pyfrc_core.deploy.reach import RobotChoice
-from pyfrc_core.deploy.robot_commands import naming_robot
+from pyfrc_core.deploy.robot_commands import with_robot_option
+from pyfrc_core.deploy.target_connection import RobotChoice
 from pyfrc_core.errors import PyfrcError
 
 REMEDY = "Deploy again: pyfrc deploy. To see what it has: pyfrc deploy-info. Or: pyfrc deploy --rollback 3."
@@ -23,7 +23,7 @@ REMEDY = "Deploy again: pyfrc deploy. To see what it has: pyfrc deploy-info. Or:
 @json_option
 def failing(choice: RobotChoice, as_json: bool) -> None:
     with errors_shown(choice, as_json):
-        progress = conversation(choice, as_json).progress
+        progress = user_interface(choice, as_json).progress
         progress.note("see pyfrc console")
         progress.warning("see pyfrc console")
         raise PyfrcError("it fails", remedy=REMEDY)
@@ -54,26 +54,26 @@ def test_remedies_name_the_robot_as_it_was_typed(typed: list[str], robot: str) -
 @pytest.mark.parametrize(
     "remedy",
     [
-        standing.TAKES_OVER.remedy,
-        standing.GOES_BACK.remedy,
-        standing.GOES_AWAY.remedy,
-        standing.deployed(2, 1).remedy,
-        standing.went_back(1).remedy,
-        standing.started(2, 1, StartState(seconds=1.0, seen=True)).remedy,
+        recovery_hints.SWITCHING.remedy,
+        recovery_hints.ROLLING_BACK.remedy,
+        recovery_hints.UNDEPLOYING.remedy,
+        recovery_hints.deployed(2, 1).remedy,
+        recovery_hints.rolled_back(1).remedy,
+        recovery_hints.started(2, 1, StartState(seconds=1.0, seen=True)).remedy,
         starting._GO_BACK,
-        preparing.other_languages_notice(["/home/lvuser/robot.jar"])[1],
+        robot_setup.other_languages_notice(["/home/lvuser/robot.jar"])[1],
     ],
 )
 def test_each_command_of_a_deploy_s_own_remedies_is_found(remedy: str) -> None:
     commands = remedy.count("pyfrc ")
     assert commands > 0
-    assert naming_robot(remedy, None, 1234).count(" --team 1234") == commands
+    assert with_robot_option(remedy, None, 1234).count(" --team 1234") == commands
 
 
 def test_a_command_that_names_a_robot_already_stays_as_it_is() -> None:
     text = "Try it without a robot: pyfrc virtual-robot -- pyfrc deploy --robot"
-    assert naming_robot(text, "10.12.34.2", None) == text
+    assert with_robot_option(text, "10.12.34.2", None) == text
 
 
 def test_an_address_is_quoted_for_the_shell() -> None:
-    assert naming_robot("pyfrc console", "a;b", None) == "pyfrc console --robot 'a;b'"
+    assert with_robot_option("pyfrc console", "a;b", None) == "pyfrc console --robot 'a;b'"

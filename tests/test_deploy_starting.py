@@ -18,10 +18,12 @@ import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
-from pyfrc_core.deploy import standing
-from pyfrc_core.deploy.agent.program import age_of, state_of
-from pyfrc_core.deploy.agent.watching import ENDED, RUNNING, STARTING, UNHEARD
-from pyfrc_core.deploy.answers import AnswerError, Fields
+from pyfrc_core.deploy import recovery_hints
+from pyfrc_core.deploy.agent.host import RoboRio, age_of
+from pyfrc_core.deploy.agent.program import process_state
+from pyfrc_core.deploy.agent.robot_paths import RobotPaths
+from pyfrc_core.deploy.agent.start_monitor import ENDED, RUNNING, STARTING, UNHEARD
+from pyfrc_core.deploy.agent_client import AgentClient
 from pyfrc_core.deploy.errors import (
     ConnectionFailedError,
     DeployError,
@@ -33,9 +35,9 @@ from pyfrc_core.deploy.errors import (
 )
 from pyfrc_core.deploy.facts import DeployRequest, Release, RolledBack, StartState, Watched
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.progress import Conversation, Progress
-from pyfrc_core.deploy.robot import Robot
-from pyfrc_core.deploy.standing import Standing, told_what_is_so
+from pyfrc_core.deploy.progress import DeployProgress, UserInterface
+from pyfrc_core.deploy.recovery_hints import RecoveryHint, explain_interruption
+from pyfrc_core.deploy.responses import Fields, ResponseError
 from pyfrc_core.deploy.starting import go_back, start
 
 REQUEST = DeployRequest("robot.py", {})
@@ -50,17 +52,17 @@ SLOW = Watched(
 SILENT = Watched(UNHEARD, "", StartState(seconds=20.0, age=20.0, seen=True, cpu=7.25, network_tables=False))
 
 
-class Watching(Robot):
+class Watching(AgentClient):
     """A robot on which programs do as listed, one after the other."""
 
     def __init__(self, *watched: Watched | DeployError) -> None:
         self._watched = list(watched)
-        self.standing: Standing | None = None
+        self.recovery_hint: RecoveryHint | None = None
         self.went_back_to: list[int | None] = []
         self.states: list[StartState] = []
 
     def restart(self) -> None:
-        self.standing = standing.started(2, 1)
+        self.recovery_hint = recovery_hints.started(2, 1)
 
     def watch(self, seconds, on_output=None, on_state=None, unheard=None) -> Watched:  # type: ignore[no-untyped-def]
         watched = self._watched.pop(0)
@@ -68,12 +70,12 @@ class Watching(Robot):
             raise watched
         for state in self.states:
             on_state(state)
-        self.standing = None
+        self.recovery_hint = None
         return watched
 
     def rollback(self, release: int | None = None, on_progress: object = None) -> RolledBack:
         self.went_back_to.append(release)
-        self.standing = standing.went_back(1)
+        self.recovery_hint = recovery_hints.rolled_back(1)
         return RolledBack(Release(1, False, "robot.py", False, 1, None, {}), 2, ())
 
 
@@ -83,11 +85,11 @@ def shown() -> io.StringIO:
 
 
 @pytest.fixture
-def talk(shown: io.StringIO) -> Conversation:
-    return Conversation(Progress(shown))
+def talk(shown: io.StringIO) -> UserInterface:
+    return UserInterface(DeployProgress(shown))
 
 
-def test_a_crash_is_shown_with_its_traceback_and_goes_back(talk: Conversation, shown: io.StringIO) -> None:
+def test_a_crash_is_shown_with_its_traceback_and_goes_back(talk: UserInterface, shown: io.StringIO) -> None:
     robot = Watching(CRASHED, RUNS)
     with pytest.raises(ProgramDiedError, match=r"^the new program ended after 4.1 s; release 1 runs again$") as caught:
         start(robot, talk, 1, auto_rollback=True)
@@ -96,40 +98,40 @@ def test_a_crash_is_shown_with_its_traceback_and_goes_back(talk: Conversation, s
     assert "| RuntimeError: no such gyro" in shown.getvalue()
 
 
-def test_a_slow_start_is_neither_a_success_nor_gone_back_from(talk: Conversation, shown: io.StringIO) -> None:
+def test_a_slow_start_is_neither_a_success_nor_gone_back_from(talk: UserInterface, shown: io.StringIO) -> None:
     robot = Watching(SLOW)
     with pytest.raises(NotSeenToRunError) as caught:
         start(robot, talk, 1, auto_rollback=True)
     assert caught.value.exit_code == 4
     assert caught.value.message == (
         "the new program was started, and is still starting after 60 s: its process has run for 60 s, "
-        "has used 7.2 s of processor time and serves NetworkTables (its imports are over)"
+        "has used 7.2 s of processor time and serves NetworkTables (its imports are complete)"
     )
     assert "pyfrc console" in str(caught.value.remedy)
     assert "| looking for the camera" in shown.getvalue()
     assert robot.went_back_to == []
 
 
-def test_with_a_silent_console_it_is_said_what_was_judged(talk: Conversation, shown: io.StringIO) -> None:
+def test_with_a_silent_console_it_is_said_what_was_judged(talk: UserInterface, shown: io.StringIO) -> None:
     start(Watching(SILENT), talk, 1)
     assert "its process has run for 20 s " in shown.getvalue()
     assert "judged by its process alone" in shown.getvalue()
     assert "does not serve NetworkTables yet" in shown.getvalue()
 
 
-def test_a_first_process_that_ended_is_reported(talk: Conversation, shown: io.StringIO) -> None:
+def test_a_first_process_that_ended_is_reported(talk: UserInterface, shown: io.StringIO) -> None:
     """One may end right after the restart since two start it; or it crashed, and did not crash again."""
     start(Watching(Watched(UNHEARD, "", StartState(seconds=20.4, age=20.0, lived=0.3, seen=True))), talk, 1)
-    assert "its first process ended after 0.3 s, and the robot started it again" in shown.getvalue()
+    assert "its first process ended after 0.3 s, and the robot restarted it" in shown.getvalue()
 
 
-def test_a_long_start_gives_signs_of_life(talk: Conversation, shown: io.StringIO) -> None:
+def test_a_long_start_gives_signs_of_life(talk: UserInterface, shown: io.StringIO) -> None:
     robot = Watching(RUNS)
     robot.states = [StartState(seconds=float(each), age=float(each), heard=each > 15, seen=True) for each in range(45)]
     start(robot, talk, 1)
     lines = [line for line in shown.getvalue().splitlines() if " after " in line]
     assert [line.partition(":")[0] for line in lines] == [
-        "  nothing heard after 10 s",
+        "  no output after 10 s",
         "  still starting after 20 s",
         "  still starting after 30 s",
         "  still starting after 40 s",
@@ -141,13 +143,15 @@ def test_a_long_start_gives_signs_of_life(talk: Conversation, shown: io.StringIO
     [
         (CRASHED, "; release 1 is current again, but ended after 4.1 s"),
         (SLOW, "; release 1 is current again and was started, and is still starting after 60 s"),
-        (ConnectionFailedError("the link to the robot was lost"), "; the link to the robot was lost; "),
+        (ConnectionFailedError("the connection to the robot was lost"), "; the connection to the robot was lost; "),
     ],
     ids=["crashes", "slow", "link"],
 )
-def test_a_crash_is_a_crash_however_going_back_ends(then: Watched | DeployError, says: str, talk: Conversation) -> None:
+def test_a_crash_is_a_crash_however_going_back_ends(
+    then: Watched | DeployError, says: str, talk: UserInterface
+) -> None:
     robot = Watching(CRASHED, then)
-    with pytest.raises(ProgramDiedError) as caught, told_what_is_so(robot):
+    with pytest.raises(ProgramDiedError) as caught, explain_interruption(robot):
         start(robot, talk, 1, auto_rollback=True)
     assert caught.value.exit_code == 3
     assert caught.value.message.startswith(f"the new program ended after 4.1 s{says}")
@@ -155,13 +159,13 @@ def test_a_crash_is_a_crash_however_going_back_ends(then: Watched | DeployError,
 
 def test_ctrl_c_during_the_watch_says_for_how_long_the_program_has_run() -> None:
     robot = Watching()
-    robot.standing = standing.started(2, 1, StartState(seconds=13.0, age=12.0, seen=True))
-    says = r"release 2 was started, but not seen to run; its process has run for 12 s"
-    with pytest.raises(StoppedError, match=says), told_what_is_so(robot):
+    robot.recovery_hint = recovery_hints.started(2, 1, StartState(seconds=13.0, age=12.0, seen=True))
+    says = r"release 2 was started, but not confirmed to run; its process has run for 12 s"
+    with pytest.raises(StoppedError, match=says), explain_interruption(robot):
         raise KeyboardInterrupt
 
 
-def test_going_back_is_watched_in_the_same_way(talk: Conversation) -> None:
+def test_going_back_is_watched_in_the_same_way(talk: UserInterface) -> None:
     assert go_back(Watching(RUNS), talk, 1) == 1
     assert go_back(Watching(SILENT), talk, None) == 1
     for watched, code in ((CRASHED, 3), (SLOW, 4)):
@@ -179,8 +183,8 @@ def project(tmp_path: Path) -> Manifest:
 
 
 @contextlib.contextmanager
-def failing(robot: Robot, code: int, says: str) -> Iterator[None]:
-    with pytest.raises(DeployError) as caught, told_what_is_so(robot):
+def failing(robot: AgentClient, code: int, says: str) -> Iterator[None]:
+    with pytest.raises(DeployError) as caught, explain_interruption(robot):
         yield
     assert (caught.value.exit_code, says in caught.value.message) == (code, True), caught.value
 
@@ -197,9 +201,9 @@ def test_a_restart_that_fails_after_the_change(robot: LocalRobot, agents: Agents
         with failing(agent, 4, "; release 2 is on the robot"):
             agent.restart()
         agent.rollback()
-        with failing(agent, 4, "; the robot starts release 1 when it is switched on"):
+        with failing(agent, 4, "; the robot will start release 1 when it is switched on"):
             agent.restart()
-        with failing(agent, 4, "; the robot may have no program any more"):
+        with failing(agent, 4, "; the robot's program and some of its releases may have been removed"):
             agent.undeploy()
 
 
@@ -222,7 +226,7 @@ def test_old_releases_that_cannot_be_removed_hinder_no_deploy(
 ) -> None:
     from pyfrc_core.deploy.agent import deploying, releases, wire
     from pyfrc_core.deploy.agent.activity import Activity
-    from pyfrc_core.deploy.agent.places import Places
+    from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 
     def prune(self: releases.Releases, kept: int = 3) -> None:
         raise OSError(errno.EIO, "Input/output error")
@@ -232,7 +236,7 @@ def test_old_releases_that_cannot_be_removed_hinder_no_deploy(
     sent = wire.frame(wire.CONTENT, zlib.compress(b""))
     request = {"main": "robot.py", "files": [["robot.py", 0, nothing, False]]}
     deployed = deploying.Deploy(
-        releases.Releases(Places(str(robot.root)), Activity(lambda **said: None)),
+        releases.Releases(RobotPaths(str(robot.root)), Activity(lambda **said: None)),
         wire.Wire(io.BytesIO(sent), io.BytesIO()),
         request,
     ).run()
@@ -242,12 +246,15 @@ def test_old_releases_that_cannot_be_removed_hinder_no_deploy(
 def test_a_link_that_is_lost_from_the_change_on(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
     def lose(phase: str, done: int, total: int) -> None:
         if phase == "switch":
-            raise ConnectionFailedError("the link to the robot was lost")
+            raise ConnectionFailedError("the connection to the robot was lost")
 
     with pytest.raises(ConnectionFailedError) as caught:
         robot.deploy(agents, project, cut_to_robot=100)
     assert caught.value.exit_code == 1
-    with contextlib.closing(robot.start(agents)) as agent, failing(agent, 4, "; the new release is taking over"):
+    with (
+        contextlib.closing(robot.start(agents)) as agent,
+        failing(agent, 4, "; the robot was switching"),
+    ):
         agent.deploy(project, REQUEST, lose)
 
 
@@ -265,7 +272,7 @@ def test_whatever_is_lost_with_a_link_a_changed_robot_is_not_called_unchanged(
         tried = robot.copy(tmp_path / "tried")
         with contextlib.suppress(DeployError), contextlib.closing(tried.start(agents, cut_from_robot=cut)) as agent:
             try:
-                with told_what_is_so(agent):
+                with explain_interruption(agent):
                     agent.deploy(project, REQUEST)
             except DeployError as error:
                 codes.add((error.exit_code, tried.startable() is not None))
@@ -277,7 +284,7 @@ def test_in_place_some_files_may_have_been_overwritten(robot: LocalRobot, agents
     robot.deploy(agents, project)
     (robot.home / "py/deploy.json").unlink()
     (robot.home / "py/deploy.json/in the way").mkdir(parents=True)
-    with contextlib.closing(robot.start(agents)) as agent, failing(agent, 4, "may have been overwritten already"):
+    with contextlib.closing(robot.start(agents)) as agent, failing(agent, 4, "may have been overwritten"):
         agent.deploy(changed(project), DeployRequest("robot.py", {}, in_place=True))
 
 
@@ -290,14 +297,14 @@ def test_what_was_refused_has_changed_nothing(robot: LocalRobot, agents: Agents,
 # -- the agent ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("change", [Robot.undeploy, Robot.rollback], ids=["undeploy", "rollback"])
+@pytest.mark.parametrize("change", [AgentClient.undeploy, AgentClient.rollback], ids=["undeploy", "rollback"])
 def test_a_robot_that_another_computer_deploys_to(
-    change: Callable[[Robot], object], robot: LocalRobot, agents: Agents, project: Manifest
+    change: Callable[[AgentClient], object], robot: LocalRobot, agents: Agents, project: Manifest
 ) -> None:
     ours, theirs = robot.start(agents), robot.start(agents)
     with contextlib.closing(ours), contextlib.closing(theirs):
         theirs.deploy(project, REQUEST)  # the lock is held until the end of the restart that follows
-        with pytest.raises(LockedError) as caught, told_what_is_so(ours):
+        with pytest.raises(LockedError) as caught, explain_interruption(ours):
             change(ours)
     assert caught.value.exit_code == 1
     assert re.fullmatch(r"\S+ is deploying to this robot right now", caught.value.message)
@@ -327,14 +334,14 @@ def test_a_process_that_the_kill_script_leaves_in_the_background_is_not_waited_f
 def test_what_can_be_seen_of_a_process_from_outside() -> None:
     if not Path("/proc/self/stat").exists():
         pytest.skip("what is seen of a process is in /proc")
-    seen = state_of(os.getpid())
+    seen = process_state(RoboRio(RobotPaths()), os.getpid())
     assert seen["cpu"] > 0
     assert not seen["network_tables"]
     state = StartState.of(Fields({"seconds": 1.0, "age": 1.0, "heard": True, "seen": True, **seen}))
     assert state.cpu == seen["cpu"]
     with subprocess.Popen([sys.executable, "-c", ""]) as ended:
         ended.wait()
-    assert state_of(ended.pid) == {}
+    assert process_state(RoboRio(RobotPaths()), ended.pid) == {}
     assert age_of([ended.pid]) is None
 
 
@@ -352,5 +359,5 @@ def test_a_program_is_as_old_as_its_oldest_process() -> None:
 
 @pytest.mark.parametrize("told", [{"cpu": "much"}, {"age": [1]}])
 def test_a_state_that_is_nonsense_is_refused(told: dict[str, object]) -> None:
-    with pytest.raises(AnswerError):
+    with pytest.raises(ResponseError):
         StartState.of(Fields({"seconds": 1.0, "age": 1.0, "heard": True, "seen": True, **told}))

@@ -7,8 +7,8 @@ import re
 
 import pytest
 
-from pyfrc_core.deploy.discovery import MOST_TEAM
-from pyfrc_core.deploy.team import Target, find_target
+from pyfrc_core.deploy.discovery import MAX_TEAM
+from pyfrc_core.deploy.team import RobotTarget, find_target
 from pyfrc_core.errors import PyfrcError, SettingsError, UsageError
 from pyfrc_core.project import find_project
 
@@ -30,7 +30,7 @@ def never(question: str) -> str:
 def target_of(make_project):
     """The target of a project with these files."""
 
-    def target_of(files: dict[str, str], **choice: object) -> Target:
+    def target_of(files: dict[str, str], **choice: object) -> RobotTarget:
         project = make_project({"robot.py": "", **files})
         return find_target(find_project(project.path), **choice)
 
@@ -50,11 +50,11 @@ def test_places_count_in_their_order(first: int, target_of) -> None:
 
 
 def test_the_command_counts_most(target_of) -> None:
-    assert target_of(PLACES, team=7, ask=never) == Target(7)
+    assert target_of(PLACES, team=7, ask=never) == RobotTarget(7)
 
 
 def test_a_robots_address_counts_most_of_all(target_of) -> None:
-    assert target_of(PLACES, team=7, robot="10.0.0.2:2222") == Target(robot="10.0.0.2:2222")
+    assert target_of(PLACES, team=7, robot="10.0.0.2:2222") == RobotTarget(robot="10.0.0.2:2222")
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_an_editors_word_for_no_team_is_none(none: int, target_of) -> None:
 
 def test_the_user_is_asked_until_the_answer_is_one_and_it_is_kept(make_project) -> None:
     project = make_project({"robot.py": "", PREFERENCES: '{"currentLanguage": "python"}'})
-    answers = iter(["", "12a", "0", str(MOST_TEAM + 1), " 1234 "])
+    answers = iter(["", "12a", "0", str(MAX_TEAM + 1), " 1234 "])
     questions = []
 
     def ask(question: str) -> str:
@@ -115,7 +115,7 @@ def test_with_nobody_to_ask_it_is_said_where_to_write_it(target_of) -> None:
         (PREFERENCES, "{", PREFERENCES, "not valid JSON"),
         (PREFERENCES, "[]", PREFERENCES, "an object"),
         (".deploy_cfg", "[auth]\nhostname = 99999\n", ".deploy_cfg", "hostname = 99999"),
-        (".deploy_cfg", "hostname = 1\n", ".deploy_cfg", "not a valid file"),
+        (".deploy_cfg", "hostname = 1\n", ".deploy_cfg", "not a valid INI file"),
     ],
 )
 def test_a_bad_value_is_told_with_its_file_and_key(name: str, text: str, where: str, what: str, target_of) -> None:
@@ -134,5 +134,5 @@ def test_preferences_that_cannot_be_read_are_not_overwritten(make_project) -> No
 
 def test_the_range_in_the_messages_is_that_of_the_addresses(target_of) -> None:
     with pytest.raises(SettingsError) as caught:
-        target_of({}, team=MOST_TEAM + 1)
-    assert re.search(rf"--team: {MOST_TEAM + 1}: a team number is from 1 to {MOST_TEAM}", str(caught.value))
+        target_of({}, team=MAX_TEAM + 1)
+    assert re.search(rf"--team: {MAX_TEAM + 1}: a team number is from 1 to {MAX_TEAM}", str(caught.value))

@@ -10,7 +10,7 @@ import unicodedata
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyfrc_core.deploy.progress import JsonProgress, Progress
+from pyfrc_core.deploy.progress import DeployProgress, JsonProgress
 from pyfrc_core.terminal_text import one_line, visible
 
 #: Clears the screen, sets the title, has the terminal answer, reverses the text.
@@ -47,7 +47,7 @@ def test_no_text_has_control_characters_afterwards(text: str) -> None:
 
 def test_all_that_a_deploy_prints() -> None:
     stream = io.StringIO()
-    progress = Progress(stream)
+    progress = DeployProgress(stream)
     with progress.phase("look") as phase:
         phase.detail = HOSTILE
     for tell in (progress.note, progress.warning, progress.output):

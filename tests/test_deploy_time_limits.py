@@ -9,12 +9,12 @@ import pytest
 
 from pyfrc_core.deploy.agent import wire
 from pyfrc_core.deploy.agent_stream import AgentStream, TimeLimits
-from pyfrc_core.deploy.answers import Fields
 from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError
+from pyfrc_core.deploy.responses import Fields
 
-LIMITS = TimeLimits(start=20, silence=60, frame=30, answer=900)
-ALIVE = wire.said_frame({"alive": True})
-DONE = wire.said_frame({"done": {"release": 7}})
+LIMITS = TimeLimits(start=20, silence=60, frame=30, response=900)
+ALIVE = wire.message_frame({"alive": True})
+DONE = wire.message_frame({"done": {"release": 7}})
 
 
 def release(told: Fields) -> int:
@@ -79,7 +79,7 @@ def dripping(frame: bytes, seconds: float) -> list[tuple[float, bytes]]:
 
 def test_signs_of_life_are_waited_for_and_passed_over() -> None:
     stream = stream_of(*[(50.0, ALIVE)] * 10, (50.0, DONE))
-    assert stream.answer(release) == 7
+    assert stream.read_response(release) == 7
 
 
 def test_news_is_passed_on_and_signs_of_life_are_not() -> None:
@@ -89,30 +89,34 @@ def test_news_is_passed_on_and_signs_of_life_are_not() -> None:
         news.append(said.line("phase"))
 
     phase = {"phase": "compile"}
-    assert stream_of((1, ALIVE + wire.said_frame(phase) + ALIVE), (1, DONE)).answer(release, heard) == 7
+    assert stream_of((1, ALIVE + wire.message_frame(phase) + ALIVE), (1, DONE)).read_response(release, heard) == 7
     assert news == ["compile"]
 
 
 def test_a_slow_frame_within_its_limit() -> None:
-    assert stream_of(*dripping(DONE, 0.5)).answer(release) == 7
+    assert stream_of(*dripping(DONE, 0.5)).read_response(release) == 7
 
 
 @pytest.mark.parametrize(
     ("pieces", "seconds", "why"),
     [
-        ([], 60, "no answer"),
-        ([(50, ALIVE), (61, DONE)], 50 + 60, "no answer"),
-        (dripping(wire.frame(wire.SAID, bytes(1000)), 5.0), 5 + 30, "its answer began, and did not end"),
-        ([(59, DONE[:3])], 59 + 30, "its answer began, and did not end"),
-        ([(50, ALIVE)] * 1000, 900, "it works, and does not come to an end"),
-        ([(10, wire.said_frame({"phase": "compile"}))] * 1000, 900, "it works, and does not come to an end"),
+        ([], 60, "no response"),
+        ([(50, ALIVE), (61, DONE)], 50 + 60, "no response"),
+        (dripping(wire.frame(wire.MESSAGE, bytes(1000)), 5.0), 5 + 30, "its response is incomplete"),
+        ([(59, DONE[:3])], 59 + 30, "its response is incomplete"),
+        ([(50, ALIVE)] * 1000, 900, "it works, but exceeds the time limit"),
+        (
+            [(10, wire.message_frame({"phase": "compile"}))] * 1000,
+            900,
+            "it works, but exceeds the time limit",
+        ),
     ],
     ids=["silent", "silent after a sign of life", "dripping", "half a frame", "alive for ever", "phases for ever"],
 )
 def test_each_limit_holds(pieces: list[tuple[float, bytes]], seconds: float, why: str) -> None:
     clock = Clock()
-    with pytest.raises(ConnectionFailedError, match=f"the link to the robot was lost: {why}"):
-        stream_of(*pieces, clock=clock).answer(release, lambda said: None)
+    with pytest.raises(ConnectionFailedError, match=f"the connection to the robot was lost: {why}"):
+        stream_of(*pieces, clock=clock).read_response(release, lambda said: None)
     assert clock.now == pytest.approx(1000 + seconds, abs=5)
 
 
@@ -120,13 +124,13 @@ def test_signs_of_life_while_contents_are_sent_are_passed_over_and_the_rest_is_k
     clock = Clock()
     for ready, news in ((ALIVE + ALIVE, False), (ALIVE + DONE, True)):
         stream = AgentStream(SlowChannel(clock, [(0, DONE)], ready), "10.12.34.2", LIMITS, clock)
-        assert stream.has_news() is news
-        assert stream.answer(release) == 7
+        assert stream.has_message() is news
+        assert stream.read_response(release) == 7
 
 
 def test_a_refusal_while_contents_are_sent() -> None:
-    refusal = wire.said_frame({"error": "space", "message": "the disk is full", "remedy": ""})
+    refusal = wire.message_frame({"error": "space", "message": "the disk is full", "remedy": ""})
     clock = Clock()
     stream = AgentStream(SlowChannel(clock, [], ALIVE + refusal), "10.12.34.2", LIMITS, clock)
     with pytest.raises(RefusedError, match="the disk is full"):
-        stream.has_news()
+        stream.has_message()

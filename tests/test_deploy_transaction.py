@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
 
+from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.manifest import Entry, Manifest
-from pyfrc_core.deploy.robot import DeployRequest
 
 START = "env LD_LIBRARY_PATH=/usr/local/frc/lib/ /usr/local/bin/python3 -u"
 OTHER_COMMAND = "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
@@ -210,11 +210,11 @@ def test_where_names_cannot_be_exchanged(robot: LocalRobot, project: Project, mo
     """An old kernel: the directory is moved away before the link takes its place; the start command leads past that."""
     from pyfrc_core.deploy.agent import releases
     from pyfrc_core.deploy.agent.activity import Activity
-    from pyfrc_core.deploy.agent.places import Places
+    from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 
     other_tools_program(robot, "env LD_LIBRARY_PATH=/usr/local/frc/lib/ x --main /home/lvuser/py/robot.py run")
-    ours = releases.Releases(Places(str(robot.root)), Activity(lambda **said: None))
-    ours.take_over(1)
+    ours = releases.Releases(RobotPaths(str(robot.root)), Activity(lambda **said: None))
+    ours.adopt_directory(1)
     ours.directory(2).mkdir()
     (ours.directory(2) / "robot.py").write_text("# ours\n")
     commands = releases.start_commands("robot.py")
@@ -506,7 +506,7 @@ def test_paths_that_lead_elsewhere(robot: LocalRobot, project: Project, agents: 
     manifest = project.manifest
     entry = dataclasses.replace(manifest.entries[0], path=path)
     before = contents(robot.root)
-    with pytest.raises(RefusedError, match="is no path within the program's directory"):
+    with pytest.raises(RefusedError, match="is not a path within the program's directory"):
         robot.deploy(agents, Manifest((*manifest.entries, entry)))
     assert {each for each in contents(robot.root) if "lock" not in each} == set(before)
 

@@ -11,7 +11,7 @@ from roborio.local import project_of
 from roborio.machine import LETS_PROGRAMS_SURVIVE
 from roborio.ssh import SshConnection
 
-from pyfrc_core.deploy.robot import DeployRequest, Robot
+from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 
 ROBOT = """\
 import signal
@@ -53,7 +53,7 @@ def test_the_console_is_silent_without_a_driver_station(tmp_path: Path) -> None:
     require_roborio()
     project = project_of(tmp_path, {"robot.py": ROBOT.format(name="a robot")})
     with Roborio(driver_station=False) as roborio, SshConnection(roborio.host, roborio.port) as connection:
-        robot = Robot.start(connection)
+        robot = AgentClient.start(connection)
         robot.deploy(project, DeployRequest("robot.py", {}))
         robot.restart()
         roborio.said("this is a robot")
@@ -85,8 +85,8 @@ def test_a_program_that_survives_the_kill_script_is_ended_and_the_script_replace
         robot.said("this is the first")
         result = write_and_deploy(project, "the second", robot)
         assert result.code == 0, result.output
-        assert "the old program went on after frcKillRobot.sh, and was ended" in result.stdout
-        assert "frcKillRobot.sh let it survive, and was replaced" in result.stdout
+        assert "frcKillRobot.sh did not end the old program; it was killed" in result.stdout
+        assert "frcKillRobot.sh was replaced; the old script is kept" in result.stdout
         robot.said("this is the second")
         assert len(programs_on(robot)) == 1
         assert (robot.disk / script).read_text().startswith("#!/bin/bash\n# pyfrc's")
@@ -96,8 +96,7 @@ def test_a_program_that_survives_the_kill_script_is_ended_and_the_script_replace
         # From now on, nothing survives: the agent has nothing to end.
         result = write_and_deploy(project, "the third", robot)
         assert result.code == 0, result.output
-        assert "survive" not in result.output
-        assert "went on" not in result.output
+        assert "frcKillRobot.sh" not in result.output
         robot.said("this is the third")
         assert len(programs_on(robot)) == 1
 
@@ -112,7 +111,7 @@ def test_programs_in_java_and_cpp_are_removed_on_request(make_project) -> None:
         command = ["undeploy", "--java-cpp", "--robot", robot.where]
         asked = project.run(*command)
         assert asked.code == 2
-        assert "Say so with --yes" in asked.stderr
+        assert "Confirm with --yes" in asked.stderr
         assert (robot.home / "Robot.jar").exists()
         result = project.run(*command, "--yes")
         assert result.code == 0, result.output

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyfrc_core.deploy.agent.watching import ENDED, RUNNING, STARTED, STARTING, UNHEARD, StartMonitor
+from pyfrc_core.deploy.agent.start_monitor import ENDED, RUNNING, STARTED, STARTING, UNHEARD, StartMonitor
 
 LIMIT, SILENT_LIMIT = 60.0, 20.0
 OLD = 100

@@ -17,10 +17,10 @@ import pytest
 from packaging.requirements import Requirement
 
 from pyfrc_core._version import __version__
-from pyfrc_core.doctor import Finding
-from pyfrc_core.doctor.imports import examine_imports
+from pyfrc_core.doctor import CheckResult
+from pyfrc_core.doctor.imports import check_imports
 from pyfrc_core.doctor.installed import Installed, Package, find_installed
-from pyfrc_core.doctor.packages import NEWEST, OLDEST, examine_pyfrc, examine_python, examine_wpilib
+from pyfrc_core.doctor.packages import NEWEST, OLDEST, check_pyfrc, check_python, check_wpilib
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.season import CURRENT
 
@@ -35,7 +35,7 @@ HAL = package("robotpy-hal", "2026.2.2")
 WPILIB = package("wpilib", "2026.2.2", "robotpy-hal==2026.2.2")
 
 
-def problems(findings: Iterator[Finding]) -> list[Finding]:
+def problems(findings: Iterator[CheckResult]) -> list[CheckResult]:
     found = list(findings)
     assert all(each.remedy for each in found if each.status != "ok")
     return [each for each in found if each.status == "problem"]
@@ -58,10 +58,10 @@ def told(result: Any) -> dict[str, list[dict[str, str]]]:
 
 def test_here_all_is_well() -> None:
     installed = find_installed()
-    assert not problems(examine_python())
-    assert not problems(examine_pyfrc(installed))
-    assert not problems(examine_wpilib(installed))
-    assert not problems(examine_imports(installed))
+    assert not problems(check_python())
+    assert not problems(check_pyfrc(installed))
+    assert not problems(check_wpilib(installed))
+    assert not problems(check_imports(installed))
 
 
 def test_the_pythons_that_are_known_are_from_the_oldest_tested_one_to_the_robots() -> None:
@@ -76,12 +76,12 @@ def test_the_pythons_that_are_known_are_from_the_oldest_tested_one_to_the_robots
     [((3, 9), 64, "problem"), ((3, 12), 32, "problem"), ((3, 12), 64, "ok"), ((3, 15), 64, "hint")],
 )
 def test_python_itself(version: tuple[int, int], bits: int, status: str) -> None:
-    (finding,) = examine_python(version, bits)
+    (finding,) = check_python(version, bits)
     assert finding.status == status
 
 
 def test_no_wpilib() -> None:
-    (finding,) = problems(examine_wpilib(Installed([])))
+    (finding,) = problems(check_wpilib(Installed([])))
     assert finding.remedy == "pip install wpilib"
 
 
@@ -108,7 +108,7 @@ def test_no_wpilib() -> None:
     ],
 )
 def test_packages_that_do_not_fit(others: list[Package], said: str) -> None:
-    (finding,) = problems(examine_wpilib(Installed([WPILIB, *others])))
+    (finding,) = problems(check_wpilib(Installed([WPILIB, *others])))
     assert finding.text == said
 
 
@@ -120,26 +120,26 @@ def test_of_wpilibs_own_packages_the_odd_one_is_named_once() -> None:
         package("robotpy-hal", "2026.2.2", "robotpy-wpimath==2026.2.2"),
         package("wpilib", "2026.2.2", "robotpy-hal==2026.2.2", "robotpy-wpimath==2026.2.2"),
     ]
-    (finding,) = problems(examine_wpilib(Installed([odd, *others])))
+    (finding,) = problems(check_wpilib(Installed([odd, *others])))
     assert finding.remedy == 'pip install "robotpy-wpimath==2026.2.2"'
     assert finding.text.endswith("not 2026.1.1; needed by wpilib 2026.2.2, too")
 
 
 def test_a_package_that_wants_an_older_wpilib_is_to_be_upgraded() -> None:
     rev = package("robotpy-rev", "2026.0.1", "wpilib<2026.2")
-    (finding,) = problems(examine_wpilib(Installed([WPILIB, HAL, rev])))
+    (finding,) = problems(check_wpilib(Installed([WPILIB, HAL, rev])))
     assert finding.remedy == "pip install --upgrade robotpy-rev"
 
 
 def test_a_vendors_package_is_upgraded_in_its_own_numbering() -> None:
     vendors = [package("phoenix6", "25.4.0", "wpilib"), package("photonlibpy", "2025.3.1", "wpilib")]
-    remedies = [each.remedy for each in problems(examine_wpilib(Installed([WPILIB, HAL, *vendors])))]
+    remedies = [each.remedy for each in problems(check_wpilib(Installed([WPILIB, HAL, *vendors])))]
     assert remedies == ['pip install --upgrade "phoenix6==26.*"', 'pip install --upgrade "photonlibpy==2026.*"']
 
 
 def test_packages_of_other_kinds_have_no_season() -> None:
     others = [package("requests", "25.1.0"), package("robotpy-helpers", "0.3", "wpilib")]
-    (finding,) = examine_wpilib(Installed([WPILIB, HAL, *others]))
+    (finding,) = check_wpilib(Installed([WPILIB, HAL, *others]))
     assert finding.status == "ok"
     assert "robotpy-helpers 0.3" in finding.text
     assert "requests" not in finding.text
@@ -147,9 +147,9 @@ def test_packages_of_other_kinds_have_no_season() -> None:
 
 def test_another_pyfrc_beside_this_one() -> None:
     ours, todays = package("pyfrc", __version__), package("pyfrc", "2026.0.3", place="/elsewhere")
-    (finding,) = problems(examine_pyfrc(Installed([ours, todays])))
+    (finding,) = problems(check_pyfrc(Installed([ours, todays])))
     assert "2026.0.3 in /elsewhere" in finding.text
-    (finding,) = problems(examine_pyfrc(Installed([todays])))
+    (finding,) = problems(check_pyfrc(Installed([todays])))
     assert "2026.0.3 is installed, in /elsewhere" in finding.text
 
 
@@ -162,15 +162,15 @@ def test_something_else_under_pyfrcs_names(monkeypatch: pytest.MonkeyPatch, tmp_
     (tmp_path / "pyfrc/__init__.py").write_text("", "utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "pyfrc", raising=False)
-    findings = list(examine_pyfrc(Installed([package("pyfrc", __version__)])))
+    findings = list(check_pyfrc(Installed([package("pyfrc", __version__)])))
     assert [each.status for each in findings] == ["problem", "hint"]
     assert str(tmp_path) in findings[0].text
-    assert findings[1].text == "robotpy test is other-tool's as well as pyfrc's"
+    assert findings[1].text == "robotpy test is other-tool's and pyfrc provide"
 
 
 def test_what_pyfrc_needs_and_has_not() -> None:
     (finding,) = problems(
-        examine_pyfrc(Installed([package("pyfrc", __version__, "click>=8.1"), package("click", "7.0")]))
+        check_pyfrc(Installed([package("pyfrc", __version__, "click>=8.1"), package("click", "7.0")]))
     )
     assert finding.remedy == 'pip install "click>=8.1"'
 
@@ -197,7 +197,7 @@ def test_a_library_that_cannot_be_imported_is_named_and_the_next_is_tried(code: 
     (tmp_path / "rev.py").write_text("raise ValueError('of its own')", "utf-8")
     (tmp_path / "navx.py").write_text("", "utf-8")
     installed = Installed([package(name, "2026.1") for name in ("wpilib", "robotpy-rev", "robotpy-navx")])
-    found = list(examine_imports(installed, [str(tmp_path), *sys.path]))
+    found = list(check_imports(installed, [str(tmp_path), *sys.path]))
     assert [each.text for each in found] == [f"import wpilib: {how}", "import rev: ValueError of its own"]
     assert {each.status for each in found} == {"problem"}
 
@@ -228,7 +228,7 @@ def test_without_a_project_the_rest_is_looked_at(make_project) -> None:
     found = told(make_project({}).run("doctor", "--json"))
     assert found["project"][0]["status"] == "hint"
     assert found["wpilib"][0]["status"] == "ok"
-    assert "not looked for" in found["robot"][0]["text"]
+    assert "not searched" in found["robot"][0]["text"]
 
 
 def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
@@ -271,7 +271,7 @@ def test_what_is_wrong_in_a_project(files: dict[str, str], topic: str, said: str
 def test_what_a_project_could_have_besides(make_project) -> None:
     files = {"robot.py": ROBOT, "pyproject.toml": "[tool.robotpy]\nrobotpy_version = '2026.1.1'\nrobotpy_extras = []\n"}
     found = told(make_project(files).run("doctor", "--no-robot", "--json"))
-    assert found["project"][1]["remedy"] == "Call it components."
+    assert found["project"][1]["remedy"] == "Rename it to components."
     hints = {
         topic: each["remedy"] for topic, findings in found.items() for each in findings if each["status"] == "hint"
     }
@@ -320,7 +320,7 @@ def test_a_robot_that_is_off(make_project) -> None:
     preferences = {".wpilib/wpilib_preferences.json": json.dumps({"robotHostname": address})}
     project = make_project({"robot.py": ROBOT} | preferences)
     (*_, finding) = told(project.run("doctor", "--json"))["robot"]
-    assert (finding["status"], finding["text"]) == ("hint", f"{address}: no robot answers")
+    assert (finding["status"], finding["text"]) == ("hint", f"{address}: no robot found")
     (*_, finding) = told(project.run("doctor", "--json", "--robot", address))["robot"]
     assert finding["status"] == "problem"
 

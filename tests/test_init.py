@@ -101,7 +101,7 @@ def test_without_a_number_nothing_claims_one(make_project: MakeProject) -> None:
 
     project = make_project({})
     assert project.run("init").code == 0
-    with pytest.raises(UsageError, match="No team number"):
+    with pytest.raises(UsageError, match="no team number"):
         find_target(find_project(project.path))
 
 

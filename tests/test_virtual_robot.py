@@ -144,7 +144,7 @@ def test_a_program_is_deployed_changed_rolled_back_and_removed(project: RobotPro
         assert not (project.path / ".pyfrc/known_hosts").exists(), "the doctor pins no key"
         refused = project.run("undeploy", "--java-cpp", "--yes", "--robot", robot.address)
         assert refused.code == 1
-        assert "a virtual robot runs programs in Python only: there is nothing to remove" in refused.first_error
+        assert "a virtual robot runs only programs in Python: there is nothing to remove" in refused.first_error
         on(robot, project, "undeploy", "--yes")
         assert ended(second)
         about = info(robot, project)
@@ -189,7 +189,7 @@ def test_a_program_that_crashes_is_started_again_and_again(project: RobotProject
         result = project.run("deploy", "--skip-tests", "--robot", robot.address)
         assert result.code == 3
         assert "RuntimeError: no gyro" in result.output
-        robot.said("the robot program has ended (exit code 1); it is started again", times=3)
+        robot.said("the robot program has ended (exit code 1); restarting it", times=3)
         assert "\7" not in "".join(robot.printed) + result.output
 
 
@@ -205,7 +205,7 @@ def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_
     with started(project, directory) as robot:
         assert robot.address == address
         robot.pid()  # it is started without another deploy
-        assert "its key is the known one" in on(robot, project, "deploy-info")
+        assert "its key is known" in on(robot, project, "deploy-info")
         assert info(robot, project)["current"] == 1
     with started(project, directory, "--fresh") as robot:
         assert info(robot, project)["releases"] == []
@@ -244,11 +244,11 @@ def test_a_port_that_is_taken_and_a_directory_in_use_are_refused(project: RobotP
         assert f"a virtual robot is already running here, at {robot.address}" in result.first_error
     result = project.run("virtual-robot", "--directory", project.path)
     assert result.code == 2
-    assert "this directory holds other files than a virtual robot's" in result.first_error
+    assert "this directory has files that are not from a virtual robot" in result.first_error
     result = project.run("virtual-robot", "--directory", project.path / "robot.py" / "virtual-robot")
     assert result.code == 1
-    assert "cannot keep the virtual robot's files here: not a directory" in result.first_error
-    assert "Name a directory that you may write with --directory DIR." in result.stderr
+    assert "cannot store the virtual robot's files here: not a directory" in result.first_error
+    assert "Choose a writable directory with --directory DIR." in result.stderr
 
 
 def test_a_command_gets_the_address_and_the_robot_ends_with_it(project: RobotProject, directory: Path) -> None:

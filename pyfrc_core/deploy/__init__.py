@@ -1,1 +1,1 @@
-"""Bringing the program onto the robot: one transaction over one connection. Never imports wpilib."""
+"""Deploying the robot program in one transaction over one SSH connection. Never imports wpilib."""

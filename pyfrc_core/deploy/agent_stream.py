@@ -1,8 +1,8 @@
-"""Frames to and from the agent, within limits of time and size: the robot may be slow, broken, or not a robot.
+"""Frames to and from the agent, with limits of time and size: the robot may be slow, broken, or not a robot.
 
-The agent sends a frame ``{"alive": ...}`` every second while it works on an answer, also while it receives
-contents. So the limits do not depend on how long a disk takes: one until the next frame begins, one for that frame from
-its first byte to its last, and one for all frames of an answer.
+The agent sends a keep-alive message, ``{"alive": ...}``, every second while it works on a request or receives file
+contents. The limits therefore do not depend on the speed of its disk. One applies until the next frame begins, one to a
+frame from its first byte to its last, and one to all frames of a response.
 """
 
 from __future__ import annotations
@@ -16,40 +16,40 @@ from typing import Any, Protocol, TypeVar
 
 from ..terminal_text import one_line
 from .agent import wire
-from .answers import AnswerError, Fields, parse_json
 from .errors import ConnectionFailedError, DeployError, LockedError, NoPythonError, RefusedError
-from .preparing import PREPARE
+from .responses import Fields, ResponseError, parse_json
+from .robot_setup import PREPARE
 
-#: The longest answer that is read, packed or not, in bytes. The paths of 50,000 files are within it.
-LONGEST_ANSWER = 1 << 22
-#: Frames before an answer, signs of life among them: more are a flood.
-MOST_FRAMES = 100_000
+#: The maximum size of a response, compressed or not, in bytes: enough for the paths of 50,000 files.
+MAX_RESPONSE_BYTES = 1 << 22
+#: The maximum number of frames before a response, including keep-alive messages.
+MAX_FRAMES = 100_000
 
 PYTHON = "/usr/local/bin/python3"
-_WHOLE = "No program on the robot is left half written. Check the link and run the command again."
+_RETRY = "The program on the robot is complete. Check the connection and run the command again."
 
 
 @dataclass(frozen=True)
 class TimeLimits:
-    """How long the robot may take, in seconds.
+    """Time limits for the robot, in seconds.
 
-    :param start:   until its first frame begins
-    :param silence: until the next frame begins, while it works
-    :param frame:   for one frame, from its first byte to its last: no less than the longest takes over a slow link
-    :param answer:  for an answer as a whole, whatever frames come before it
+    :param start:    until its first frame begins
+    :param silence:  until the next frame begins, while it works
+    :param frame:    for one frame from its first byte to its last; enough for the longest frame on a slow link
+    :param response: for a response with all frames before it
     """
 
     start: float = 20.0
     silence: float = 60.0
     frame: float = 60.0
-    answer: float = 900.0
+    response: float = 900.0
 
 
 T = TypeVar("T")
 
 
 class Channel(Protocol):
-    """What is needed of `paramiko.Channel`."""
+    """The part of `paramiko.Channel` that is needed."""
 
     @property
     def status_event(self) -> threading.Event: ...
@@ -63,12 +63,12 @@ class Channel(Protocol):
 
 
 class AgentStream:
-    """The laptop's end of the conversation.
+    """The laptop's end of the connection to the agent.
 
-    Each method raises `ConnectionFailedError` when the link is lost or a limit is exceeded, `RefusedError` when the
-    robot refuses, and another `DeployError` when it fails or what comes is no frame.
+    Each method raises `ConnectionFailedError` if the connection is lost or a time limit is exceeded, `RefusedError` if
+    the robot refuses a request, and another `DeployError` if a request fails or the robot violates the protocol.
 
-    :param clock: seconds that only grow, for `limits`
+    :param clock: a monotonic clock in seconds, for `limits`
     """
 
     def __init__(
@@ -78,20 +78,20 @@ class AgentStream:
         self._where = where
         self._clock = clock
         self._unread: dict[str, Any] | None = None
-        #: Called with the value of each sign of life.
-        self.on_alive: Callable[[Any], None] | None = None
+        #: Called with the content of each keep-alive message.
+        self.on_keep_alive: Callable[[object], None] | None = None
         self.limits = limits
 
     def close(self) -> None:
-        """End the conversation, and the agent."""
-        with suppress(OSError, EOFError):  # the link may be gone
+        """Close the connection to the agent, which then ends."""
+        with suppress(OSError, EOFError):  # the connection may be lost
             self._channel.close()
 
-    def ask(self, request: dict[str, Any]) -> None:
-        """Send a request, when all answers to those before have been read."""
-        if self.has_news():
-            raise self.nonsense("something came that was not asked for")
-        self.send(wire.said_frame(request))
+    def send_request(self, request: dict[str, Any]) -> None:
+        """Send a request. All responses to earlier requests must have been read."""
+        if self.has_message():
+            raise self.protocol_error("it sent a message without a request")
+        self.send(wire.message_frame(request))
 
     def send(self, data: bytes) -> None:
         """Send bytes."""
@@ -102,94 +102,95 @@ class AgentStream:
             raise self._lost(error) from error
 
     def start(self, data: bytes) -> None:
-        """Send the first bytes: where there is no Python, the command may have ended before."""
+        """Send the first bytes. Without Python on the robot, the command may already have ended."""
         self._channel.settimeout(self.limits.start)
         try:
             self._channel.sendall(data)
         except (OSError, EOFError) as error:
             raise self._ended(error) from error
 
-    def has_news(self) -> bool:
-        """Whether there is something to read that is not a sign of life."""
+    def has_message(self) -> bool:
+        """Return whether a message has arrived that is not a keep-alive message."""
         while self._unread is None and self._channel.recv_ready():
-            said = self._frame(self.limits.silence, self._clock() + self.limits.answer)
-            self._unread = None if self._is_alive(said) else said
+            message = self._frame(self.limits.silence, self._clock() + self.limits.response)
+            self._unread = None if self._is_keep_alive(message) else message
         return self._unread is not None
 
-    def next(self, parse: Callable[[Fields], T]) -> T:
-        """Read the next frame that is not a sign of life.
+    def read_message(self, parse: Callable[[Fields], T]) -> T:
+        """Read the next message that is not a keep-alive message.
 
-        :param parse: makes of its fields what is returned
+        :param parse: converts its fields to the result
         """
-        return self._understood(parse, self._next(self.limits.silence, self._clock() + self.limits.answer))
+        return self._parse(parse, self._next(self.limits.silence, self._clock() + self.limits.response))
 
-    def answer(
+    def read_response(
         self,
         parse: Callable[[Fields], T],
-        on_news: Callable[[Fields], None] | None = None,
+        on_message: Callable[[Fields], None] | None = None,
         *,
         silence: float | None = None,
         within: float | None = None,
     ) -> T:
-        """Read frames until the answer.
+        """Read messages until the response.
 
-        :param parse: makes what is returned of the fields of ``done``
-        :param on_news: called with each frame before it that is not a sign of life; none: there should be none
-        :param silence: seconds until each frame begins; none: the limit for a robot that works
-        :param within: seconds for all of it; none: the limit for an answer
+        :param parse: converts the fields of ``done`` to the result
+        :param on_message: called with each message before the response, except for keep-alive messages; by default,
+            such a message is an error
+        :param silence: seconds until each frame begins; default: `TimeLimits.silence`
+        :param within: seconds for all frames; default: `TimeLimits.response`
         """
-        end = self._clock() + (self.limits.answer if within is None else within)
-        for _ in range(MOST_FRAMES):
-            said = self._next(self.limits.silence if silence is None else silence, end)
-            if "done" in said:
-                return self._understood(parse, said["done"])
-            if on_news is None:
-                raise self.nonsense("something came that is no answer")
-            self._understood(on_news, said)
-        raise self.nonsense(f"{MOST_FRAMES} frames came, and no answer")
+        end = self._clock() + (self.limits.response if within is None else within)
+        for _ in range(MAX_FRAMES):
+            message = self._next(self.limits.silence if silence is None else silence, end)
+            if "done" in message:
+                return self._parse(parse, message["done"])
+            if on_message is None:
+                raise self.protocol_error("it sent a message that is not a response")
+            self._parse(on_message, message)
+        raise self.protocol_error(f"it sent {MAX_FRAMES} frames and no response")
 
     def _next(self, silence: float, end: float) -> dict[str, Any]:
         if self._unread is not None:
-            said, self._unread = self._unread, None
-            return said
-        for _ in range(MOST_FRAMES):
-            said = self._frame(silence, end)
-            if not self._is_alive(said):
-                return said
-        raise self.nonsense(f"{MOST_FRAMES} signs of life came, and no answer")
+            message, self._unread = self._unread, None
+            return message
+        for _ in range(MAX_FRAMES):
+            message = self._frame(silence, end)
+            if not self._is_keep_alive(message):
+                return message
+        raise self.protocol_error(f"it sent {MAX_FRAMES} keep-alive messages and no response")
 
-    def _understood(self, parse: Callable[[Fields], T], value: object) -> T:
+    def _parse(self, parse: Callable[[Fields], T], value: object) -> T:
         try:
             return parse(Fields(value))
-        except AnswerError as error:
-            raise self.nonsense(error) from error
+        except ResponseError as error:
+            raise self.protocol_error(error) from error
 
-    def nonsense(self, what: object) -> DeployError:
-        """The error for what no agent of ours sends."""
+    def protocol_error(self, what: object) -> DeployError:
+        """Return the error for data that pyfrc's agent does not send."""
         return DeployError(
-            f"what the robot sends is not from our agent: {one_line(str(what))}",
+            f"the robot sent data that is not from pyfrc's agent: {one_line(str(what))}",
             where=self._where,
-            remedy="Perhaps a login script on it prints something. " + _WHOLE,
+            remedy="Perhaps a login script on the robot prints something. " + _RETRY,
         )
 
-    def _is_alive(self, said: dict[str, Any]) -> bool:
-        if "alive" not in said:
+    def _is_keep_alive(self, message: dict[str, Any]) -> bool:
+        if "alive" not in message:
             return False
-        if self.on_alive is not None:
-            self.on_alive(said["alive"])
+        if self.on_keep_alive is not None:
+            self.on_keep_alive(message["alive"])
         return True
 
     def _frame(self, silence: float, end: float) -> dict[str, Any]:
         try:
-            reading = _Reading(self._receive, self._clock, silence, self.limits.frame, end)
-            said = parse_json(wire.text_in(*wire.read_frame(reading, LONGEST_ANSWER), LONGEST_ANSWER))
+            reader = _FrameReader(self._receive, self._clock, silence, self.limits.frame, end)
+            message = parse_json(wire.unpack_message(*wire.read_frame(reader, MAX_RESPONSE_BYTES), MAX_RESPONSE_BYTES))
         except wire.EndedError as error:
             raise self._ended(error) from error
-        except (wire.WireError, AnswerError) as error:
-            raise self.nonsense(error) from error
-        if "error" in said:
-            raise self._error(said)
-        return said
+        except (wire.WireError, ResponseError) as error:
+            raise self.protocol_error(error) from error
+        if "error" in message:
+            raise self._error(message)
+        return message
 
     def _receive(self, count: int, seconds: float, limit: str) -> bytes:
         if seconds <= 0:
@@ -203,18 +204,18 @@ class AgentStream:
             raise self._lost(error) from error
 
     def _lost(self, error: BaseException) -> ConnectionFailedError:
-        what = one_line(str(error)) or ("no answer" if isinstance(error, TimeoutError) else "the robot closed it")
-        return ConnectionFailedError(f"the link to the robot was lost: {what}", where=self._where, remedy=_WHOLE)
+        what = one_line(str(error)) or ("no response" if isinstance(error, TimeoutError) else "the robot closed it")
+        return ConnectionFailedError(f"the connection to the robot was lost: {what}", where=self._where, remedy=_RETRY)
 
     def _ended(self, error: BaseException) -> DeployError:
-        """The error for a stream that has ended, by what the robot's shell or Python has written."""
+        """Return the error for a closed stream, from the exit code and the error output of the command."""
         try:
             self._channel.settimeout(self.limits.start)
             known = self._channel.status_event.wait(self.limits.start)
             status = self._channel.recv_exit_status() if known else -1
-            said = self._channel.recv_stderr(65536).decode(errors="replace").strip() if status > 0 else ""
+            output = self._channel.recv_stderr(65536).decode(errors="replace").strip() if status > 0 else ""
         except (OSError, EOFError):
-            status, said = -1, ""
+            status, output = -1, ""
         if status in (126, 127):
             return NoPythonError(
                 f"there is no Python on the robot ({PYTHON})",
@@ -223,26 +224,26 @@ class AgentStream:
             )
         if status <= 0:
             return self._lost(error)
-        last = said.splitlines()[-1] if said else f"exit code {status}"
-        return DeployError(f"the agent on the robot has ended: {one_line(last)}", where=self._where, remedy=_WHOLE)
+        last = output.splitlines()[-1] if output else f"exit code {status}"
+        return DeployError(f"the agent on the robot has ended: {one_line(last)}", where=self._where, remedy=_RETRY)
 
-    def _error(self, said: dict[str, Any]) -> DeployError:
+    def _error(self, message: dict[str, Any]) -> DeployError:
         try:
-            fields = Fields(said)
-            kind, message = fields.line("error"), fields.line("message")
+            fields = Fields(message)
+            kind, text = fields.line("error"), fields.line("message")
             remedy = fields.line("remedy") if "remedy" in fields else ""
             traceback = fields.text("traceback") if "traceback" in fields else ""
-        except AnswerError as error:
-            return self.nonsense(error)
+        except ResponseError as error:
+            return self.protocol_error(error)
         if kind in ("bug", "protocol"):
             last = traceback.strip().splitlines()[-1:]
-            return DeployError(": ".join([message, *map(one_line, last)]), where=self._where, remedy=_WHOLE)
+            return DeployError(": ".join([text, *map(one_line, last)]), where=self._where, remedy=_RETRY)
         refusal = LockedError if kind == "locked" else RefusedError
-        return refusal(message, where=self._where, remedy=remedy or None)
+        return refusal(text, where=self._where, remedy=remedy or None)
 
 
-class _Reading:
-    """Reads the bytes of one frame: the limit changes with the first of them."""
+class _FrameReader:
+    """Reads the bytes of one frame. The first byte changes the time limit."""
 
     def __init__(
         self,
@@ -257,21 +258,21 @@ class _Reading:
         self._frame = frame
         self._end = end
         self._began = False
-        self._limit(silence, "no answer")
+        self._limit(silence, "no response")
 
     def __call__(self, count: int) -> bytes:
         read = bytearray()
         while len(read) < count:
-            piece = self._receive(count - len(read), self._deadline - self._clock(), self._why)
-            if not piece:
+            chunk = self._receive(count - len(read), self._deadline - self._clock(), self._why)
+            if not chunk:
                 break
             if not self._began:
                 self._began = True
-                self._limit(self._frame, "its answer began, and did not end")
-            read += piece
+                self._limit(self._frame, "its response is incomplete")
+            read += chunk
         return bytes(read)
 
     def _limit(self, seconds: float, why: str) -> None:
         self._deadline, self._why = min(
-            (self._clock() + seconds, why), (self._end, "it works, and does not come to an end")
+            (self._clock() + seconds, why), (self._end, "it works, but exceeds the time limit")
         )

@@ -1,4 +1,4 @@
-"""One SSH connection to the robot, and commands run over it."""
+"""An SSH connection to the robot, and commands over it."""
 
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ if TYPE_CHECKING:
 
 PROGRAM_USER = "lvuser"
 ADMINISTRATOR = "admin"
-#: With this begins the greeting of a virtual robot's SSH server.
+#: The first part of a virtual robot's SSH greeting.
 VIRTUAL_ROBOT_GREETING = "SSH-2.0-pyfrc_virtual_robot"
 
-#: Seconds for each step of the way in: a roboRIO takes some for the first key exchange after its start.
+#: Time limit for each step of the login, in seconds. The first key exchange after a roboRIO's start is slow.
 _STEP_SECONDS = 15.0
-#: Seconds between signs of life, and until a link without any counts as lost.
+#: Seconds between keep-alive packets, and until a silent connection counts as lost.
 _ALIVE_SECONDS = 5
 _LOST_SECONDS = 20
-#: Bytes that a command of ours prints at most.
-_MOST_PRINTED = 100_000
+#: The maximum output of a command, in bytes.
+_MAX_OUTPUT_BYTES = 100_000
 
 _CHECK_LINK = "Check the link (radio, cable, power of the robot) and run the command again."
 
 
 def load_in_background() -> None:
-    """Have paramiko imported, which takes a tenth of a second, while something else is waited for."""
-    # Not a daemon: one that is in the middle of an import when Python ends takes it down.
+    """Import paramiko, which takes 0.1 s, in a background thread."""
+    # Not a daemon thread: Python crashes if it exits during an import.
     threading.Thread(target=_load).start()
 
 
 def _load() -> None:
-    # paramiko imports invoke, if it is there, for a clause of ~/.ssh/config; we read none, and it takes another tenth.
+    # paramiko imports invoke if it is installed, for ~/.ssh/config, which is not read here. This saves another 0.1 s.
     absent = "invoke" not in sys.modules
     if absent:
         sys.modules["invoke"] = None  # type: ignore[assignment]
@@ -57,9 +57,10 @@ def _load() -> None:
 class Connection:
     """An SSH connection, open until `close`.
 
-    :param transport: authenticated
-    :param key: the robot's
-    :param recognized: what is known of the key
+    :param transport: an authenticated transport
+    :param key: the robot's host key
+    :param recognized: the result of the key check
+    :param reconnect: connects to the same robot as another user
     """
 
     def __init__(
@@ -68,26 +69,26 @@ class Connection:
         address: Address,
         key: HostKey,
         recognized: Recognized,
-        again: Callable[[str], Connection],
+        reconnect: Callable[[str], Connection],
     ) -> None:
         self._transport = transport
-        self._again = again
+        self._reconnect = reconnect
         self.address = address
         self.key = key
         self.recognized = recognized
 
     def as_user(self, user: str) -> Connection:
-        """Connect to the same robot once more, as another user.
+        """Open a second connection to the same robot, as another user.
 
-        :raises HostKeyError: when another robot is at the address now
-        :raises ConnectionFailedError: when it does not let that user in
+        :raises HostKeyError: if another robot is at the address now
+        :raises ConnectionFailedError: if the login fails
         """
-        return self._again(user)
+        return self._reconnect(user)
 
     def administer(self, command: str) -> str | None:
-        """Run a command as the administrator, over a connection of its own.
+        """Run a command as administrator, over a second connection.
 
-        :return: what went wrong; none: nothing
+        :return: the error, or None
         """
         try:
             with self.as_user(ADMINISTRATOR) as administrator:
@@ -98,7 +99,7 @@ class Connection:
 
     @property
     def is_virtual_robot(self) -> bool:
-        """Whether its greeting says that it is one of ours."""
+        """Return whether the robot is a virtual robot, according to its greeting."""
         return str(self._transport.remote_version).startswith(VIRTUAL_ROBOT_GREETING)
 
     @property
@@ -106,9 +107,9 @@ class Connection:
         return self.address.host
 
     def open(self, command: str) -> paramiko.Channel:
-        """Run a command on the robot: its input and output.
+        """Start a command on the robot, and return the channel with its input and output.
 
-        :raises ConnectionFailedError: when the link is lost
+        :raises ConnectionFailedError: if the connection is lost
         """
         import paramiko
 
@@ -117,24 +118,24 @@ class Connection:
             channel.settimeout(_LOST_SECONDS)
             channel.exec_command(command)
         except (paramiko.SSHException, OSError, EOFError) as error:
-            raise link_lost(self.address, error) from error
+            raise connection_lost(self.address, error) from error
         return channel
 
     def run(self, command: str) -> tuple[int, str]:
-        """The exit code of a command, and what it printed.
+        """Run a command, and return its exit code and its output.
 
-        :raises ConnectionFailedError: when the link is lost
+        :raises ConnectionFailedError: if the connection is lost
         """
         with contextlib.closing(self.open(command)) as channel:
             channel.set_combine_stderr(True)
             printed = bytearray()
             try:
-                while len(printed) < _MOST_PRINTED and (data := channel.recv(65536)):
+                while len(printed) < _MAX_OUTPUT_BYTES and (data := channel.recv(65536)):
                     printed += data
                 known = channel.status_event.wait(_LOST_SECONDS)
                 return channel.recv_exit_status() if known else -1, printed.decode(errors="replace")
             except (OSError, EOFError) as error:
-                raise link_lost(self.address, error) from error
+                raise connection_lost(self.address, error) from error
 
     def close(self) -> None:
         self._transport.close()
@@ -159,33 +160,33 @@ def connect(
     pin: bool = True,
     credentials: Credentials = NONE_OFFERED,
 ) -> Connection:
-    """Connect, compare the robot's key, log in, and pin the key if it is new.
+    """Connect, check the robot's host key, log in, and pin the key if it is new.
 
-    :param keys: that the robot may have
-    :param connected: to the address already
+    :param keys: the robot's known keys
+    :param connected: a socket that is already connected to the address
     :param accepted_key: the fingerprint of a changed host key that the user accepts
-    :param robot_name: a name to be kept with the robot's key
-    :param pin: whether a key that is seen for the first time is pinned
-    :param credentials: the user's own keys, offered to a robot that wants one
-    :raises HostKeyError: when the robot's key is not one that it may have
-    :raises ConnectionFailedError: when it does not let us in
+    :param robot_name: a name to store with the robot's key
+    :param pin: whether to pin a new key
+    :param credentials: the user's own keys, for a robot that requires one
+    :raises HostKeyError: if the robot's key is not a known one
+    :raises ConnectionFailedError: if the login fails
     """
     import paramiko
 
-    # What paramiko logs of a failure is told by the error.
+    # The error has the content of paramiko's log messages.
     logging.getLogger("paramiko").setLevel(logging.CRITICAL)
     if connected is None:
         try:
             connected = socket.create_connection((address.host, address.port), timeout=CONNECT_SECONDS)
         except OSError as error:
             raise _not_let_in(address, error) from error
-    _suit_a_radio(connected)
+    _set_socket_options(connected)
     transport = paramiko.Transport(connected)
     try:
         key = _greet(transport, keys)
         keys.check(key, accepted_key, robot_name, pin=False)
         _log_in(transport, address, user, credentials)
-        # Only now: a stranger's server at a robot's address does not let us in, and its key must not become the team's.
+        # Pinned only after the login, which fails at an unrelated server with a robot's address.
         recognized = keys.check(key, accepted_key, robot_name, pin)
     except BaseException as error:
         transport.close()
@@ -193,26 +194,26 @@ def connect(
             raise _not_let_in(address, error) from error
         raise
     transport.set_keepalive(_ALIVE_SECONDS)
-    again = partial(_connect_again, address, keys, key, credentials)
-    return Connection(transport, address, key, recognized, again)
+    reconnect = partial(_connect_again, address, keys, key, credentials)
+    return Connection(transport, address, key, recognized, reconnect)
 
 
 def _connect_again(address: Address, keys: RobotKeys, key: HostKey, credentials: Credentials, user: str) -> Connection:
     return connect(address, keys, user=user, accepted_key=key.fingerprint, pin=False, credentials=credentials)
 
 
-def _suit_a_radio(connected: socket.socket) -> None:
+def _set_socket_options(connected: socket.socket) -> None:
     connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     if hasattr(socket, "TCP_USER_TIMEOUT"):
         connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _LOST_SECONDS * 1000)
 
 
 def _greet(transport: paramiko.Transport, keys: RobotKeys) -> HostKey:
-    """Agree on encryption; return the server's key."""
+    """Start the SSH session, and return the server's host key."""
     transport.banner_timeout = transport.handshake_timeout = transport.auth_timeout = _STEP_SECONDS
     options = transport.get_security_options()
     pinned = {known.key.kind for known in keys.known()}
-    # The server has keys of several kinds: asked for one that is pinned, it shows that.
+    # A server with keys of several kinds presents the first kind in this list.
     options.key_types = sorted(options.key_types, key=lambda kind: _kind_of_key(kind) not in pinned)
     transport.start_client(timeout=_STEP_SECONDS)
     shown = transport.get_remote_server_key()
@@ -227,7 +228,7 @@ def _log_in(transport: paramiko.Transport, address: Address, user: str, credenti
     import paramiko
 
     try:
-        # Robots have no passwords, and let such users in at once.
+        # Robots have no passwords and accept these users without authentication.
         transport.auth_none(user)
         return
     except paramiko.BadAuthenticationType as refused:
@@ -253,10 +254,10 @@ def _refused(
         what = f"the robot refuses {user} with {credentials.offered(offered)}"
         remedy = "Offer the right key: --identity FILE, or ssh-add FILE and --ssh-agent."
     elif "password" in allowed:
-        what = f"the robot refuses {user} with an empty password, which robots come with"
+        what = f"the robot refuses {user} with an empty password, which is the default on robots"
         remedy = (
-            f"Remove the password that was set as admin, on the robot: passwd -d {user}; or image the robot again. Or "
-            "is this another computer than the robot? Name the robot with --robot HOST."
+            f"Remove the password, as admin on the robot: passwd -d {user}; or image the robot again. If this is not "
+            "the robot, give its address with --robot HOST."
         )
     else:
         what = f"the robot lets {user} in only with a key, and {credentials.offered(0)}"
@@ -267,11 +268,13 @@ def _refused(
 def _not_let_in(address: Address, error: BaseException) -> ConnectionFailedError:
     what = str(error)
     if isinstance(error, EOFError) or what.startswith("Invalid packet"):
-        what = "it began as an SSH server does, and then closed the connection or sent something else"
+        what = "the server closed the connection, or violated the SSH protocol"
     return ConnectionFailedError(f"could not log in to the robot: {what}", where=str(address), remedy=_CHECK_LINK)
 
 
-def link_lost(address: Address, error: BaseException) -> ConnectionFailedError:
-    """The error for a link that broke."""
-    what = str(error) or ("no answer" if isinstance(error, TimeoutError) else "the robot closed it")
-    return ConnectionFailedError(f"the link to the robot was lost: {what}", where=str(address), remedy=_CHECK_LINK)
+def connection_lost(address: Address, error: BaseException) -> ConnectionFailedError:
+    """Return the error for a lost connection."""
+    what = str(error) or ("no response" if isinstance(error, TimeoutError) else "the robot closed it")
+    return ConnectionFailedError(
+        f"the connection to the robot was lost: {what}", where=str(address), remedy=_CHECK_LINK
+    )

@@ -1,4 +1,4 @@
-"""What the robot program prints, as it arrives through the robot's console service."""
+"""Showing the robot program's output, received from the robot's console service."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from ..terminal_text import VisibleStream, visible
 from .agent.console import KEEP_ALIVE, PORTS
 from .connection import VIRTUAL_ROBOT_GREETING
-from .console_frames import ConsoleFrames, NonsenseError
+from .console_frames import ConsoleFrames, ConsoleProtocolError
 from .discovery import CONNECT_SECONDS, Address
 from .errors import NoConsoleError
 from .imitated_driver_station import TCP_PORT, imitated_driver_station
@@ -21,16 +21,15 @@ from .imitated_driver_station import TCP_PORT, imitated_driver_station
 _SECONDS_BETWEEN_TRIES = 1.0
 _KEEP_ALIVE_SECONDS = 2.0
 _WAKE_SECONDS = 0.5
-#: A connection that lasts this long is an ordinary one, although no line has come: its loss is reported again.
+#: A connection that lasts this long counts as stable even without output. Its loss is reported again.
 _STABLE_SECONDS = 5.0
-#: Bytes.
-_MOST_AT_ONCE = 1 << 16
+_RECEIVE_BYTES = 1 << 16
 
 
 def console_port(address: Address) -> int | None:
-    """Return the port of the console that the SSH server's greeting names, as virtual robots' do; none: a robot's own.
+    """Return the console port in the SSH greeting of a virtual robot, or None for other robots.
 
-    :raises OSError: when the server cannot be reached
+    :raises OSError: if the server cannot be reached
     """
     with socket.create_connection((address.host, address.port), timeout=CONNECT_SECONDS) as server:
         server.settimeout(CONNECT_SECONDS)
@@ -42,14 +41,14 @@ def console_port(address: Address) -> int | None:
 
 
 def follow_console(address: Address, without_driver_station: bool = False, quiet: bool = False) -> None:
-    """Print what the robot program prints, until Ctrl-C; connect again whenever the robot goes away.
+    """Show the robot program's output until Ctrl-C. Reconnect after a lost connection.
 
-    :param without_driver_station: have the robot send it although no Driver Station is connected to it
-    :param quiet: do not report waiting and connecting
-    :raises NoConsoleError: when something else than a robot's console listens there
+    :param without_driver_station: imitate a Driver Station, so that the robot sends its output without one
+    :param quiet: do not report the state of the connection
+    :raises NoConsoleError: if the server is not a robot's console
     """
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(line_buffering=True)  # each line when it comes, into a pipe as well
+        sys.stdout.reconfigure(line_buffering=True)  # flush each line, also to a pipe
     output = VisibleStream(sys.stdout)
     report = _Reports(quiet)
     with contextlib.suppress(KeyboardInterrupt):
@@ -60,7 +59,7 @@ def follow_console(address: Address, without_driver_station: bool = False, quiet
 
 
 class _Reports:
-    """Reports of the connection on standard error, each once until the robot has sent a line or stayed connected."""
+    """Reports about the connection on standard error. Each is printed once until `reset`."""
 
     def __init__(self, quiet: bool) -> None:
         self._quiet = quiet
@@ -72,12 +71,12 @@ class _Reports:
         self._made.add(kind)
 
     def reset(self) -> None:
-        """Make each report again when it is due."""
+        """Allow each report to be printed again."""
         self._made.clear()
 
 
 def _lines_of_one_connection(address: Address, without_driver_station: bool, report: _Reports) -> Iterator[str]:
-    """Yield the lines of one connection until it is lost. What the caller does with them raises no errors here."""
+    """Yield the lines of one connection until it is lost."""
     where = address
     with contextlib.ExitStack() as open_now:
         try:
@@ -91,12 +90,13 @@ def _lines_of_one_connection(address: Address, without_driver_station: bool, rep
             )
             console.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         except ConnectionRefusedError:
-            report("refused", f"nothing listens at {where}: is it a robot, and is it on?")
+            report("refused", f"{where} refuses the connection: check the address, and that the robot is on")
             return
         except OSError as error:
             why = error.strerror or error
             report(
-                "unreachable", f"{where} cannot be reached ({why}): is the robot on, and this computer connected to it?"
+                "unreachable",
+                f"{where} cannot be reached ({why}): check that the robot is on, and this computer connected to it",
             )
             return
         report("connected", f"connected to {where}")
@@ -106,28 +106,28 @@ def _lines_of_one_connection(address: Address, without_driver_station: bool, rep
                 for line in frames.lines(received):
                     yield line
                     report.reset()
-        except NonsenseError as error:
+        except ConsoleProtocolError as error:
             raise NoConsoleError(
-                f"what listens there is not a robot's console: {error}",
+                f"the server is not a robot's console: {error}",
                 where=str(where),
-                remedy="Check the address; --robot HOST names another.",
+                remedy="Check the address, or specify another with --robot HOST.",
             ) from error
-        report("lost", f"the connection was lost; connecting to {where} again")
+        report("lost", f"the connection was lost; reconnecting to {where}")
 
 
 def _pieces(console: socket.socket, frames: ConsoleFrames, report: _Reports) -> Iterator[bytes]:
-    """Yield what the console sends, until the connection is lost, and keep the connection alive."""
-    console.settimeout(_WAKE_SECONDS)  # on Windows, Ctrl-C does not interrupt waiting for a socket
+    """Yield the received data until the connection is lost. Send keep-alive frames meanwhile."""
+    console.settimeout(_WAKE_SECONDS)  # on Windows, Ctrl-C does not interrupt a blocking receive
     connected = kept_alive = time.monotonic()
     while True:
         received = None
         try:
             with contextlib.suppress(TimeoutError):
-                received = console.recv(_MOST_AT_ONCE)
+                received = console.recv(_RECEIVE_BYTES)
             now = time.monotonic()
             if now - kept_alive >= _KEEP_ALIVE_SECONDS:
                 kept_alive = now
-                frames.rest()
+                frames.reset_count()
                 console.sendall(KEEP_ALIVE)
         except OSError:
             return

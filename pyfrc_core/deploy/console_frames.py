@@ -1,7 +1,7 @@
-"""The frames of a robot's console as lines of text, within a limit of memory.
+"""Converts the frames of a robot's console to lines of text, with limited memory.
 
-The console's port is open to all, and something else may listen there: each length is checked, and what cannot be
-a console's is an error. `pynetconsole`, which speaks this protocol as well, ends its thread with a traceback then.
+Another server may listen at the console's port, so each length is checked, and invalid data is an error. The library
+`pynetconsole` implements the same protocol, but its thread fails with a traceback on invalid data.
 """
 
 from __future__ import annotations
@@ -11,31 +11,32 @@ from collections.abc import Iterator
 
 from .agent.console import ERROR, TEXT, split_frames
 
-#: Robots' kinds of messages are small numbers. Those of other kinds than text and error are skipped.
+#: Kinds of messages are below this number. Kinds other than text and error are skipped.
 _KINDS = 32
-#: Frames without content keep a connection alive. A robot sends few of them; more at a time are a flood.
-MOST_EMPTY_FRAMES = 1000
+#: The maximum number of consecutive empty frames, which keep a connection alive. A robot sends few of them.
+MAX_EMPTY_FRAMES = 1000
 
 _TEXT_HEAD = struct.Struct(">BfH")  # kind, time in seconds, number
 _ERROR_HEAD = struct.Struct(">BfHHiB")  # kind, time in seconds, number, occurrences, error code, flags
 _LENGTH = struct.Struct(">H")
 
 
-class NonsenseError(ValueError):
-    """The bytes are not those of a robot's console; the text says why."""
+class ConsoleProtocolError(ValueError):
+    """The data is not from a robot's console. The message has the reason."""
 
 
 class ConsoleFrames:
-    """The frames of one connection. It keeps no more than one unfinished frame: 64 KiB."""
+    """The frames of one connection. At most one incomplete frame (64 KiB) is buffered."""
 
     def __init__(self) -> None:
         self._unread = b""
         self._empty = 0
 
     def lines(self, received: bytes) -> Iterator[str]:
-        """Yield the line of each frame that is complete now, without a newline at its end.
+        """Yield the line of each complete frame, without a newline.
 
-        :raises NonsenseError: when this cannot be a robot's console
+        :param received: the next bytes
+        :raises ConsoleProtocolError: if the data is not from a robot's console
         """
         frames, self._unread = split_frames(self._unread + received)
         for frame in frames:
@@ -46,19 +47,19 @@ class ConsoleFrames:
                     yield line
             else:
                 self._empty += 1
-                if self._empty > MOST_EMPTY_FRAMES:
-                    raise NonsenseError("it sends empty frames without end")
+                if self._empty > MAX_EMPTY_FRAMES:
+                    raise ConsoleProtocolError("it sends too many empty frames")
         if len(self._unread) > 2:
-            _check_kind(self._unread[2])  # before the rest of a frame is waited for that may never come
+            _check_kind(self._unread[2])  # checked early, since the rest of the frame may never arrive
 
-    def rest(self) -> None:
-        """Count empty frames from zero again, since some time has passed."""
+    def reset_count(self) -> None:
+        """Reset the count of empty frames, after some time has passed."""
         self._empty = 0
 
 
 def _check_kind(kind: int) -> None:
     if kind >= _KINDS:
-        raise NonsenseError(f"it sends messages of kind {kind}, which robots do not have")
+        raise ConsoleProtocolError(f"it sends messages of kind {kind}, which does not exist")
 
 
 def _line(frame: bytes) -> str | None:
@@ -66,12 +67,12 @@ def _line(frame: bytes) -> str | None:
     _check_kind(kind)
     if kind == TEXT:
         if len(frame) < _TEXT_HEAD.size:
-            raise NonsenseError(f"it sends a text message of {len(frame)} bytes, which is too short")
+            raise ConsoleProtocolError(f"it sends a text message of {len(frame)} bytes, which is too short")
         _, seconds, _ = _TEXT_HEAD.unpack_from(frame)
         return f"[{seconds:.2f}] {_decoded(frame[_TEXT_HEAD.size :])}"
     if kind == ERROR:
         if len(frame) < _ERROR_HEAD.size:
-            raise NonsenseError(f"it sends an error message of {len(frame)} bytes, which is too short")
+            raise ConsoleProtocolError(f"it sends an error message of {len(frame)} bytes, which is too short")
         _, seconds, _, _, code, _ = _ERROR_HEAD.unpack_from(frame)
         details, location, stack = _texts(frame, 3)
         return f"[{seconds:.2f}] {code} {details} {location} {stack}"
@@ -84,7 +85,7 @@ def _texts(frame: bytes, count: int) -> list[str]:
         start = position + _LENGTH.size
         position = start + _LENGTH.unpack_from(frame, position)[0] if start <= len(frame) else start
         if position > len(frame):
-            raise NonsenseError("it sends an error message whose texts are longer than the message")
+            raise ConsoleProtocolError("it sends an error message with texts longer than the message")
         texts.append(_decoded(frame[start:position]))
     return texts
 

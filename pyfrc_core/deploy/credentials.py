@@ -1,7 +1,7 @@
-"""The user's own SSH keys: offered to a robot only when the user asks for it.
+"""The user's own SSH keys, which are offered to a robot only if the user requests this.
 
-A stranger's computer at a robot's address learns from an offer who the user is; and the keys of an agent open more than
-robots.
+An unknown computer at a robot's address could identify the user by these keys, and an SSH agent's keys give access to
+more than robots.
 """
 
 from __future__ import annotations
@@ -16,25 +16,25 @@ from .errors import RefusedError
 if TYPE_CHECKING:
     import paramiko
 
-#: An SSH server gives up after about so many keys.
-_MOST_KEYS = 5
+#: SSH servers usually disconnect after more keys.
+_MAX_KEYS = 5
 
 
 @dataclass(frozen=True)
 class Credentials:
-    """Which keys may be offered.
+    """The keys to offer.
 
-    :param identity: a file with a private key that has no passphrase
-    :param ssh_agent: those of the SSH agent
+    :param identity: a file with a private key without a passphrase
+    :param ssh_agent: whether to offer the keys of the SSH agent
     """
 
     identity: Path | None = None
     ssh_agent: bool = False
 
     def load(self) -> Iterator[paramiko.PKey]:
-        """Load the keys to offer, the identity first.
+        """Yield the keys to offer, the identity first.
 
-        :raises RefusedError: when the file holds no key that can be read
+        :raises RefusedError: if the file has no readable key
         """
         if self.identity is not None:
             yield _key_in(self.identity)
@@ -43,12 +43,12 @@ class Credentials:
 
             agent = paramiko.Agent()
             try:
-                yield from agent.get_keys()[:_MOST_KEYS]
+                yield from agent.get_keys()[:_MAX_KEYS]
             finally:
                 agent.close()
 
     def offered(self, count: int) -> str:
-        """Say what was offered."""
+        """Return a description of the offered keys, for an error message."""
         if count == 0:
             return "there is none in your SSH agent" if self.ssh_agent else "none was offered"
         sources = [str(self.identity)] if self.identity is not None else []
@@ -65,7 +65,7 @@ def _key_in(file: Path) -> paramiko.PKey:
 
     try:
         return paramiko.PKey.from_path(file)
-    except (paramiko.PasswordRequiredException, TypeError):  # the latter is cryptography's for the same
+    except (paramiko.PasswordRequiredException, TypeError):  # cryptography raises TypeError for this
         raise RefusedError(
             "this key has a passphrase",
             where=file,
@@ -73,7 +73,7 @@ def _key_in(file: Path) -> paramiko.PKey:
         ) from None
     except OSError as error:
         raise RefusedError(f"this key cannot be read: {error.strerror or error}", where=file) from None
-    except Exception as error:  # what a file may hold that is no key fails in many ways
+    except Exception as error:  # invalid content causes many kinds of errors
         raise RefusedError(
-            f"this is no private key: {error}", where=file, remedy="Name the file without .pub at its end."
+            f"this is not a private key: {error}", where=file, remedy="Use the file without .pub at its end."
         ) from None

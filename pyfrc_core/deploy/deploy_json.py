@@ -1,4 +1,4 @@
-"""What ``deploy.json`` on the robot says: who deployed this program, when, from where, and from which commit."""
+"""The content of ``deploy.json`` on the robot: who deployed the program, when, from where and from which commit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _GIT_SECONDS = 5.0
 
 
 def deploy_json(root: Path) -> dict[str, str]:
-    """The keys that the other tools write, too; those about git only where the code is in a git checkout.
+    """Return the record, with the same keys as other tools. The git keys exist only in a git checkout.
 
     :param root: the code's directory
     """
@@ -25,7 +25,7 @@ def deploy_json(root: Path) -> dict[str, str]:
     commit = _git(root, "rev-parse", "HEAD")
     if commit:
         record["git-hash"] = commit
-        # Ends in "-dirty" where something is not committed.
+        # Ends in "-dirty" if there are uncommitted changes.
         record["git-desc"] = _git(root, "describe", "--dirty=-dirty", "--always") or commit
         record["git-branch"] = _git(root, "rev-parse", "--abbrev-ref", "HEAD") or "HEAD"
     return record
@@ -39,7 +39,7 @@ def _user() -> str:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
-    """What git says; nothing where there is no git, no checkout, or no commit yet."""
+    """Return the output of git, or None without git, a checkout or a commit."""
     try:
         done = subprocess.run(
             ["git", "-C", str(root), *arguments],

@@ -1,4 +1,4 @@
-"""Finding the robot: all of its addresses are tried at once, the first that answers as SSH servers do is taken."""
+"""Finding the robot: all addresses are tried in parallel, and the first one with an SSH server wins."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from ..errors import UsageError
 from ..season import CURRENT
 from .errors import DeployError, OnTheFieldError
 
-#: Where the Driver Station, on the same computer, tells which robot it is connected to.
+#: Where the Driver Station on this computer provides the address of its robot.
 DRIVER_STATION = ("127.0.0.1", 1742)
 
-#: Seconds until an address counts as not answering: enough for a radio that loses packets.
+#: Time limit for each address, in seconds: enough for a radio that loses packets.
 CONNECT_SECONDS = 5.0
-#: Seconds for looking names up; systems without a fast "no" take up to this.
+#: Time limit for resolving names, in seconds.
 RESOLVE_SECONDS = 5.0
-#: Seconds that the Driver Station gets to answer; Windows takes long to say that nobody listens.
+#: Time limit for the Driver Station, in seconds. Windows takes long to refuse a connection.
 DRIVER_STATION_SECONDS = 1.0
 
-#: The highest team number: 10.TE.AM.2 has room for no more.
-MOST_TEAM = 25_599
+#: The highest team number that an address 10.TE.AM.2 can contain.
+MAX_TEAM = 25_599
 
-#: A robot's at the other end of a USB cable, whoever's it is.
+#: The address of any robot at the other end of a USB cable.
 USB_CABLE = CURRENT.controller.usb_address
 
 _BANNER = b"SSH-"
@@ -40,7 +40,7 @@ _BANNER = b"SSH-"
 
 @dataclass(frozen=True)
 class Address:
-    """Where an SSH server may be."""
+    """A possible address of an SSH server."""
 
     host: str
     port: int = 22
@@ -52,7 +52,7 @@ class Address:
 
     @property
     def is_name(self) -> bool:
-        """Whether it has to be looked up."""
+        """Return whether it is a host name, which must be resolved."""
         for family in (socket.AF_INET, socket.AF_INET6):
             try:
                 socket.inet_pton(family, self.host.partition("%")[0])
@@ -63,8 +63,8 @@ class Address:
 
 
 @dataclass(frozen=True)
-class Tried:
-    """An address, what would be there, and why it was not."""
+class FailedAttempt:
+    """An address that was tried, its kind, and the reason for the failure."""
 
     address: Address
     kind: str
@@ -72,20 +72,21 @@ class Tried:
 
 
 class RobotNotFoundError(DeployError):
-    """No robot answered at any of the addresses tried.
+    """No robot responded at any address.
 
-    :ivar tried: the addresses, each with the reason
+    :ivar tried: the failed attempts with their reasons
     """
 
-    tried: tuple[Tried, ...] = ()
+    tried: tuple[FailedAttempt, ...] = ()
 
 
 @dataclass(frozen=True)
-class Found:
-    """The robot that has answered.
+class FoundRobot:
+    """The robot that was found.
 
-    :param address: the address as it was tried: a name stays a name
-    :param connected: to it; what the server has sent is still unread
+    :param address: the address that was tried; a host name is not replaced by its address
+    :param kind: a description of the address
+    :param connected: a socket connected to the robot, from which nothing was read
     """
 
     address: Address
@@ -94,9 +95,9 @@ class Found:
 
 
 def parse_address(text: str) -> Address:
-    """Return the address in ``HOST``, ``HOST:PORT`` or ``[IPV6]:PORT``; a numeric one in its one normal form.
+    """Parse ``HOST``, ``HOST:PORT`` or ``[IPV6]:PORT``. A numeric address is normalized.
 
-    :raises UsageError: when it is neither, or a number in a form that systems read in different ways
+    :raises UsageError: if the text is not an address, or is a number that systems interpret differently
     """
     host, port = text.strip(), ""
     if host.startswith("["):
@@ -104,28 +105,28 @@ def parse_address(text: str) -> Address:
         port = port.removeprefix(":")
     elif host.count(":") == 1:
         host, _, port = host.partition(":")
-    # No other characters: some of them are digits or dots for the system that looks names up.
+    # No other characters: name resolution treats some of them as digits or dots.
     if not re.fullmatch(r"[A-Za-z0-9_.:%-]+", host) or (port and not (port.isdecimal() and 1 <= int(port) <= 65535)):
-        raise UsageError(f"{text!r} is no address of a robot", remedy="Write HOST or HOST:PORT, as in 10.12.34.2")
+        raise UsageError(f"{text!r} is not an address of a robot", remedy="Write HOST or HOST:PORT, as in 10.12.34.2")
     return Address(_normal(host.removesuffix(".")), int(port or 22))
 
 
 def _normal(host: str) -> str:
-    """Return the host as keys are pinned for it: another spelling must not be another robot."""
+    """Return the normalized host. Keys are pinned for it, so all spellings of an address must give the same host."""
     try:
         number = ipaddress.ip_address(host)
     except ValueError:
         if re.fullmatch(r"(0x[0-9a-f]*|[0-9]+)(\.(0x[0-9a-f]*|[0-9]+))*", host, re.IGNORECASE):
-            raise UsageError(f"{host!r} is not how an address is written", remedy=_right_spelling(host)) from None
+            raise UsageError(f"{host!r} is not a valid address", remedy=_right_spelling(host)) from None
         return host
     return str(getattr(number, "ipv4_mapped", None) or number)
 
 
 def _right_spelling(host: str) -> str:
-    if host.isdecimal() and len(host) <= 5 and 1 <= int(host) <= MOST_TEAM:
+    if host.isdecimal() and len(host) <= 5 and 1 <= int(host) <= MAX_TEAM:
         return f"For a team's robot, write --team {int(host)}; for an address, four numbers, as in 10.12.34.2"
     try:
-        # Zeros before a number make it octal for some systems; people who write them mean decimal numbers.
+        # Some systems read a number with leading zeros as octal; users mean decimal.
         decimal = re.fullmatch(r"[0-9]{1,3}(\.[0-9]{1,3}){3}", host)
         plain = ".".join(str(int(part)) for part in host.split(".")) if decimal else _dotted(host)
         return f"Write {ipaddress.ip_address(plain)}"
@@ -138,9 +139,9 @@ def _dotted(host: str) -> str:
 
 
 def addresses_of(team: int, resolve: bool = True) -> list[tuple[Address, str]]:
-    """The addresses that a team's robot may have, and what each of them is.
+    """Return the possible addresses of a team's robot, each with a description.
 
-    :param resolve: with those that have to be looked up
+    :param resolve: include host names
     """
     name = CURRENT.controller.host_name.format(team=team)
     every = [
@@ -155,7 +156,7 @@ def addresses_of(team: int, resolve: bool = True) -> list[tuple[Address, str]]:
 
 
 def team_of(address: Address) -> int | None:
-    """Return the team among whose addresses this one is; none: no team's, or each team's (the USB cable)."""
+    """Return the team to which an address belongs, or None if it belongs to no team or to all (the USB cable)."""
     if address.port != 22:
         return None
     if named := re.fullmatch(
@@ -166,7 +167,7 @@ def team_of(address: Address) -> int | None:
         team = int(numbers[1]) * 100 + int(numbers[2])
     else:
         return None
-    return team if 1 <= team <= MOST_TEAM else None
+    return team if 1 <= team <= MAX_TEAM else None
 
 
 def find_robot(
@@ -175,14 +176,15 @@ def find_robot(
     *,
     driver_station: tuple[str, int] = DRIVER_STATION,
     take_its_robot: bool = True,
-) -> Found:
-    """Connect to the first robot that answers.
+) -> FoundRobot:
+    """Connect to the first robot that responds.
 
-    :param candidates: addresses, each with what it is
-    :param whose: for the message, such as ``team 1234``
-    :param take_its_robot: try the robot that the Driver Station is connected to, as well
-    :raises OnTheFieldError: when the Driver Station is connected to a competition field
-    :raises RobotNotFoundError: with a table of what was tried, and why each was not it
+    :param candidates: addresses, each with a description
+    :param whose: the robot in the error message, such as ``team 1234``
+    :param driver_station: host and port of the Driver Station
+    :param take_its_robot: also try the robot that the Driver Station is connected to
+    :raises OnTheFieldError: if the Driver Station is connected to a competition field
+    :raises RobotNotFoundError: with a table of all failed attempts
     """
     race = _Race()
     for address, kind in candidates:
@@ -193,7 +195,7 @@ def find_robot(
         if found is not None:
             found.connected.close()
         raise OnTheFieldError(
-            "the Driver Station is connected to a competition field (FMS): robots are not to be changed there",
+            "the Driver Station is connected to a competition field (FMS): robots must not be changed there",
             remedy="Deploy when your match is over and the robot is back in your pit.",
         )
     if found is None:
@@ -201,7 +203,7 @@ def find_robot(
     return found
 
 
-def not_found(whose: str, tried: Sequence[Tried]) -> RobotNotFoundError:
+def not_found(whose: str, tried: Sequence[FailedAttempt]) -> RobotNotFoundError:
     """The error, with what was tried as a table."""
     widths = [max((len(text) for text in column), default=0) for column in zip(*map(_row, tried), strict=True)]
     table = "".join(
@@ -224,7 +226,7 @@ def _is_this_computer(host: str) -> bool:
     return host in ("localhost", "::1") or re.fullmatch(r"127(?:\.[0-9]{1,3}){3}", host) is not None
 
 
-def _row(tried: Tried) -> tuple[str, str, str]:
+def _row(tried: FailedAttempt) -> tuple[str, str, str]:
     return str(tried.address), tried.kind, tried.why
 
 
@@ -232,12 +234,12 @@ def _row(tried: Tried) -> tuple[str, str, str]:
 class _Race:
     """All the attempts, each on a thread of its own; this one looks at what comes of them."""
 
-    tried: list[Tried] = field(default_factory=list)
+    tried: list[FailedAttempt] = field(default_factory=list)
     on_field: bool = False
     _results: queue.Queue[Any] = field(default_factory=queue.Queue)
     _running: int = 0
     _over: threading.Event = field(default_factory=threading.Event)
-    #: The addresses, each with what it is, in the order in which they were named.
+    #: The addresses with their descriptions, in the order of the candidates.
     _entered: dict[Address, str] = field(default_factory=dict)
     _station_answered: bool = False
 
@@ -250,36 +252,38 @@ class _Race:
     def ask_driver_station(self, where: tuple[str, int], take_its_robot: bool) -> None:
         self._start(self._driver_station, where, take_its_robot)
 
-    def winner(self) -> Found | None:
-        found: Found | None = None
+    def winner(self) -> FoundRobot | None:
+        found: FoundRobot | None = None
         end = time.monotonic() + RESOLVE_SECONDS + CONNECT_SECONDS
-        # The Driver Station has its say even when a robot was quicker.
+        # The result of the Driver Station is needed even if a robot responds first.
         while self._running and (found is None or not self._station_answered):
             try:
                 result = self._results.get(timeout=max(end - time.monotonic(), 0))
             except queue.Empty:
                 break
             self._running -= 1
-            if isinstance(result, Found) and found is None:
+            if isinstance(result, FoundRobot) and found is None:
                 found = result
-            elif isinstance(result, Found):
+            elif isinstance(result, FoundRobot):
                 result.connected.close()
-            elif isinstance(result, Tried):
+            elif isinstance(result, FailedAttempt):
                 self.tried.append(result)
             else:
                 for next_step in result:
                     next_step()
         self._over.set()
         while not self._results.empty():
-            if isinstance(late := self._results.get(), Found):
+            if isinstance(late := self._results.get(), FoundRobot):
                 late.connected.close()
         return found
 
-    def reasons(self) -> list[Tried]:
-        """What was tried and failed, in the order in which it was named."""
+    def reasons(self) -> list[FailedAttempt]:
+        """Return the failed attempts in the order of the candidates."""
         answered = {tried.address for tried in self.tried}
         late = f"no answer within {RESOLVE_SECONDS + CONNECT_SECONDS:g} s"
-        silent = [Tried(address, kind, late) for address, kind in self._entered.items() if address not in answered]
+        silent = [
+            FailedAttempt(address, kind, late) for address, kind in self._entered.items() if address not in answered
+        ]
         order = list(self._entered)
         return sorted([*self.tried, *silent], key=lambda tried: order.index(tried.address))
 
@@ -288,17 +292,17 @@ class _Race:
         threading.Thread(target=lambda: self._finish(function(*arguments)), daemon=True).start()
 
     def _finish(self, result: Any) -> None:
-        if isinstance(result, Found) and self._over.is_set():
+        if isinstance(result, FoundRobot) and self._over.is_set():
             result.connected.close()
             return
         self._results.put(result)
 
     def _resolve(self, address: Address, kind: str) -> Any:
-        """What is to be tried next, or why there is nothing."""
+        """Return the functions to call next, or a failed attempt."""
         try:
             infos = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_STREAM)
         except (OSError, UnicodeError):
-            return Tried(address, kind, "the name is not known here")
+            return FailedAttempt(address, kind, "the name is not known here")
         places = dict.fromkeys((family, place) for family, _, _, _, place in infos)
         return [partial(self._start, self._connect, address, kind, family, place) for family, place in places]
 
@@ -311,11 +315,13 @@ class _Race:
             banner = connected.recv(len(_BANNER), socket.MSG_PEEK)
         except OSError as error:
             connected.close()
-            return Tried(address, kind, _why(error, address.host))
+            return FailedAttempt(address, kind, _why(error, address.host))
         if banner and _BANNER.startswith(banner):
-            return Found(address, kind, connected)
+            return FoundRobot(address, kind, connected)
         connected.close()
-        return Tried(address, kind, "something answers, but no SSH server" if banner else "closed the connection")
+        return FailedAttempt(
+            address, kind, "a server responds, but not an SSH server" if banner else "closed the connection"
+        )
 
     def _driver_station(self, where: tuple[str, int], take_its_robot: bool) -> Any:
         following: list[Any] = []
@@ -330,7 +336,7 @@ class _Race:
                 address = Address(socket.inet_ntoa(struct.pack("!I", robot)))
                 following = [partial(self.enter, address, "the Driver Station's robot")]
         except (OSError, ValueError, AttributeError, RecursionError):
-            pass  # mostly there is none on this computer
+            pass  # usually, no Driver Station runs on this computer
         self._station_answered = True
         return following
 

@@ -1,4 +1,4 @@
-"""What can go wrong between the laptop and the robot."""
+"""Errors of deploys and connections to a robot."""
 
 from __future__ import annotations
 
@@ -6,41 +6,41 @@ from ..errors import PyfrcError
 
 
 class DeployError(PyfrcError):
-    """The robot has not been changed, or starts a whole program all the same; the message says what to do."""
+    """A command about a robot failed. The robot still has a complete program. The message says what to do."""
 
 
 class ConnectionFailedError(DeployError):
-    """The robot has answered, but does not let us in; or the link to it was lost."""
+    """The login failed, or the connection was lost."""
 
 
 class NoConsoleError(DeployError):
-    """What listens at the console's port is not a robot's console."""
+    """The server at the console's port is not a robot's console."""
 
 
 class StoppedError(DeployError):
-    """The user has pressed Ctrl-C when the robot was being changed; the message says what is so now."""
+    """The user pressed Ctrl-C while the robot was being changed. The message explains the robot's state."""
 
     exit_code = 2
 
 
 class HostKeyError(DeployError):
-    """The robot's key is not the one that this project knows."""
+    """The robot's host key is not a known one."""
 
 
 class KeyFileError(DeployError):
-    """The file with the keys of robots cannot be read or written."""
+    """The file with the robots' host keys cannot be read or written."""
 
 
 class OnTheFieldError(DeployError):
-    """The Driver Station is connected to a competition field, where robots are not to be changed."""
+    """The Driver Station is connected to a competition field, where robots must not be changed."""
 
 
 class RefusedError(DeployError):
-    """Something is wrong with the project or the robot, found before anything was changed."""
+    """The command was refused before anything was changed."""
 
 
 class LockedError(RefusedError):
-    """Another computer is changing the robot's programs; this command has changed nothing."""
+    """Another computer is changing the robot's programs. Nothing was changed by this command."""
 
 
 class NoPythonError(RefusedError):
@@ -48,12 +48,12 @@ class NoPythonError(RefusedError):
 
 
 class ProgramDiedError(DeployError):
-    """The new program was deployed and started, and has ended while it was watched."""
+    """The new program was deployed and started, and ended during the watch."""
 
     exit_code = 3
 
 
-#: The exit code of an error after which the robot has, or may have, the new program, which was not seen to run.
+#: The exit code if the robot has, or may have, the new program, and it was not confirmed to run.
 CHANGED = 4
 
 

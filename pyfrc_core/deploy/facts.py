@@ -1,4 +1,4 @@
-"""What a robot tells of itself, and what came of what it was asked for."""
+"""Facts about a robot, and the requests and responses of the deploy agent."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ from typing import TYPE_CHECKING
 
 from ..season import CURRENT
 from ..terminal_text import one_line
-from .agent import watching
+from .agent import start_monitor
 
 if TYPE_CHECKING:
-    from .answers import Fields
+    from .responses import Fields
 
 _TRACEBACK = re.compile(r"^Traceback \(most recent call last\):\n(?:[ \t].*\n|\n)*(?P<error>\S.*\n?)?", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class Release:
-    """A program that the robot has, and can go back to.
+    """A release on the robot.
 
-    :param number:      by which it is named
-    :param taken:       whether another tool has left it
-    :param main:        its main file; none: not known
+    :param number:      its number
+    :param taken:       whether another tool deployed it
+    :param main:        its main file; None if unknown
     :param debug:       whether it was deployed for debugging
-    :param files:       how many it came with
-    :param previous:    the release it has replaced
-    :param deploy_json: who has deployed it, when, from where
-    :param ran:         whether a watch has seen it run, at any of its starts
-    :param ended:       whether it ended at the last of its starts that was watched
+    :param files:       the number of deployed files
+    :param previous:    the release that it replaced
+    :param deploy_json: who deployed it, when, from where
+    :param ran:         whether any watch has confirmed that it runs
+    :param ended:       whether it ended during its last watched start
     """
 
     number: int
@@ -44,7 +44,7 @@ class Release:
 
     @classmethod
     def of(cls, fields: Fields) -> Release:
-        """From what the agent sends."""
+        """Parse the agent's message."""
         return cls(
             number=fields.count("release"),
             taken=fields.flag("taken"),
@@ -60,28 +60,28 @@ class Release:
 
 @dataclass(frozen=True)
 class RobotFacts:
-    """What there is on the robot.
+    """The facts that the agent reports about the robot.
 
-    :param not_roborio:  why it is no roboRIO; none: it is one
-    :param python:       its Python's version
-    :param wpilib:       its version; none: not installed
-    :param image:        its image's version
-    :param startup_dlls: whether the line that costs 24 MB is in effect
-    :param free_bytes:   that may still be written
-    :param user:         as whom we write
-    :param current:      the release that it starts; none: another tool's program, or no program
-    :param releases:     all that it has, oldest first
-    :param other_code:   whether another tool's program is in place
-    :param deploy_json:  of the program that is in place
-    :param command:      the line that starts the program at boot; none: nothing is started
+    :param not_roborio:  the reason why it is not a roboRIO; None if it is one
+    :param python:       the version of its Python
+    :param wpilib:       the version of `wpilib`; None if it is not installed
+    :param image:        the version of its image
+    :param startup_dlls: whether the StartupDLLs line, which costs 24 MB of memory, is active
+    :param free_bytes:   free disk space in bytes
+    :param user:         the user who owns new files
+    :param current:      the release that it starts; None for another tool's program, and without a program
+    :param releases:     all releases, oldest first
+    :param other_code:   whether another tool's program is current
+    :param deploy_json:  ``deploy.json`` of the current program
+    :param command:      the command that starts the program at boot; None if there is none
     :param debug:        whether the program is started for debugging
     :param running:      whether a program runs
-    :param packages:     the versions of what is installed for its Python, by normalized names
-    :param missing_modules: of the modules that were asked for, those that its Python cannot find
-    :param extension_suffixes: with which the names of its Python's extension modules end
-    :param machine:      its processor
+    :param packages:     versions of the installed Python packages by normalized name
+    :param missing_modules: requested modules that its Python cannot find
+    :param extension_suffixes: file name suffixes of its Python's extension modules
+    :param machine:      its processor architecture
     :param other_languages: files and directories of programs in Java and C++
-    :param program_age:  seconds for which the program has run; none: not known, or no program runs
+    :param program_age:  seconds since the program's start; None if unknown or no program runs
     """
 
     not_roborio: str | None
@@ -107,7 +107,7 @@ class RobotFacts:
 
     @classmethod
     def of(cls, fields: Fields) -> RobotFacts:
-        """From what the agent sends."""
+        """Parse the agent's message."""
         image = fields.line_or_none("image")
         why = None
         if image is None:
@@ -142,7 +142,7 @@ class RobotFacts:
 
 @dataclass(frozen=True)
 class Plan:
-    """What a deploy would do: paths relative to the code's directory; files and bytes that would be sent."""
+    """The changes that a deploy would make: paths relative to the code's directory, and the data to send."""
 
     added: tuple[str, ...]
     changed: tuple[str, ...]
@@ -152,20 +152,20 @@ class Plan:
 
     @classmethod
     def of(cls, fields: Fields) -> Plan:
-        """From what the agent sends."""
+        """Parse the agent's message."""
         added, changed, removed = (fields.texts(key) for key in ("added", "changed", "removed"))
         return cls(added, changed, removed, fields.count("files"), fields.count("bytes"))
 
 
 @dataclass(frozen=True)
 class DeployRequest:
-    """How a program is to be deployed.
+    """Options of a deploy.
 
-    :param main:        its main file, relative to the project
-    :param deploy_json: what is kept with it
-    :param debug:       whether the robot is to start it for debugging
-    :param in_place:    overwrite the files of the program that is there, delete none
-    :param program:     the files that are imported when it starts: the robot's Python has to be able to compile them
+    :param main:        the main file, relative to the project
+    :param deploy_json: the content of ``deploy.json``
+    :param debug:       start the program for debugging
+    :param in_place:    overwrite files of the current program, delete none
+    :param program:     files that the program imports at its start, which the robot's Python must be able to compile
     """
 
     main: str
@@ -177,15 +177,15 @@ class DeployRequest:
 
 @dataclass(frozen=True)
 class Deployed:
-    """What a deploy did.
+    """The result of a deploy.
 
-    :param release:    the number of the release that is current now; none: another tool's directory, in place
-    :param previous:   the one that was before it
-    :param fallback:   the one that a rollback goes back to: the one before, or the newest that was seen to run
-    :param taken:      the release as which another tool's directory was kept
-    :param unchanged:  whether the same files were there already
-    :param files_sent: whose contents the robot had not
-    :param bytes_sent: of contents, before they were compressed
+    :param release:    the current release; None after an in-place deploy to another tool's directory
+    :param previous:   the release before it
+    :param fallback:   the release that a rollback selects: the previous one, or the newest confirmed to run
+    :param taken:      the new release number of another tool's directory
+    :param unchanged:  whether the robot already had the same files
+    :param files_sent: the number of files whose contents were sent
+    :param bytes_sent: the size of these contents before compression
     """
 
     release: int | None
@@ -198,7 +198,7 @@ class Deployed:
 
     @classmethod
     def of(cls, fields: Fields) -> Deployed:
-        """From what the agent sends."""
+        """Parse the agent's message."""
         return cls(
             release=fields.count_or_none("release"),
             previous=fields.count_or_none("previous"),
@@ -212,10 +212,11 @@ class Deployed:
 
 @dataclass(frozen=True)
 class RolledBack:
-    """What a rollback did.
+    """The result of a rollback.
 
+    :param release:  the release that is current now
     :param previous: the release that was current before
-    :param changed:  the release's files that are not as they were deployed: the program has written into them
+    :param changed:  deployed files of the release that the program has changed
     """
 
     release: Release
@@ -224,22 +225,22 @@ class RolledBack:
 
     @classmethod
     def of(cls, fields: Fields) -> RolledBack:
-        """From what the agent sends."""
+        """Parse the agent's message."""
         return cls(Release.of(fields.object("about")), fields.count_or_none("previous"), fields.texts("changed"))
 
 
 @dataclass(frozen=True)
 class StartState:
-    """What is seen of a program while it starts.
+    """The observed state of a program during its start.
 
-    :param seconds:        since its start
-    :param age:            seconds for which its process has been seen; 0 without one
-    :param lived:          the same of the process that has ended
-    :param heard:          whether anything that it has printed has arrived
-    :param seen:           whether it ever had a process
-    :param cpu:            processor time that its process has used, in seconds; none: unknown
+    :param seconds:        seconds since the restart
+    :param age:            seconds for which its process has been observed; 0 without one
+    :param lived:          the same for a process that has ended
+    :param heard:          whether any output was received
+    :param seen:           whether a process was ever observed
+    :param cpu:            processor time of the process in seconds; None if unknown
     :param network_tables: whether its NetworkTables server listens, which WPILib starts after the imports and before
-        ``robotInit``; none: unknown
+        ``robotInit``; None if unknown
     """
 
     seconds: float = 0.0
@@ -252,7 +253,7 @@ class StartState:
 
     @classmethod
     def of(cls, fields: Fields) -> StartState:
-        """From what the agent sends."""
+        """Parse the agent's message."""
         return cls(
             seconds=fields.seconds("seconds"),
             age=fields.seconds("age"),
@@ -266,12 +267,12 @@ class StartState:
 
 @dataclass(frozen=True)
 class Watched:
-    """What came of watching a program that was started.
+    """The result of watching a program's start.
 
-    :param verdict: ``running``, ``ended``, ``starting`` (still, at the end of the watch) or ``unheard``: its process
-        lives, and its console is silent
-    :param output:  the end of what it has printed; nothing, where the robot's console is silent
-    :param state:   how it was at the end
+    :param verdict: ``running``, ``ended``, ``starting`` (not finished within the time limit) or ``unheard`` (the
+        process runs, but its output does not confirm the start)
+    :param output:  the last part of its output; empty if the console is silent
+    :param state:   the state at the end of the watch
     """
 
     verdict: str
@@ -280,19 +281,19 @@ class Watched:
 
     @property
     def alive(self) -> bool:
-        """Whether its process lived at the end."""
-        return self.verdict != watching.ENDED
+        """Return whether its process was running at the end."""
+        return self.verdict != start_monitor.ENDED
 
     @property
     def started(self) -> bool:
-        """Whether it has reported that it has started, and lived on."""
-        return self.verdict == watching.RUNNING
+        """Return whether it has reported its start and kept running."""
+        return self.verdict == start_monitor.RUNNING
 
     @property
     def traceback(self) -> str | None:
-        """The last traceback in its output, with the error's line; one that is cut off counts if there is no other.
+        """Return the last complete traceback in the output, else the last incomplete one, else None.
 
-        The output of a program that is started again at once ends anywhere in the next crash.
+        A traceback may be incomplete because the robot restarts a crashed program immediately.
         """
         found = list(_TRACEBACK.finditer(self.output))
         whole = [each for each in found if each["error"]] or found

@@ -1,9 +1,9 @@
 #!/bin/bash
 # pyfrc's frcKillRobot.sh: stops the robot program (-t), starts it again (-r).
 #
-# The script of the robot's image, kept beside this one as frcKillRobot.image.sh, does that. It sometimes returns while
-# the program still runs. This one waits for the program's end, and ends it if it goes on. To have the image's script
-# back, as admin:
+# The script of the robot's image is kept as frcKillRobot.image.sh. It sometimes returns while the program still runs.
+# This script calls it, waits for the program's end, and kills the program if necessary. To restore the image's script,
+# as admin:
 #   mv /usr/local/frc/bin/frcKillRobot.image.sh /usr/local/frc/bin/frcKillRobot.sh
 
 image=/usr/local/frc/bin/frcKillRobot.image.sh
@@ -20,7 +20,7 @@ while getopts tr option; do
     esac
 done
 
-# The processes of robot programs in Python, Java and C++.
+# Prints the process ids of robot programs in Python, Java and C++.
 programs() {
     local directory words
     for directory in /proc/[0-9]*; do
@@ -32,7 +32,7 @@ programs() {
     done
 }
 
-# Returns whether one of the given processes is left after a second.
+# Waits up to one second. Succeeds if one of the given processes still runs.
 left() {
     local turn process
     for turn in 1 2 3 4 5 6 7 8 9 10; do

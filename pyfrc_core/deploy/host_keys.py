@@ -1,13 +1,12 @@
-"""The host keys of robots: pinned when first seen, compared ever after.
+"""The host keys of robots: pinned at the first connection, compared at all later ones.
 
 A key is pinned for the robot's team: for all addresses that a robot of the team may have, together. Any other key is
 refused at each of them, until the user accepts it. A robot at an address of its own (``--robot HOST:PORT``) is pinned
 for that address alone.
 
-Kept in ``.pyfrc/known_hosts``, in OpenSSH's format, for one person and one checkout: not committed. Outside of any
-project, it is ``~/.pyfrc/known_hosts``. Written and read here rather than with `paramiko.HostKeys`, which keeps one
-key of a kind for an address: a team's robots (this year's, the one for practice) have the same addresses and different
-keys.
+The file is ``.pyfrc/known_hosts`` in the project, in OpenSSH's format, and is not committed. Outside of a project, it
+is ``~/.pyfrc/known_hosts``. `paramiko.HostKeys` is not used because it keeps only one key of each kind for an address:
+a team's robots (competition, practice) have the same addresses and different keys.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ from .errors import HostKeyError, KeyFileError
 KNOWN_HOSTS = Path(".pyfrc", "known_hosts")
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,39}")
-#: A host for which a key can be pinned here: no pattern, no negation, no hash.
+#: A host for which a key can be pinned: not a pattern, a negation or a hash.
 _HOST = re.compile(r"[\w.:%-]+|\[[\w.:%-]+\]:[0-9]{1,5}")
 
 
@@ -55,8 +54,8 @@ class HostKey:
 class KnownKey:
     """A pinned key.
 
-    :param hosts: for which it is pinned, as OpenSSH writes them
-    :param name:  that the user has given to the robot; empty: none
+    :param hosts: the hosts for which it is pinned, in OpenSSH's format
+    :param name:  the robot's name; empty if it has none
     """
 
     hosts: tuple[str, ...]
@@ -65,16 +64,16 @@ class KnownKey:
 
     @property
     def teams(self) -> set[int]:
-        """The teams whose addresses are among its hosts."""
+        """Return the teams whose addresses are among its hosts."""
         return {team for host in self.hosts if (team := team_of(Address(host))) is not None}
 
     def is_for(self, host: str) -> bool:
-        """Return whether it is pinned for this host. Capital letters make no difference, as everywhere in names."""
+        """Return whether it is pinned for this host. Upper and lower case are the same."""
         return host.lower() in map(str.lower, self.hosts)
 
     @property
     def is_of_cable_only(self) -> bool:
-        """Whether nothing is known of its robot but that it was at the other end of a USB cable."""
+        """Return whether it is pinned only for the USB cable, so that its team is unknown."""
         return self.hosts == (USB_CABLE,)
 
     def __str__(self) -> str:
@@ -83,10 +82,10 @@ class KnownKey:
 
 @dataclass(frozen=True)
 class Recognized:
-    """What is known of a key that was accepted.
+    """The result of a successful key check.
 
-    :param new_for: for what it was pinned just now, such as ``team 1234``; none: it was known
-    :param name:    the robot's; empty: none
+    :param new_for: for whom the key was pinned now, such as ``team 1234``; None if it was known
+    :param name:    the robot's name; empty if it has none
     """
 
     new_for: str | None
@@ -96,8 +95,9 @@ class Recognized:
 class HostKeys:
     """The pinned keys of a project, or of a user outside of projects.
 
-    :param directory: the project's
-    :raises HostKeyError: when the file cannot be trusted or read: it is a link, or a line of it holds no key
+    :param directory: the project's directory
+    :param of_user:   whether these are a user's keys
+    :raises HostKeyError: if the file is a link or has an invalid line
     """
 
     def __init__(self, directory: Path, *, of_user: bool = False) -> None:
@@ -107,15 +107,15 @@ class HostKeys:
 
     @classmethod
     def of_this_user(cls) -> HostKeys:
-        """The keys that this user has met outside of projects: of robots of many teams."""
+        """Return the user's keys, which are used outside of projects and belong to robots of several teams."""
         return cls(Path.home(), of_user=True)
 
     def of_robot(self, address: Address, team: int | None = None, project_team: int | None = None) -> RobotKeys:
-        """The keys that a robot may have.
+        """Return the known keys of a robot.
 
-        :param address: where it is
-        :param team: whose robot is looked for there; none: the address says it, or it is a robot by itself
-        :param project_team: the project's team, for a robot that was named by its address
+        :param address: its address
+        :param team: its team; default: the team of the address, if any
+        :param project_team: the project's team, for a robot that the user named by its address
         """
         team = team_of(address) if team is None else team
         if team is None and _host(address) == USB_CABLE:
@@ -123,11 +123,11 @@ class HostKeys:
         return RobotKeys(self, address, team, project_team)
 
     def entries(self) -> list[KnownKey]:
-        """All pinned keys, as the file has them now."""
+        """Return all pinned keys that are now in the file."""
         return [known for _, known in self._lines() if known is not None]
 
     def write(self, entries: Iterable[KnownKey], forget: Iterable[KnownKey] = ()) -> None:
-        """Add these keys, instead of those to forget; all other lines stay as they are."""
+        """Add keys, and remove the keys to forget. All other lines stay unchanged."""
         gone = set(forget)
         kept = [line for line, known in self._lines() if known not in gone]
         with self._accessing("write"):
@@ -138,7 +138,7 @@ class HostKeys:
 
     @contextmanager
     def _accessing(self, how: str) -> Iterator[None]:
-        """Raise an error about the file, since its caller takes other errors of the system for the link's.
+        """Convert an `OSError` to an error about the file. The caller treats other `OSError` as a lost connection.
 
         :param how: ``read`` or ``write``
         """
@@ -150,16 +150,16 @@ class HostKeys:
             raise KeyFileError(
                 f"cannot {how} the file with the keys of robots: {(error.strerror or str(error)).lower()}",
                 where=where,
-                remedy=f"Nothing was changed on the robot. Make sure that you may {how} {of_what} and .pyfrc in it "
-                "(a directory), and run the command again.",
+                remedy=f"Nothing was changed on the robot. Make sure that you can {how} {of_what} and the directory "
+                ".pyfrc in it, and run the command again.",
             ) from error
 
     def _refuse_links(self) -> None:
-        """Who can make a link in a project must not choose which file is read as keys, or is overwritten."""
+        """Refuse links, which could make pyfrc read keys from another file or overwrite it."""
         for path in (self.file.parent, self.file, self.file.with_name(".gitignore")):
             if path.is_symlink() or _is_junction(path):
                 raise HostKeyError(
-                    "this is a link, and the keys of robots are not kept behind links",
+                    "this is a link, and keys of robots are not read through links",
                     where=path,
                     remedy="Remove the link, and run the command again: the robot's key is then pinned again.",
                 )
@@ -169,19 +169,19 @@ class HostKeys:
             self._refuse_links()
             if self.file.is_dir():
                 raise HostKeyError(
-                    "this is a directory, and should be the file with the keys of robots",
+                    "this is a directory instead of the file with the keys of robots",
                     where=self.file,
                     remedy="Remove it, and run the command again.",
                 )
             if not self.file.is_file():
                 return []
-            # Editors on Windows put a byte-order mark before the first line, which would make its host another one.
+            # Editors on Windows may write a byte-order mark, which would become part of the first host.
             text = self.file.read_text("utf-8-sig", errors="replace")
         return [(line, _known_in(line, self.file, number)) for number, line in enumerate(text.splitlines(), 1)]
 
 
 class RobotKeys:
-    """The keys that a robot may have: its team's, or those of its address."""
+    """The known keys of a robot: those of its team, or those of its address."""
 
     def __init__(self, keys: HostKeys, address: Address, team: int | None, project_team: int | None = None) -> None:
         self._keys = keys
@@ -191,17 +191,17 @@ class RobotKeys:
         self._at_cable = self._host == USB_CABLE
 
     def known(self) -> list[KnownKey]:
-        """The keys pinned for it."""
+        """Return the pinned keys."""
         return [known for known in self._keys.entries() if self._counts(known)]
 
     def check(self, key: HostKey, accepted: str | None = None, name: str | None = None, pin: bool = True) -> Recognized:
-        """Compare a key with those that are pinned; the first one is pinned now.
+        """Check the robot's key. The first key of a robot is accepted and pinned.
 
-        :param accepted: the fingerprint of another key that the user accepts
-        :param name: to be given to the robot; another robot with this name is forgotten
-        :param pin: whether to keep what is new; otherwise, nothing is written
-        :raises HostKeyError: when other keys are pinned, and it is none of them
-        :raises UsageError: when the name is none
+        :param accepted: the fingerprint of a new key that the user accepts
+        :param name: a name for the robot; the key of another robot with this name is removed
+        :param pin: whether to write new keys and names to the file
+        :raises HostKeyError: if other keys are pinned
+        :raises UsageError: if the name is invalid
         """
         if name is not None and not _NAME.fullmatch(name):
             raise UsageError(
@@ -226,13 +226,13 @@ class RobotKeys:
             return self._is_any_robots() or known.is_for(self._host)
         if known.teams:
             return self._team in known.teams
-        # By older versions, keys were pinned for single addresses.
+        # Older versions pinned keys for single addresses.
         if known.is_of_cable_only:
             return not self._keys.of_user or self._is_any_robots()
         return known.is_for(self._host)
 
     def _is_any_robots(self) -> bool:
-        """Whether robots of all teams are expected here: at the user's own USB cable, outside of projects."""
+        """Return whether robots of all teams are expected: at the USB cable, outside of projects."""
         return self._keys.of_user and self._at_cable and not self._team_is_pinned()
 
     def _is_other_teams(self, key: HostKey) -> bool:
@@ -246,7 +246,7 @@ class RobotKeys:
         if self._team is None or self._is_any_robots():
             return (self._host,)
         hosts = (address.host for address, _ in addresses_of(self._team))
-        # Each team's robot is at the user's USB cable now and then.
+        # Robots of several teams may be connected to the user's USB cable.
         return tuple(host for host in hosts if not (self._keys.of_user and host == USB_CABLE))
 
     def _what(self) -> str:
@@ -261,14 +261,14 @@ class RobotKeys:
             f"the robot's key has changed, or this is another robot: its key is {key.fingerprint} ({key.kind}); "
             f"pinned for {self._what()}: {pinned}{''.join(elsewhere)}",
             where=self._host,
-            remedy="That is so when the robot was imaged, or is a second one of yours (which --robot-name NAME gives a "
-            "name); otherwise it is another computer that pretends to be your robot. If it is yours, run the command "
+            remedy="The key changes when the robot is imaged, and a second robot has another key (--robot-name NAME "
+            "gives it a name). Otherwise, another computer imitates your robot. If the robot is yours, run the command "
             f"again with: --accept-host-key {key.fingerprint}",
         )
 
 
 def _is_junction(path: Path) -> bool:
-    """Whether it is Windows' other kind of link to a directory."""
+    """Return whether it is a junction, which is a directory link on Windows."""
     tag = getattr(os.lstat(path), "st_reparse_tag", 0) if path.exists() else 0
     return tag == 0xA0000003
 
@@ -288,11 +288,11 @@ def _known_in(line: str, file: Path, number: int) -> KnownKey | None:
     try:
         hosts, kind, blob, *comment = line.split()
         if not all(map(_HOST.fullmatch, hosts.split(","))):
-            raise ValueError("a pattern, a hash or a marker: to skip it would make the pinned key void")
+            raise ValueError("a pattern, a hash or a marker, which must not be ignored")
         key = HostKey(kind, base64.b64decode(blob, validate=True))
     except (ValueError, binascii.Error):
         raise HostKeyError(
-            "this line is no host key",
+            "this line is not a host key",
             where=f"{file.as_posix()}:{number}",
             remedy="Remove the line, or the file: the robot's key is then pinned again.",
         ) from None

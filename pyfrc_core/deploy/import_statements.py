@@ -1,4 +1,4 @@
-"""The import statements of one file, and whether a robot runs them."""
+"""The import statements of a file, and whether a robot executes them."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
-#: Functions that WPILib calls in simulation only.
+#: Functions that WPILib calls only in simulation.
 _SIMULATION_ONLY = {"simulationInit", "simulationPeriodic", "_simulationInit", "_simulationPeriodic"}
 _IMPORT_ERRORS = {"ImportError", "ModuleNotFoundError", "Exception", "BaseException"}
 
 
 @dataclass(frozen=True)
 class Import:
-    """One imported module.
+    """An imported module.
 
-    :param module:  its dotted name; after a relative import that leads out of the program, with the dots before it
-    :param names:   what is taken from it, which may be submodules
-    :param line:    in its file
-    :param certain: whether the robot imports it whenever the file is imported; otherwise only perhaps
-    :param instead: modules in whose place it is imported: it is needed only when one of them is missing
+    :param module:  its dotted name, with leading dots for a relative import above the program's directory
+    :param names:   imported names, which may be submodules
+    :param line:    the line in its file
+    :param certain: whether a robot always executes the import when it imports the file
+    :param instead: modules that it replaces; it is needed only if one of them is missing
     """
 
     module: str
@@ -38,9 +38,9 @@ class _Context:
 
 
 def imports_in(tree: ast.Module, package: str) -> list[Import]:
-    """Return what a file imports, without optional imports and those that never run on a robot.
+    """Return the imports of a file, without optional imports and those that a robot never executes.
 
-    :param package: the dotted name of the package that it is in; the top directory's is empty
+    :param package: the dotted name of its package; empty for the program's top directory
     """
     return list(_imports(tree.body, package, _Context()))
 
@@ -111,7 +111,7 @@ def _in_try(statement: ast.Try, package: str, context: _Context) -> Iterator[Imp
         within = replace(context, instead=context.instead or tried) if handler in caught else context
         within = within if handler in caught and tried else replace(within, certain=False)
         yield from _imports(handler.body, package, within)
-    # Runs only when all of the body's imports are there.
+    # Executed only if all imports of the body succeed.
     yield from _imports(statement.orelse, package, replace(context, certain=context.certain and not optional))
     yield from _imports(statement.finalbody, package, context)
 
@@ -138,7 +138,7 @@ def _last_name(expression: ast.expr) -> str | None:
 
 
 def _on_robot(test: ast.expr) -> bool | None:
-    """Return what a condition is on a robot, where that can be known."""
+    """Return the value of a condition on a robot, or None if it is unknown."""
     if isinstance(test, ast.Constant):
         return bool(test.value)
     if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):

@@ -1,8 +1,7 @@
-"""Replacing the kill script of a robot's image by ours, where it has let a program survive.
+"""Replacing the kill script of a robot's image if it has not ended the program.
 
-The season's tools replace it on every robot, known by its hash, by one of their own. Here what it does counts, not what
-it is: it is replaced after the robot program was seen to go on in spite of it. So the script of another tool that does
-its work stays, and that tool may put its own in the place of ours whenever it likes.
+The season's own tools recognize the image's script by its hash and always replace it. pyfrc replaces a script only
+after it has failed. The working script of another tool therefore stays, and other tools may replace pyfrc's script.
 """
 
 from __future__ import annotations
@@ -11,11 +10,11 @@ import shlex
 from importlib.resources import files
 
 from .connection import Connection
-from .progress import Progress
+from .progress import DeployProgress
 
 _NAME = "frcKillRobot.sh"
 
-# Each file is complete before it gets its name: power may be cut at any moment. The image's script is kept once.
+# Each file is complete before it gets its final name, since power may be cut. The image's script is kept once.
 _INSTALL = """
 set -e
 cd /usr/local/frc/bin
@@ -32,14 +31,14 @@ mv frcKillRobot.new frcKillRobot.sh
 """
 
 
-def replace_kill_script(connection: Connection, progress: Progress) -> None:
-    """Put our kill script in the place of the robot's, whose copy stays beside it.
+def replace_kill_script(connection: Connection, progress: DeployProgress) -> None:
+    """Replace the robot's kill script by pyfrc's, and keep a copy of the old one.
 
-    It needs the administrator, and so a connection of its own. When that fails, a warning says so.
+    This needs a second connection, as administrator. A failure only causes a warning.
     """
     text = files(__package__).joinpath(_NAME).read_text("utf-8")
     problem = connection.administer(_INSTALL.format(text=shlex.quote(text)))
     if problem is None:
-        progress.note(f"  {_NAME} let it survive, and was replaced; its copy is frcKillRobot.image.sh")
+        progress.note(f"  {_NAME} was replaced; the old script is kept as frcKillRobot.image.sh")
     else:
-        progress.warning(f"{_NAME}, which let the old program survive, could not be replaced: {problem}")
+        progress.warning(f"{_NAME}, which did not end the old program, could not be replaced: {problem}")

@@ -1,4 +1,4 @@
-"""What is looked at here, before anything is done to the robot: the tests, whether the program can be imported."""
+"""Checks on this computer before a deploy: the tests, and whether the program can be imported."""
 
 from __future__ import annotations
 
@@ -20,22 +20,26 @@ if TYPE_CHECKING:
 
 
 def refuse_other_main_files(project: Project, nonstandard: bool) -> None:
-    """:raises RefusedError: when the main file has a name that nobody has said it should have on the robot"""
-    said = nonstandard or project.settings_file is not None
-    if project.main_file.name != MAIN_FILE and not said:
+    """Check the name of the main file.
+
+    :param nonstandard: allow another name than robot.py
+    :raises RefusedError: if it has another name that neither the options nor the settings allow
+    """
+    allowed = nonstandard or project.settings_file is not None
+    if project.main_file.name != MAIN_FILE and not allowed:
         raise RefusedError(
-            f"the robot program's main file is called {MAIN_FILE}, for other tools to find it",
+            f"the main file must be called {MAIN_FILE}, so that other tools find it",
             where=project.main_file.name,
             remedy=f"Rename it to {MAIN_FILE}, deploy it as it is with --nonstandard, "
-            f'or say main = "{project.main_file.name}" under [tool.pyfrc] in pyproject.toml.',
+            f'or set main = "{project.main_file.name}" under [tool.pyfrc] in pyproject.toml.',
         )
 
 
 def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = False) -> bool:
-    """Run the project's tests as `pyfrc test` does; whether all have passed.
+    """Run the project's tests with `pyfrc test`, and return whether all passed.
 
-    :param output: where they print; it must be a file of the system's
-    :param quiet: let them print only when not all have passed
+    :param output: a stream with a file descriptor, for their output
+    :param quiet: print the output only if a test fails
     """
     if project.settings_file is not None:
         which = ["--project", str(project.settings_file.parent)]
@@ -55,7 +59,7 @@ def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = Fa
 
 
 class ImportCheck:
-    """Whether the project can be imported; found out in a process apart, while other things are done."""
+    """Imports the project in a separate process, in the background."""
 
     def __init__(self, project: Project) -> None:
         self._project = project
@@ -64,7 +68,7 @@ class ImportCheck:
         self._thread.start()
 
     def result(self) -> PyfrcError | None:
-        """Wait for it; what is wrong, if anything is."""
+        """Wait for the import. Return its error, or None."""
         self._thread.join()
         return self._error
 
@@ -81,13 +85,13 @@ def _load(project: Project, log: CrashLog) -> None:
     load_robot(project)
 
 
-def go_on_after(failure: str, ask: Questions | None, remedy: str, error: PyfrcError | None = None) -> None:
-    """Ask the user whether to deploy all the same.
+def ask_to_continue(failure: str, ask: Questions | None, remedy: str, error: PyfrcError | None = None) -> None:
+    """Ask the user whether to deploy in spite of a failure.
 
-    :param ask: none where there is nobody to ask
-    :raises RefusedError: when the answer is no
+    :param ask: None if the user cannot be asked
+    :raises RefusedError: if the user says no or cannot be asked
     """
     if ask is None:
         raise RefusedError(f"not deployed: {failure}", remedy=remedy) from error
-    if not ask.yes(f"{failure[:1].upper()}{failure[1:]}. Deploy all the same?"):
+    if not ask.yes(f"{failure[:1].upper()}{failure[1:]}. Deploy anyway?"):
         raise RefusedError(f"not deployed: {failure}") from error

@@ -1,4 +1,4 @@
-"""Which of the project's files belong on the robot, and what is in them."""
+"""The project's files to deploy, with their sizes and hashes."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from pathlib import Path
 
 from .errors import RefusedError
 
-#: What the other tools leave out, too.
+#: Other tools exclude these as well.
 _DIRECTORIES_LEFT_OUT = {"__pycache__", "venv", "ctre_sim"}
 _SUFFIXES_LEFT_OUT = (".pyc", ".whl", ".ipk", ".zip", ".gz", ".wpilog")
-#: Written on the robot by each deploy; in a project it can only be one that was copied from there.
+#: Each deploy writes this file on the robot. In a project it can only be a copy.
 _WRITTEN_BY_DEPLOYS = "deploy.json"
 
-#: Larger files, in bytes, are uploaded only with the user's word: they are mostly there by mistake.
+#: Larger files, in bytes, need --large, since they are usually in the project by mistake.
 LARGE = 250_000
 
-_MOST_NAMED = 10
+_MAX_NAMED = 10
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One file to be on the robot.
+    """A file to deploy.
 
     :param path: relative to the code's directory, with forward slashes
     :param size: in bytes
-    :param sha256: of its content, in hexadecimal
-    :param file: where it is here
+    :param sha256: the hash of its content, in hexadecimal
+    :param file: the file on this computer
     """
 
     path: str
@@ -43,7 +43,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Manifest:
-    """All the files of a program, in the order of their paths."""
+    """All files of a program, sorted by path."""
 
     entries: tuple[Entry, ...]
 
@@ -52,12 +52,12 @@ class Manifest:
         return sum(entry.size for entry in self.entries)
 
 
-def survey(root: Path, exclude: Sequence[str] = (), large: bool = False) -> Manifest:
-    """What is to be uploaded of the program in the directory `root`.
+def build_manifest(root: Path, exclude: Sequence[str] = (), large: bool = False) -> Manifest:
+    """Return the files to upload from the program's directory.
 
-    :param exclude: patterns of what is left out, as ``[tool.pyfrc.deploy] exclude`` has them
-    :param large: whether files over 250,000 bytes are meant to be uploaded
-    :raises RefusedError: naming the files that cannot be uploaded
+    :param exclude: patterns of excluded files, from ``[tool.pyfrc.deploy] exclude``
+    :param large: whether to upload files over 250,000 bytes
+    :raises RefusedError: with the files that cannot be uploaded
     """
     try:
         found = sorted(_Walk(root, exclude).files())
@@ -70,16 +70,16 @@ def survey(root: Path, exclude: Sequence[str] = (), large: bool = False) -> Mani
         raise RefusedError(
             f"this cannot be read: {error.strerror or error}",
             where=ascii_path(str(error.filename or root)),
-            remedy="Look at its owner and mode, or leave it out with exclude = [...] under [tool.pyfrc.deploy] "
+            remedy="Check its owner and permissions, or exclude it with exclude = [...] under [tool.pyfrc.deploy] "
             "in pyproject.toml.",
         ) from error
 
 
 def is_excluded(path: str, patterns: Sequence[str]) -> bool:
-    """Whether a path (relative, with forward slashes) fits one of the patterns.
+    """Return whether a path (relative, with forward slashes) matches one of the patterns.
 
-    A pattern without a slash is about the name of a file or directory, wherever it is; one with a slash is about the
-    path from the top, where ``**`` stands for any number of directories.
+    A pattern without a slash matches the name of a file or directory at any depth. A pattern with a slash matches the
+    whole path; ``**`` matches any number of directories.
     """
     parts = path.split("/")
     for pattern in patterns:
@@ -100,7 +100,7 @@ def _fits(parts: Sequence[str], wanted: Sequence[str]) -> bool:
 
 
 class _Walk:
-    """The way through a project's directories, links followed as far as they stay inside."""
+    """A walk through a project's directories that follows links within the project."""
 
     def __init__(self, root: Path, exclude: Sequence[str]) -> None:
         self._root = root.resolve()
@@ -114,7 +114,7 @@ class _Walk:
             path = prefix + item.name
             if item.name.startswith(".") or path == _WRITTEN_BY_DEPLOYS or is_excluded(path, self._exclude):
                 continue
-            # A directory or file that is left out may be a link to anywhere.
+            # Checked before the link target: an excluded link may lead outside of the project.
             is_directory = Path(item.path).is_dir()
             if item.name in _DIRECTORIES_LEFT_OUT if is_directory else item.name.endswith(_SUFFIXES_LEFT_OUT):
                 continue
@@ -125,7 +125,7 @@ class _Walk:
                 yield path, file
             else:
                 raise RefusedError(
-                    "this is no file that can be uploaded, but a device, a pipe or a socket",
+                    "this is a device, a pipe or a socket, which cannot be uploaded",
                     where=ascii_path(path),
                     remedy=_EXCLUDE_IT,
                 )
@@ -140,31 +140,34 @@ class _Walk:
             raise RefusedError(
                 f"this link leads out of the project, to {target}",
                 where=ascii_path(path),
-                remedy="Copy what it leads to into the project, or leave it out with exclude = [...] "
+                remedy="Copy its target into the project, or exclude it with exclude = [...] "
                 "under [tool.pyfrc.deploy] in pyproject.toml.",
             )
         if target in above:
             raise RefusedError(
-                "this link leads to a directory that it is in", where=ascii_path(path), remedy=_EXCLUDE_IT
+                "this link leads to a directory that contains it", where=ascii_path(path), remedy=_EXCLUDE_IT
             )
         return target
 
 
-_EXCLUDE_IT = "Remove it, or leave it out with exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml."
+_EXCLUDE_IT = "Remove it, or exclude it with exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml."
 
 
 def ascii_path(path: str) -> str:
-    """A path that a terminal can show, whatever is in it."""
+    """Return a path in a form that every terminal can show."""
     return path if path.isprintable() else ascii(path)
 
 
 def refuse_unless_utf8(paths: Sequence[str]) -> None:
-    """:raises RefusedError: naming the paths that cannot be told to the robot"""
+    """Check that all paths are valid UTF-8.
+
+    :raises RefusedError: with the paths that are not
+    """
     bad = [path for path in paths if any("\ud800" <= letter <= "\udfff" for letter in path)]
     if bad:
         raise RefusedError(
             f"names that are not UTF-8 cannot be uploaded: {_listed([ascii(path) for path in bad])}",
-            remedy="Rename them, or leave them out with exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml.",
+            remedy="Rename them, or exclude them with exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml.",
         )
 
 
@@ -172,15 +175,15 @@ def _refuse_large(sizes: dict[str, int]) -> None:
     if sizes:
         named = _listed([f"{ascii_path(path)} ({size:,} bytes)" for path, size in sizes.items()])
         raise RefusedError(
-            f"files over {LARGE:,} bytes, which are mostly there by mistake: {named}",
-            remedy="Upload them with --large, or leave them out with exclude = [...] under [tool.pyfrc.deploy] "
+            f"files over {LARGE:,} bytes, which are usually in a project by mistake: {named}",
+            remedy="Upload them with --large, or exclude them with exclude = [...] under [tool.pyfrc.deploy] "
             "in pyproject.toml.",
         )
 
 
 def _listed(names: Sequence[str]) -> str:
-    more = len(names) - _MOST_NAMED
-    return ", ".join(names[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
+    more = len(names) - _MAX_NAMED
+    return ", ".join(names[:_MAX_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def _entry(path: str, file: Path) -> Entry:

@@ -1,6 +1,6 @@
-"""Removing programs in Java and C++ from a robot, with their libraries: they take disk space and memory.
+"""Removing programs in Java and C++ and their libraries from a robot, to free disk space and memory.
 
-It is done by the robot's shell as the administrator, since a robot that had such a program may have no Python.
+This runs shell commands as administrator, since a robot that had such a program may not have Python.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from .agent.inventory import LIBRARIES, PROGRAMS, START_COMMAND, START_COMMAND_F
 from .connection import ADMINISTRATOR, Connection
 from .errors import DeployError, RefusedError
 
-#: What is removed, for the question and the docs.
+#: A description of what is removed.
 WHAT = "Java's and C++'s robot programs, their libraries, Java itself, and /home/lvuser/deploy"
 
-# Prints a line for each thing that it removes. A program in Python runs on, and its start command stays.
+# Prints a line for each removed path or package. A program in Python keeps running, with its start command.
 _REMOVE = f"""
 for paths in frc-path.sh natinst-path.sh; do
     [ ! -r /etc/profile.d/$paths ] || . /etc/profile.d/$paths
@@ -43,14 +43,14 @@ sync
 
 
 def remove_other_languages(connection: Connection) -> list[str]:
-    """Remove them; return what was removed, a line for each path or package.
+    """Remove the programs. Return the removed paths and packages.
 
-    :raises RefusedError: when it is a virtual robot
-    :raises DeployError: when something could not be removed
+    :raises RefusedError: if the robot is a virtual robot
+    :raises DeployError: if the removal fails
     """
     if connection.is_virtual_robot:
         raise RefusedError(
-            "a virtual robot runs programs in Python only: there is nothing to remove",
+            "a virtual robot runs only programs in Python: there is nothing to remove",
             where=str(connection.address),
             remedy="To remove its program in Python: pyfrc undeploy",
         )
@@ -58,7 +58,7 @@ def remove_other_languages(connection: Connection) -> list[str]:
         status, printed = administrator.run(_REMOVE)
     if status != 0:
         raise DeployError(
-            f"not all of it could be removed: {printed.strip() or f'exit code {status}'}",
+            f"not everything could be removed: {printed.strip() or f'exit code {status}'}",
             where=str(connection.address),
             remedy="Run the command again, or image the robot.",
         )

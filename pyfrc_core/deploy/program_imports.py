@@ -1,7 +1,7 @@
-"""Which modules a robot program imports, found in its source without running it.
+"""The modules that a robot program imports, from its source.
 
-The program's files are read in the order in which Python would import them, from the main file on. So files that the
-program does not use, such as tests and physics, ask nothing of the robot.
+The program's files are read in the order of their imports, from the main file on. Files that the program does not
+import, such as tests and physics, are ignored.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from pathlib import Path
 
 from .import_statements import Import, imports_in
 
-#: Where a statement begins that does not belong to the one before.
+#: The start of a statement that does not belong to the previous one.
 _NEXT_STATEMENT = re.compile(rb"^(?!except|else|elif|finally|case)[A-Za-z_@]", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class FoundImport:
-    """An import, and the file that it is in."""
+    """An import and its file."""
 
     file: str
     wanted: Import
@@ -31,9 +31,9 @@ class FoundImport:
 
 
 class ProgramImports:
-    """What a program imports.
+    """The imports of a program.
 
-    :param files: the program's files by their paths relative to its directory, with forward slashes
+    :param files: the program's files by path, relative to its directory and with forward slashes
     :param main:  the path of its main file
     """
 
@@ -45,13 +45,13 @@ class ProgramImports:
             if path.endswith((".so", ".pyd")):
                 directory, slash, name = path.rpartition("/")
                 self._extensions.setdefault(f"{directory}{slash}{name.partition('.')[0]}", []).append(path)
-        #: The source files that are imported for certain when the program starts.
+        #: Source files that are always imported when the program starts.
         self.certain: set[str] = set()
-        #: Imports that the program's own files do not provide: the robot's Python may.
+        #: Imports that the program's own files do not provide, but the robot's Python may.
         self.outside: list[FoundImport] = []
-        #: Imports of something that the program's own package does not have.
+        #: Imports of modules that are missing in the program's own packages.
         self.lost: list[FoundImport] = []
-        #: Whether the program looks for modules in further directories.
+        #: Whether the program changes `sys.path`.
         self.changes_path = False
         self._read: set[tuple[str, bool]] = set()
         self._follow(main)
@@ -62,11 +62,11 @@ class ProgramImports:
         return next((each for each in (f"{base}/__init__.py", f"{base}.py") if each in self._files), None)
 
     def extensions_of(self, module: str) -> list[str]:
-        """Return the program's own extension modules of this name, for whatever Python they are."""
+        """Return the program's own extension modules of this name, for any version of Python."""
         return self._extensions.get(module.replace(".", "/"), [])
 
     def is_own_directory(self, module: str) -> bool:
-        """Return whether it is a directory of the program's with code, but without ``__init__.py``."""
+        """Return whether the program has a directory of this name with code."""
         return module.replace(".", "/") in self._directories
 
     def named_alike(self, module: str) -> bool:
@@ -96,7 +96,7 @@ class ProgramImports:
                 waiting += [(own, found.certain) for own in self._own_files(FoundImport(path, found))]
 
     def _own_files(self, found: FoundImport) -> Iterator[str]:
-        """The program's files that an import runs; what is not the program's own is put with `outside` or `lost`."""
+        """Yield the program's files that an import runs. Add other modules to `outside` or `lost`."""
         wanted = found.wanted
         parts = wanted.module.split(".")
         if parts[0] == "":
@@ -116,7 +116,7 @@ class ProgramImports:
                     self.lost.append(replace(found, wanted=replace(wanted, module=module, names=())))
                 return
         if self.file_of(module) is None:
-            # A directory alone: the robot may have a package of this name, which then comes first.
+            # A directory without __init__.py: a package of this name on the robot takes precedence.
             self.outside.append(found)
         for name in wanted.names:
             file = self.file_of(f"{module}.{name}")
@@ -144,16 +144,16 @@ def _source_of(file: Path) -> bytes:
 
 
 def _parsed(source: bytes) -> ast.Module:
-    """Parse a file as far as there are imports in it, which mostly is a tenth of it.
+    """Parse a file up to its last import, which is usually a small part of it.
 
-    Nothing is known of a file that this Python cannot read: the tests, and the robot, say so.
+    A file with invalid syntax has no imports here. The tests and the robot report it.
     """
     last = source.rfind(b"import")
     if last >= 0:
         rest = _NEXT_STATEMENT.search(source, last + len("import"))
         for part in dict.fromkeys((source[: rest.start()] if rest else source, source)):
             try:
-                # What is cut within a string, or in a bracket, is no valid source: then the whole is parsed.
+                # A cut within a string or brackets gives invalid syntax; then the whole file is parsed.
                 return ast.parse(part)
             except (SyntaxError, ValueError, RecursionError, MemoryError):
                 continue

@@ -1,4 +1,4 @@
-"""How a deploy is told while it goes on: to a person at a terminal, in plain lines, or as JSON lines for tools."""
+"""Progress output of a deploy: on a terminal, as plain lines, or as JSON lines for tools."""
 
 from __future__ import annotations
 
@@ -21,83 +21,83 @@ if TYPE_CHECKING:
 _NAME_WIDTH = 10
 _DETAIL_WIDTH = 58
 
-#: The agent's words for its work, in a terminal's.
+#: Descriptions of the agent's phases.
 _WORK = {
     "check": "checking {} files",
     "link": "linking {} files",
     "copy": "copying {} files",
     "compile": "compiling {} files",
     "sync": "waiting for the robot's disk",
-    "carry": "looking through {} files for what the program has written",
+    "carry": "searching {} files for files that the program wrote",
     "switch": "switching",
     "remove": "removing old files",
     "stop": "waiting for the old program to end",
 }
 
 
-def wording_of_work(what: str, done: int, total: int) -> str:
-    """What the robot does, as in ``checking 2,300 of 5,000 files``."""
+def describe_work(what: str, done: int, total: int) -> str:
+    """Return a description of the robot's work, such as ``checking 2,300 of 5,000 files``."""
     number = f"{done:,} of {total:,}" if done <= total else f"{done:,}"
     return _WORK.get(what, "working").format(number)
 
 
 @dataclass(frozen=True)
 class Questions:
-    """How the user can be asked: for a text, and whether."""
+    """Functions that ask the user: `text` for a text, `yes` for yes or no."""
 
     text: Callable[[str], str]
     yes: Callable[[str], bool]
 
 
 class Phase:
-    """One step of a deploy, while it goes on."""
+    """One step of a deploy in progress."""
 
     def __init__(self, name: str) -> None:
         self.name = name
-        #: What came of it, for its line.
+        #: The result, for the step's line of output.
         self.detail = ""
 
     def bytes(self, done: int, total: int) -> None:
-        """So many bytes of the phase's are done."""
+        """Show how many bytes of this phase are done, if the output can show this."""
 
     def doing(self, text: str) -> None:
-        """Show what it does at the moment, where that can be shown."""
+        """Show the current activity, if the output can show this."""
 
     def work(self, what: str, done: int, total: int) -> None:
-        """Show what the robot does in this phase, and how far it is.
+        """Show the robot's progress in this phase.
 
-        :param what:  the agent's word for it
-        :param done:  files, or bytes of what is received
-        :param total: 0 where it is not known
+        :param what:  the agent's name for its work
+        :param done:  completed files, or bytes of file contents
+        :param total: 0 if unknown
         """
         if what in ("send", "receive"):
             self.bytes(done, total)
         else:
-            self.doing(wording_of_work(what, done, total))
+            self.doing(describe_work(what, done, total))
 
 
-class Progress:
-    """Plain lines: one for each phase, when it is over.
+class DeployProgress:
+    """Progress as plain lines, one for each completed phase.
 
-    :param quiet: tell only what was asked for, and what is wrong
+    :param quiet: print only requested information, warnings and errors
     """
 
     def __init__(self, stream: IO[str] | None = None, quiet: bool = False) -> None:
         self._stream = stream or sys.stdout
         self.quiet = quiet
-        #: Names the robot in the commands that a note or a warning suggests.
-        self.name_robot: Callable[[str], str] = str
+        #: Adds the robot's options to commands in notes and warnings.
+        self.add_robot_option: Callable[[str], str] = str
 
     @property
     def child_output(self) -> IO[str]:
-        """Where the output of programs that a phase runs may go."""
+        """The stream for the output of child processes."""
         return self._stream
 
     @contextmanager
     def phase(self, name: str, own_output: bool = False) -> Iterator[Phase]:
-        """A phase, told with its time when it is over.
+        """Run a phase, and print its result and duration at its end.
 
-        :param own_output: whether something prints on the terminal meanwhile
+        :param own_output: whether a child process prints to the terminal meanwhile
         """
         began = time.monotonic()
         with self._shown(Phase(name), own_output) as phase:
@@ -106,24 +106,26 @@ class Progress:
             self._over(phase, time.monotonic() - began)
 
     def note(self, text: str) -> None:
-        """Something to know."""
+        """Print a note."""
         if not self.quiet:
-            self._note(self.name_robot(text))
+            self._note(self.add_robot_option(text))
 
     def warning(self, text: str) -> None:
-        """Something that may be wrong, but hinders nothing."""
-        self._print(f"warning: {self.name_robot(text)}")
+        """Print a warning."""
+        self._print(f"warning: {self.add_robot_option(text)}")
 
     def output(self, text: str) -> None:
-        """What the robot program printed."""
+        """Print output of the robot program."""
         self._print("".join(f"  | {line}\n" for line in text.splitlines()).rstrip("\n"))
 
-    def result(self, result: Mapping[str, Any], text: str, asked_for: bool = False) -> None:
-        """What came of it all.
+    def result(self, result: Mapping[str, Any], text: str, requested: bool = False) -> None:
+        """Print the result of the command.
 
-        :param asked_for: whether it is to know this that the command was called
+        :param result: for JSON
+        :param text: for people
+        :param requested: whether the command exists to show this information
         """
-        if asked_for or not self.quiet:
+        if requested or not self.quiet:
             self._print(text)
 
     def _note(self, text: str) -> None:
@@ -143,13 +145,13 @@ class Progress:
         try:
             print(text, file=self._stream, flush=True)
         except BrokenPipeError:
-            # Nobody listens any more, as after `| head`: what is done to the robot is brought to its end all the same.
-            with Path(os.devnull).open("wb") as nowhere:
-                os.dup2(nowhere.fileno(), self._stream.fileno())
+            # The reader has ended, as with `| head`. The work on the robot continues.
+            with Path(os.devnull).open("wb") as null:
+                os.dup2(null.fileno(), self._stream.fileno())
 
 
-class TerminalProgress(Progress):
-    """The same lines, and meanwhile what is being done, with a bar for bytes."""
+class TerminalProgress(DeployProgress):
+    """Plain lines, and the current activity with a progress bar for bytes."""
 
     @contextmanager
     def _shown(self, phase: Phase, own_output: bool) -> Iterator[Phase]:
@@ -188,24 +190,24 @@ class TerminalProgress(Progress):
                 bars.stop()
 
 
-class JsonProgress(Progress):
-    """One JSON object a line; the last is the result, or the error."""
+class JsonProgress(DeployProgress):
+    """Progress as one JSON object per line. The last one is the result or the error."""
 
     @property
     def child_output(self) -> IO[str]:
         return sys.stderr
 
     def warning(self, text: str) -> None:
-        self._event("warning", text=self.name_robot(text))
+        self._event("warning", text=self.add_robot_option(text))
 
     def output(self, text: str) -> None:
         self._event("output", text=text)
 
-    def result(self, result: Mapping[str, Any], text: str, asked_for: bool = False) -> None:
+    def result(self, result: Mapping[str, Any], text: str, requested: bool = False) -> None:
         self._event("result", **result)
 
     def failure(self, error: PyfrcError) -> None:
-        """What went wrong."""
+        """Print an error."""
         self._event(
             "error",
             kind=type(error).__name__.removesuffix("Error"),
@@ -222,22 +224,22 @@ class JsonProgress(Progress):
         self._event("phase", phase=phase.name, detail=phase.detail, seconds=round(seconds, 3))
 
     def _event(self, event: str, **fields: Any) -> None:
-        # The one control character that JSON leaves as it is.
+        # JSON does not escape this control character.
         self._write(json.dumps({"event": event, **fields}).replace("\x7f", "\\u007f"))
 
 
 @dataclass(frozen=True)
-class Conversation:
-    """With the user: how is told, and how is asked; not at all where there is nobody to ask."""
+class UserInterface:
+    """Output to the user, and questions; `ask` is None if the user cannot be asked."""
 
-    progress: Progress
+    progress: DeployProgress
     ask: Questions | None = None
 
 
-def progress_for(as_json: bool, quiet: bool = False) -> Progress:
-    """What suits where the output goes, which may not have all the letters of the robot's."""
+def progress_for(as_json: bool, quiet: bool = False) -> DeployProgress:
+    """Return the progress output for standard output, which then escapes characters that it cannot encode."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")
     if as_json:
         return JsonProgress(quiet=quiet)
-    return TerminalProgress() if sys.stdout.isatty() and not quiet else Progress(quiet=quiet)
+    return TerminalProgress() if sys.stdout.isatty() and not quiet else DeployProgress(quiet=quiet)

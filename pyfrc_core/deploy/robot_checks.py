@@ -1,4 +1,4 @@
-"""Whether the robot is ready for a program of ours; what is not right is told with what to do about it."""
+"""Checks whether the robot is ready for a Python program, with a remedy for each problem."""
 
 from __future__ import annotations
 
@@ -9,21 +9,25 @@ from typing import TYPE_CHECKING
 
 from .._version import requirement
 from .errors import RefusedError
-from .preparing import IMAGE_IT, PREPARE, Obstacle, image_problem, python_problem, same_version_on_both
-from .progress import Progress
+from .progress import DeployProgress
+from .robot_setup import IMAGE_IT, PREPARE, Obstacle, image_problem, python_problem, same_version_on_both
 
 if TYPE_CHECKING:
     from .connection import Connection
     from .facts import RobotFacts
 
-NO_CHECK = "If you are sure that it works all the same: -n (--no-version-check)."
+NO_CHECK = "To deploy without this check: -n (--no-version-check)."
 
-# Without it, some services of the image load libraries that robots do not use.
+# With this line, services of the image load libraries that robots do not use.
 _MEMORY_SAVER = "sed -i -e 's/^StartupDLLs/;StartupDLLs/' /etc/natinst/share/ni-rt.ini"
 
 
 def refuse_unfit_robot(facts: RobotFacts, where: str, check_versions: bool) -> None:
-    """:raises RefusedError: when the program could not run there, or (`check_versions`) might not"""
+    """Check whether the program can run on the robot.
+
+    :param check_versions: also refuse a robot where the program might fail
+    :raises RefusedError: if it cannot
+    """
     for each in obstacles(facts):
         if each.certain:
             raise RefusedError(each.text, where=where, remedy=each.remedy)
@@ -32,13 +36,13 @@ def refuse_unfit_robot(facts: RobotFacts, where: str, check_versions: bool) -> N
 
 
 def obstacles(facts: RobotFacts) -> Iterator[Obstacle]:
-    """Return what is in the way of a deploy, most important first.
+    """Yield the reasons why a robot is not ready, most important first.
 
-    :raises RefusedError: when there is no `wpilib` on this computer to compare with
+    :raises RefusedError: if `wpilib` is not installed on this computer
     """
     if facts.not_roborio is not None:
-        remedy = f"Is that the right address? Name the robot with --robot HOST. Is it a new roboRIO? {IMAGE_IT}"
-        yield Obstacle(f"this is no roboRIO: {facts.not_roborio}", remedy)
+        remedy = f"Check the address, or name the robot with --robot HOST. For a new roboRIO: {IMAGE_IT}"
+        yield Obstacle(f"this is not a roboRIO: {facts.not_roborio}", remedy)
         return
     ours = _our_wpilib()
     if facts.wpilib is None:
@@ -55,11 +59,9 @@ def obstacles(facts: RobotFacts) -> Iterator[Obstacle]:
 
 
 class MemorySaver:
-    """Gives the program 24 MB that the image's services take for nothing.
+    """Frees 24 MB of memory that the image's services use needlessly, in the background.
 
-    It needs the administrator, and so a connection of its own, meanwhile; and hinders nothing when it fails.
-
-    :param connection: to the robot
+    This needs a second connection, as administrator. A failure only causes a warning.
     """
 
     def __init__(self, facts: RobotFacts, connection: Connection) -> None:
@@ -69,13 +71,13 @@ class MemorySaver:
         if self._thread is not None:
             self._thread.start()
 
-    def tell(self, progress: Progress) -> None:
-        """Wait for it, and tell what came of it."""
+    def report(self, progress: DeployProgress) -> None:
+        """Wait for the result, and print it."""
         if self._thread is None:
             return
         self._thread.join()
         if self._problem is None:
-            progress.note("  StartupDLLs was switched off: 24 MB more memory from the robot's next start on")
+            progress.note("  StartupDLLs was switched off: 24 MB more memory after the robot's next start")
         else:
             progress.warning(f"StartupDLLs, which costs 24 MB of memory, could not be switched off: {self._problem}")
 
@@ -86,7 +88,7 @@ class MemorySaver:
 def _our_wpilib() -> str:
     try:
         return version("wpilib")
-    except PackageNotFoundError:  # our own dependency: somebody has removed it
+    except PackageNotFoundError:  # a dependency of pyfrc, so it was uninstalled
         raise RefusedError(
             "there is no wpilib on this computer", remedy=f'Install it: pip install --force-reinstall "{requirement()}"'
         ) from None

@@ -1,7 +1,7 @@
-"""Command lines that messages suggest: about the same robot as the command that the user typed.
+"""Adds the user's robot options to command lines in messages.
 
-A suggestion such as ``pyfrc deploy --rollback`` that leaves out ``--robot HOST`` would look for the team's robot, which
-may be another one. So the address is added here, to each message of a command, and not where the messages are written.
+A message may suggest ``pyfrc deploy --rollback``. Without ``--robot HOST``, this command would use the team's robot,
+which may be another one. So the option is added here, in one place, to all messages of a command.
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ from __future__ import annotations
 import re
 import shlex
 
-#: A suggested command about a robot that does not name one yet.
+#: A command about a robot without an option that selects the robot.
 _COMMAND = re.compile(r"\bpyfrc (?:deploy-info|deploy|undeploy|console|doctor)\b(?!-)(?! --(?:robot|team)\b)")
 
 
-def naming_robot(text: str, robot: str | None, team: int | None) -> str:
-    """Return a message with the robot named in each command line that it suggests.
+def with_robot_option(text: str, robot: str | None, team: int | None) -> str:
+    """Return a message with the robot's option added to each command line in it.
 
     :param text: the message, with commands such as ``pyfrc deploy --rollback``
-    :param robot: the address that was typed, as ``HOST`` or ``HOST:PORT``
-    :param team: the team's number that was typed; with neither, the text stays as it is
+    :param robot: the address from the command line, as ``HOST`` or ``HOST:PORT``
+    :param team: the team number from the command line; without both, the text stays unchanged
     """
     if robot is not None:
         options = f"--robot {shlex.quote(robot)}"

@@ -1,10 +1,10 @@
-"""Whether the robot's Python has what a program needs: the modules it imports, the packages ``[tool.robotpy]`` names.
+"""Checks that the robot's Python has the modules and packages that a program needs.
 
-The laptop reads the program's source, since a robot takes seconds for that. The robot only says which modules its
-Python can find. That costs no round trip: the modules go along with the first frame.
+The laptop reads the program's source, which would take a robot seconds. The robot only reports which modules its Python
+cannot find. This needs no additional round trip, since the first message contains the modules.
 
-`packaging` takes longer to import than all of this takes to run; so only the functions that need it import it. A deploy
-to a robot that has what the program needs calls none of them, unless ``[tool.robotpy]`` has requirements.
+Importing `packaging` takes longer than the checks, so it is imported only where it is needed: if a package is missing,
+or ``[tool.robotpy]`` has requirements.
 """
 
 from __future__ import annotations
@@ -19,28 +19,29 @@ from typing import TYPE_CHECKING
 
 from ..config.robotpy import COMPONENT_MODULES, COMPONENTS, RobotPackages
 from .agent.imports import is_there
-from .local_checks import go_on_after
-from .preparing import INSTALL_FOR_VIRTUAL_ROBOT, INSTALL_PACKAGES, VIRTUAL_IMAGE
+from .local_checks import ask_to_continue
 from .program_imports import FoundImport, ProgramImports
 from .robot_checks import NO_CHECK
+from .robot_setup import INSTALL_FOR_VIRTUAL_ROBOT, INSTALL_PACKAGES, VIRTUAL_IMAGE
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
 
     from .facts import RobotFacts
     from .manifest import Manifest
-    from .progress import Conversation
+    from .progress import UserInterface
 
-_MOST_NAMED = 5
-#: What the robot's start command needs besides the program's own imports.
+_MAX_NAMED = 5
+#: A module that the robot's start command needs.
 _RUNNER = "robotpy"
 
 
 @dataclass(frozen=True)
-class Problem:
-    """Something that the robot's Python lacks.
+class PackageProblem:
+    """A missing or wrong package on the robot.
 
-    :param certain: whether the program ends when it is started; otherwise when it gets to that line, or perhaps never
+    :param where:   file and line of the import or the requirement
+    :param certain: whether the program fails at its start; otherwise it fails if it reaches that line
     """
 
     where: str
@@ -85,23 +86,25 @@ class ImportSearch:
         return sorted(path for path in self._found().certain if path.endswith(".py"))
 
     def modules(self) -> list[str]:
-        """Return the modules that the robot is to be asked for."""
+        """Return the modules to look for in the robot's Python."""
         imported = {module for each in self._found().outside for module in (each.wanted.module, *each.wanted.instead)}
         return sorted({_RUNNER, *(asked for module in imported for asked in _asked_for(module))})
 
-    def problems(self, facts: RobotFacts, packages: RobotPackages) -> list[Problem]:
-        """Return what the program imports and the robot's Python cannot find, in the order of the files.
+    def problems(self, facts: RobotFacts, packages: RobotPackages) -> list[PackageProblem]:
+        """Return the imports that fail on the robot, sorted by certainty and file.
 
-        :param facts: with the modules that are missing, of those asked for
+        :param facts: the robot's facts, with its missing modules
         """
         missing = facts.missing_modules
         found = [*self._outside(facts, packages), *self._lost(facts)]
         if _RUNNER in missing:
             remedy = f"Install it: {_install('robotpy-cli', facts)}."
-            found.append(Problem(self._main, "the robot has no package robotpy-cli, which starts programs", remedy))
+            found.append(
+                PackageProblem(self._main, "the robot has no package robotpy-cli, which starts programs", remedy)
+            )
         return sorted(set(found), key=lambda each: (not each.certain, each.where))
 
-    def _outside(self, facts: RobotFacts, packages: RobotPackages) -> Iterator[Problem]:
+    def _outside(self, facts: RobotFacts, packages: RobotPackages) -> Iterator[PackageProblem]:
         for found in self._found().outside:
             module = self._missing(found.wanted.module, facts)
             if module is None or (
@@ -109,11 +112,11 @@ class ImportSearch:
             ):
                 continue
             if self._found().changes_path and self._found().named_alike(module):
-                continue  # it is found in a directory that the program adds to sys.path
+                continue  # probably in a directory that the program adds to sys.path
             yield self._explained(found, module, facts, packages)
 
     def _missing(self, module: str, facts: RobotFacts) -> str | None:
-        """Return which module of a dotted name is neither the program's nor the robot's, if one is."""
+        """Return the part of a dotted module name that neither the program nor the robot has, or None."""
         imports = self._found()
         top = module.partition(".")[0]
         if imports.file_of(top) is not None or imports.is_own_directory(top):
@@ -122,20 +125,20 @@ class ImportSearch:
             return None
         return next((each for each in _asked_for(module) if each in facts.missing_modules), None)
 
-    def _lost(self, facts: RobotFacts) -> Iterator[Problem]:
+    def _lost(self, facts: RobotFacts) -> Iterator[PackageProblem]:
         imports = self._found()
         for found in imports.lost:
             module = found.wanted.module
             top = module.partition(".")[0]
             if top and imports.file_of(top) is None and top not in facts.missing_modules:
-                continue  # the robot has a package of this name, which comes before our directory
+                continue  # the robot has a package of this name, which takes precedence over the program's directory
             if not top:
                 text = f"from {module} import: there is no package above {found.file}"
-                yield Problem(found.where, text, "Leave out the dots.", found.wanted.certain)
+                yield PackageProblem(found.where, text, "Leave out the dots.", found.wanted.certain)
             else:
                 yield self._not_ours(found, module, facts)
 
-    def _explained(self, found: FoundImport, module: str, facts: RobotFacts, packages: RobotPackages) -> Problem:
+    def _explained(self, found: FoundImport, module: str, facts: RobotFacts, packages: RobotPackages) -> PackageProblem:
         from importlib.metadata import packages_distributions
 
         from packaging.utils import canonicalize_name
@@ -144,11 +147,14 @@ class ImportSearch:
         others = self._found().extensions_of(top)
         if others:
             text = f"import {module}: {others[0]} is not for the robot's Python ({facts.extension_suffixes[0]})"
-            return Problem(found.where, text, "Take the library built for the roboRIO.", found.wanted.certain)
+            return PackageProblem(found.where, text, "Take the library built for the roboRIO.", found.wanted.certain)
         if top in sys.stdlib_module_names:
             text = f"import {module}: Python {facts.python} on the robot has no such module"
-            return Problem(
-                found.where, text, "It is not in that Python's library: do without it.", found.wanted.certain
+            return PackageProblem(
+                found.where,
+                text,
+                "That Python's library does not have it: use another module.",
+                found.wanted.certain,
             )
         distribution = next(iter(packages_distributions().get(top, ())), COMPONENT_MODULES.get(top))
         if distribution is None:
@@ -157,27 +163,27 @@ class ImportSearch:
             there = f"{distribution} {facts.packages[canonicalize_name(distribution)]}"
             text = f"import {module}: {there} on the robot has no such module"
             remedy = f"Install this computer's version: {_install(distribution, facts)}."
-            return Problem(found.where, text, remedy, found.wanted.certain)
+            return PackageProblem(found.where, text, remedy, found.wanted.certain)
         text = f"import {module}: the robot has no package {distribution}"
-        return Problem(found.where, text, _how_to_get(distribution, packages, facts), found.wanted.certain)
+        return PackageProblem(found.where, text, _how_to_get(distribution, packages, facts), found.wanted.certain)
 
-    def _not_ours(self, found: FoundImport, module: str, facts: RobotFacts) -> Problem:
-        """A module that is neither in the program nor, as far as is known here, in any package."""
+    def _not_ours(self, found: FoundImport, module: str, facts: RobotFacts) -> PackageProblem:
+        """Return the problem for a module that is neither in the program nor in a known package."""
         from difflib import get_close_matches
 
         base = self._root.joinpath(*module.split("."))
         if base.with_name(f"{base.name}.py").is_file() or base.is_dir():
             text = f"import {module}: the project has it, but it is not uploaded"
-            remedy = "Is it in exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml?"
+            remedy = "Check exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml."
         else:
             text = f"import {module}: neither the project nor the robot has such a module"
             parent = module.rpartition(".")[0]
             alike = get_close_matches(module, self._own_modules(parent), 1)
-            remedy = f"Is {alike[0]} meant?" if alike else "Is the name right? If it is a package: "
+            remedy = f"Did you mean {alike[0]}?" if alike else "Check the name. If it is a package: "
             if not alike:
                 requires = "" if _is_virtual(facts) else "add it to requires under [tool.robotpy] in pyproject.toml; "
                 remedy += f"{requires}{_install('PACKAGE', facts)}."
-        return Problem(found.where, text, remedy, found.wanted.certain)
+        return PackageProblem(found.where, text, remedy, found.wanted.certain)
 
     def _own_modules(self, parent: str) -> list[str]:
         names = (path.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for path in self._files)
@@ -186,7 +192,7 @@ class ImportSearch:
 
 @cache
 def _asked_for(module: str) -> Sequence[str]:
-    """The names to ask the robot for: a submodule only where this Python finds it, as some packages make theirs."""
+    """Return the names to look for. A submodule is included only if it exists here: some are created at import."""
     top = module.partition(".")[0]
     if not top:
         return ()
@@ -198,7 +204,7 @@ def _is_virtual(facts: RobotFacts) -> bool:
 
 
 def _install(package: str, facts: RobotFacts) -> str:
-    """Return how to install a package there: on a robot, with the others that the project asks for."""
+    """Return how to install a package on the robot."""
     return f"{INSTALL_FOR_VIRTUAL_ROBOT} {package}" if _is_virtual(facts) else INSTALL_PACKAGES
 
 
@@ -221,55 +227,55 @@ def check_packages(
     search: ImportSearch,
     packages: RobotPackages,
     facts: RobotFacts,
-    talk: Conversation,
+    talk: UserInterface,
     *,
     refuse: bool = True,
     dry_run: bool = False,
 ) -> None:
-    """Compare what the program needs with what the robot has, before anything is changed.
+    """Check that the robot has everything that the program needs, before anything is changed.
 
-    :param refuse:  whether to refuse, or ask; otherwise there are only warnings
-    :param dry_run: warn, as nothing will be deployed
-    :raises RefusedError: when something is missing, and the user does not want to deploy all the same
+    :param refuse:  ask the user or refuse; otherwise only print warnings
+    :param dry_run: print warnings, since nothing will be deployed
+    :raises RefusedError: if something is missing, and the user does not want to deploy anyway
     """
     found = search.problems(facts, packages)
     unfit = list(unfit_packages(packages, facts)) if refuse else []
     certain = [*(each for each in found if each.certain), *unfit]
     for each in found if dry_run or not refuse else (each for each in found if not each.certain):
         if not each.certain:
-            talk.progress.warning(f"{each}; the program fails if it gets there. {each.remedy}")
+            talk.progress.warning(f"{each}; the program fails if it reaches this line. {each.remedy}")
         else:
-            talk.progress.warning(f"{each}; the program would end at once. {each.remedy}")
+            talk.progress.warning(f"{each}; the program would end immediately. {each.remedy}")
     if dry_run:
         for each in unfit:
             talk.progress.warning(f"{each}. {each.remedy}")
     elif certain and refuse:
-        failure = "; ".join(str(each) for each in certain[:_MOST_NAMED])
-        if len(certain) > _MOST_NAMED:
-            failure += f"; and {len(certain) - _MOST_NAMED} more"
-        go_on_after(failure, talk.ask, f"{certain[0].remedy} {NO_CHECK}")
+        failure = "; ".join(str(each) for each in certain[:_MAX_NAMED])
+        if len(certain) > _MAX_NAMED:
+            failure += f"; and {len(certain) - _MAX_NAMED} more"
+        ask_to_continue(failure, talk.ask, f"{certain[0].remedy} {NO_CHECK}")
 
 
-def unfit_packages(packages: RobotPackages, facts: RobotFacts) -> Iterator[Problem]:
-    """Return how the robot's packages differ from what ``[tool.robotpy]`` asks for."""
+def unfit_packages(packages: RobotPackages, facts: RobotFacts) -> Iterator[PackageProblem]:
+    """Yield the differences between the robot's packages and ``[tool.robotpy]``."""
     there = facts.wpilib
 
     def remedy(package: str) -> str:
-        return f"Change it there; or install what it asks for: {_install(package, facts)}."
+        return f"Change it in pyproject.toml, or install the package: {_install(package, facts)}."
 
     if packages.version is not None and there is not None and not _same(packages.version, there):
         text = f"robotpy_version is {packages.version}, but the robot has wpilib {there}"
-        yield Problem(packages.lines["robotpy_version"], text, remedy(f"wpilib=={packages.version}"))
+        yield PackageProblem(packages.lines["robotpy_version"], text, remedy(f"wpilib=={packages.version}"))
     for component in packages.components:
         for distribution in COMPONENTS.get(component, ()):
             version = facts.packages.get(distribution)
             if version is None:
                 text = f"components has {component}, but the robot has no package {distribution}"
-                yield Problem(packages.lines["components"], text, remedy(distribution))
+                yield PackageProblem(packages.lines["components"], text, remedy(distribution))
             elif there is not None and not _same(version, there):
                 text = f"the robot has {distribution} {version}, but wpilib {there}"
                 same = f"Install the same version: {_install(f'{distribution}=={there}', facts)}."
-                yield Problem(packages.lines["components"], text, same)
+                yield PackageProblem(packages.lines["components"], text, same)
     if not packages.requires:
         return
     from packaging.utils import canonicalize_name
@@ -281,11 +287,11 @@ def unfit_packages(packages: RobotPackages, facts: RobotFacts) -> Iterator[Probl
         if version is None or not _fits(version, needed):
             instead = f"{needed.name} {version}" if version else f"no package {needed.name}"
             text = f"requires has {str(needed)!r}, but the robot has {instead}"
-            yield Problem(packages.lines["requires"], text, remedy(f"'{needed}'"))
+            yield PackageProblem(packages.lines["requires"], text, remedy(f"'{needed}'"))
 
 
 def _needed_there(needed: Requirement, facts: RobotFacts) -> bool:
-    """Whether a requirement's marker, if it has one, holds on the robot: for a roboRIO, under both of its names."""
+    """Return whether a requirement's marker applies to the robot; for a roboRIO, under both of its machine names."""
     if needed.marker is None:
         return True
     from packaging.markers import default_environment
@@ -309,7 +315,7 @@ def _fits(version: str, needed: Requirement) -> bool:
     try:
         return needed.specifier.contains(Version(version), prereleases=True)
     except InvalidVersion:
-        return True  # nothing can be said
+        return True  # unknown
 
 
 def _same(one: str, other: str) -> bool:

@@ -1,4 +1,4 @@
-"""A deploy from its beginning to its end; and the other things that are done to the program on a robot."""
+"""The commands for the program on a robot: deploy, rollback, undeploy, console."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from ..config.robotpy import load_robot_packages
 from ..errors import UsageError
 from ..project import Project
 from ..wording import counted
+from .agent_client import AgentClient
 from .connection import Connection, load_in_background
 from .console import follow_console
 from .deploy_json import deploy_json
@@ -16,31 +17,39 @@ from .discovery import Address
 from .errors import RefusedError
 from .facts import Deployed, DeployRequest, Plan
 from .kill_script import replace_kill_script
-from .local_checks import ImportCheck, go_on_after, refuse_other_main_files, run_tests
-from .manifest import Manifest, ascii_path, survey
+from .local_checks import ImportCheck, ask_to_continue, refuse_other_main_files, run_tests
+from .manifest import Manifest, ascii_path, build_manifest
 from .other_languages import WHAT, remove_other_languages
-from .preparing import other_languages_notice
-from .progress import Conversation
-from .reach import RobotChoice, address_to_follow, agent_on, chosen_target, connected, find, robot_of
-from .robot import Robot
+from .progress import UserInterface
 from .robot_checks import MemorySaver, refuse_unfit_robot
 from .robot_packages import ImportSearch, check_packages
+from .robot_setup import other_languages_notice
 from .starting import go_back, start
+from .target_connection import (
+    RobotChoice,
+    choose_target,
+    connected,
+    connected_agent,
+    console_address,
+    find,
+    running_agent,
+)
 
 
 @dataclass(frozen=True)
 class DeployOptions:
-    """How a deploy was asked for.
+    """The options of a deploy.
 
-    :param builtin: run the ready-made tests when the project has none
+    :param choice: the robot to deploy to
+    :param builtin: run the ready-made tests if the project has none
     :param skip_tests: run no tests
-    :param large: upload files over 250,000 bytes, too
-    :param check_versions: refuse robots with another wpilib, without what the program needs, or with an old image
-    :param nonstandard: whether the main file may have another name than robot.py
-    :param debug: start the program with debugging on
+    :param large: also upload files over 250,000 bytes
+    :param check_versions: refuse robots with another wpilib, without required packages, or with an old image
+    :param nonstandard: allow a main file with another name than robot.py
+    :param debug: start the program with debugging enabled
     :param in_place: overwrite the running program's files, delete nothing, do not restart
-    :param dry_run: only say what would be done
-    :param auto_rollback: go back to the program before when the new one ends while its start is watched
+    :param dry_run: only show what would be done
+    :param auto_rollback: roll back if the new program ends during the watch
     """
 
     choice: RobotChoice = field(default_factory=RobotChoice)
@@ -55,26 +64,26 @@ class DeployOptions:
     auto_rollback: bool = False
 
 
-def deploy(project: Project, options: DeployOptions, talk: Conversation) -> Address:
-    """Bring the project's program onto the robot, and start it; the robot's address.
+def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Address:
+    """Deploy the project's program, start it, and return the robot's address.
 
-    :raises DeployError: when it is not there in the end; the robot has a whole program all the same
-    :raises ProgramDiedError: when it is there, and has ended as soon as it was started
+    :raises DeployError: if the deploy fails; the robot still has a complete program
+    :raises ProgramDiedError: if the program was deployed and ended during the watch
     """
     load_in_background()
     progress = talk.progress
     refuse_other_main_files(project, options.nonstandard)
-    target = chosen_target(project, options.choice, talk.ask)
+    target = choose_target(project, options.choice, talk.ask)
     importing = None if options.dry_run else _check_program(project, options, talk)
     with progress.phase("files") as phase:
-        manifest = survey(project.root, project.settings.deploy.exclude, options.large)
+        manifest = build_manifest(project.root, project.settings.deploy.exclude, options.large)
         phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
     packages = load_robot_packages(project.pyproject)
     imports = ImportSearch(manifest, project.root, project.main_file.name)
     found = find(target, options.choice, progress)
     with (
         connected(project, target, found, options.choice, progress) as connection,
-        agent_on(connection, progress, imports.modules()) as robot,
+        running_agent(connection, progress, imports.modules()) as robot,
     ):
         if robot.facts.other_languages:
             progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
@@ -85,7 +94,7 @@ def deploy(project: Project, options: DeployOptions, talk: Conversation) -> Addr
         if options.dry_run:
             with progress.phase("compare") as phase:
                 plan = robot.plan(manifest, phase.work)
-            progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), asked_for=True)
+            progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), requested=True)
             return connection.address
         memory = MemorySaver(robot.facts, connection)
         deployed = _upload(robot, project, manifest, options, talk, imports.program())
@@ -96,31 +105,39 @@ def deploy(project: Project, options: DeployOptions, talk: Conversation) -> Addr
         finally:
             if robot.program_survived:
                 replace_kill_script(connection, progress)
-            memory.tell(progress)  # not before: an administrator who cannot log in may take half a minute
-        _tell_deployed(deployed, verdict, connection, options, talk)
+            memory.report(progress)  # last, since a failing login as administrator may take half a minute
+        _report_deployed(deployed, verdict, connection, options, talk)
     return connection.address
 
 
-def rollback(project: Project | None, choice: RobotChoice, release: int | None, talk: Conversation) -> Address:
-    """Start an earlier release again: the one with this number, or that before; the robot's host."""
-    with robot_of(project, chosen_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
+def rollback(project: Project | None, choice: RobotChoice, release: int | None, talk: UserInterface) -> Address:
+    """Make an earlier release current, start it, and return the robot's address.
+
+    :param release: its number; default: the release that the robot selects
+    """
+    with connected_agent(project, choose_target(project, choice, talk.ask), choice, talk.progress) as (
+        connection,
+        robot,
+    ):
         try:
-            went_back_to = go_back(robot, talk, release)
+            restored = go_back(robot, talk, release)
         finally:
             if robot.program_survived:
                 replace_kill_script(connection, talk.progress)
-        result = {"host": connection.host, "release": went_back_to}
-        talk.progress.result(result, f"The robot runs release {went_back_to} again.")
+        result = {"host": connection.host, "release": restored}
+        talk.progress.result(result, f"The robot runs release {restored} again.")
     return connection.address
 
 
-def undeploy_other_languages(project: Project | None, choice: RobotChoice, talk: Conversation, sure: bool) -> None:
-    """Remove programs in Java and C++ from the robot; one in Python stays.
+def undeploy_other_languages(
+    project: Project | None, choice: RobotChoice, talk: UserInterface, confirmed: bool
+) -> None:
+    """Remove programs in Java and C++ from the robot. A program in Python stays.
 
-    :param sure: whether the user has said already that this is meant
+    :param confirmed: whether the user has already confirmed this
     """
-    target = chosen_target(project, choice, talk.ask)
-    _make_sure(f"{WHAT} are removed", talk, sure)
+    target = choose_target(project, choice, talk.ask)
+    _confirm(f"{WHAT} will be removed", talk, confirmed)
     found = find(target, choice, talk.progress)
     with connected(project, target, found, choice, talk.progress) as connection:
         with talk.progress.phase("remove"):
@@ -131,44 +148,48 @@ def undeploy_other_languages(project: Project | None, choice: RobotChoice, talk:
         talk.progress.result({"host": connection.host, "removed": removed}, text)
 
 
-def undeploy(project: Project | None, choice: RobotChoice, talk: Conversation, sure: bool) -> None:
-    """Remove the program from the robot.
+def undeploy(project: Project | None, choice: RobotChoice, talk: UserInterface, confirmed: bool) -> None:
+    """Remove the program from the robot, with all releases.
 
-    :param sure: whether the user has said already that this is meant
+    :param confirmed: whether the user has already confirmed this
     """
-    target = chosen_target(project, choice, talk.ask)
-    _make_sure("the robot program and all of its releases are removed", talk, sure)
-    with robot_of(project, target, choice, talk.progress) as (connection, robot):
+    target = choose_target(project, choice, talk.ask)
+    _confirm("the robot program and all of its releases will be removed", talk, confirmed)
+    with connected_agent(project, target, choice, talk.progress) as (connection, robot):
         with talk.progress.phase("remove") as phase:
             removed = robot.undeploy(phase.work)
         text = "The robot program was removed." if removed else "There was no robot program to remove."
         talk.progress.result({"host": connection.host, "removed": removed}, text)
 
 
-def _make_sure(what: str, talk: Conversation, sure: bool) -> None:
-    """Ask whether it is meant, unless the user has said so."""
-    if sure:
+def _confirm(what: str, talk: UserInterface, confirmed: bool) -> None:
+    """Ask the user to confirm, if necessary.
+
+    :raises UsageError: if the user cannot be asked
+    :raises RefusedError: if the user does not confirm
+    """
+    if confirmed:
         return
     if talk.ask is None:
-        raise UsageError(f"{what}: is that meant?", remedy="Say so with --yes.")
-    if not talk.ask.yes(f"{what[:1].upper()}{what[1:]} from the robot. Is that meant?"):
+        raise UsageError(f"confirmation needed: {what}", remedy="Confirm with --yes.")
+    if not talk.ask.yes(f"{what[:1].upper()}{what[1:]} from the robot. Continue?"):
         raise RefusedError("nothing was removed")
 
 
 def show_console(
-    project: Project | None, choice: RobotChoice, talk: Conversation, without_driver_station: bool
+    project: Project | None, choice: RobotChoice, talk: UserInterface, without_driver_station: bool
 ) -> None:
-    """Print what the robot program prints, until Ctrl-C."""
-    address = address_to_follow(chosen_target(project, choice, talk.ask), choice, talk.progress)
+    """Show the robot program's output until Ctrl-C."""
+    address = console_address(choose_target(project, choice, talk.ask), choice, talk.progress)
     follow_console(address, without_driver_station, talk.progress.quiet)
 
 
 def _upload(
-    robot: Robot,
+    robot: AgentClient,
     project: Project,
     manifest: Manifest,
     options: DeployOptions,
-    talk: Conversation,
+    talk: UserInterface,
     program: Sequence[str],
 ) -> Deployed:
     request = DeployRequest(
@@ -187,20 +208,20 @@ def _upload(
         if deployed.release is not None:
             phase.detail += f"; release {deployed.release}"
     if deployed.taken is not None:
-        talk.progress.note(f"  the program that another tool has left there is kept as release {deployed.taken}")
+        talk.progress.note(f"  the program of another tool is kept as release {deployed.taken}")
     return deployed
 
 
-def _tell_deployed(
-    deployed: Deployed, verdict: str | None, connection: Connection, options: DeployOptions, talk: Conversation
+def _report_deployed(
+    deployed: Deployed, verdict: str | None, connection: Connection, options: DeployOptions, talk: UserInterface
 ) -> None:
     result = {"host": connection.host, **asdict(deployed), "in_place": options.in_place, "program": verdict}
     text = "Its files were overwritten; the program was not restarted." if options.in_place else "Deployed."
     talk.progress.result(result, text)
 
 
-def _check_program(project: Project, options: DeployOptions, talk: Conversation) -> ImportCheck | None:
-    """Run the tests; where there are none to run, begin to import the program."""
+def _check_program(project: Project, options: DeployOptions, talk: UserInterface) -> ImportCheck | None:
+    """Run the tests. Without tests, import the program in the background."""
     if options.skip_tests or (project.find_tests() is None and not options.builtin):
         if not options.skip_tests:
             talk.progress.note("this project has no tests; the ready-made ones run with --builtin")
@@ -209,15 +230,15 @@ def _check_program(project: Project, options: DeployOptions, talk: Conversation)
         passed = run_tests(project, options.builtin, talk.progress.child_output, talk.progress.quiet)
         phase.detail = "passed" if passed else "failed"
     if not passed:
-        go_on_after("the tests failed", talk.ask, "Correct what failed, or deploy without tests: --skip-tests")
+        ask_to_continue("the tests failed", talk.ask, "Correct the failures, or deploy without tests: --skip-tests")
     return None
 
 
-def _refuse_unimportable(importing: ImportCheck, talk: Conversation) -> None:
+def _refuse_unimportable(importing: ImportCheck, talk: UserInterface) -> None:
     error = importing.result()
     if error is not None:
         failure = f"the robot program cannot be imported: {error}"
-        go_on_after(failure, talk.ask, "On the robot, it would end at once.", error)
+        ask_to_continue(failure, talk.ask, "On the robot, it would end immediately.", error)
 
 
 def _plan_as_text(plan: Plan) -> str:
@@ -227,7 +248,7 @@ def _plan_as_text(plan: Plan) -> str:
         for path in paths
     ]
     counts = f"{len(plan.added)} to add, {len(plan.changed)} to change, {len(plan.removed)} to remove"
-    return "\n".join([*lines, f"{counts}; {_size(plan.bytes_to_send)} to send. Nothing was done."])
+    return "\n".join([*lines, f"{counts}; {_size(plan.bytes_to_send)} to send. Nothing was changed."])
 
 
 def _size(count: int) -> str:

@@ -1,4 +1,4 @@
-"""Whose robot it is: the team's number, or the robot's own address, from wherever a project says it."""
+"""The robot to connect to: a team number or an address, from the options or the project's files."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from ..config.toml_file import TomlFile
 from ..errors import SettingsError, UsageError
 from ..project import Project
 from ..text_files import write_whole
-from .discovery import MOST_TEAM
+from .discovery import MAX_TEAM
 
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
 _OLD_FILE = ".deploy_cfg"
-_RANGE = f"a team number is from 1 to {MOST_TEAM}"
+_RANGE = f"a team number is from 1 to {MAX_TEAM}"
 
 
 @dataclass(frozen=True)
-class Target:
-    """Which robot is meant: one of a team, or one with an address (``HOST`` or ``HOST:PORT``)."""
+class RobotTarget:
+    """The robot to connect to: a team's robot, or one with an address (``HOST`` or ``HOST:PORT``)."""
 
     team: int | None = None
     robot: str | None = None
-    #: Where that was said.
+    #: Where it was specified.
     source: str = "the command"
 
 
@@ -37,43 +37,43 @@ def find_target(
     robot: str | None = None,
     team: int | None = None,
     ask: Callable[[str], str] | None = None,
-) -> Target:
-    """Which robot is meant, by what the command says, else the project's files, else the user.
+) -> RobotTarget:
+    """Return the robot that the options specify, else the project's files, else the user.
 
-    :param project: may be none where the command says it
-    :param ask: asks the user a question; its answer is kept in ``.wpilib/wpilib_preferences.json``
-    :raises UsageError: when nobody says it, or with the file and the key of a value that is no team number
+    :param project: may be None if the options specify the robot
+    :param ask: asks the user a question; the reply is stored in ``.wpilib/wpilib_preferences.json``
+    :raises UsageError: if no robot is specified, or a team number is invalid
     """
     if robot is not None:
-        return Target(robot=robot)
+        return RobotTarget(robot=robot)
     if team is not None:
-        return Target(_in_range(team, "--team"))
+        return RobotTarget(_in_range(team, "--team"))
     if project is None:
-        raise UsageError("whose robot?", remedy="Name it with --team NUMBER or --robot HOST.")
-    for found in _said_in_files(project):
+        raise UsageError("no robot is specified", remedy="Specify it with --team NUMBER or --robot HOST.")
+    for found in _targets_in_files(project):
         return found
     if ask is None:
         raise UsageError(
-            "whose robot? No team number is known for this project",
-            remedy="Give it with --team NUMBER, or once and for all as team = NUMBER under [tool.pyfrc] in "
-            "pyproject.toml; or name the robot with --robot HOST.",
+            "no robot is specified: this project has no team number",
+            remedy="Specify it with --team NUMBER, or permanently with team = NUMBER under [tool.pyfrc] in "
+            "pyproject.toml; or give the robot's address with --robot HOST.",
         )
     number = _asked(ask)
     file = _preferences_file(project)
     save_team(file, number)
-    return Target(number, source=PREFERENCES.as_posix())
+    return RobotTarget(number, source=PREFERENCES.as_posix())
 
 
 def team_of_project(project: Project) -> int | None:
-    """Return the team that the project's files name, also beside a robot's own address; none: no team.
+    """Return the team number in the project's files, or None. A robot's address there is ignored.
 
-    :raises UsageError: with the file and the key of a value that is no team number
+    :raises UsageError: if a team number is invalid
     """
-    return next((found.team for found in _said_in_files(project) if found.team is not None), None)
+    return next((found.team for found in _targets_in_files(project) if found.team is not None), None)
 
 
 def save_team(file: Path, team: int) -> None:
-    """Write the team's number into a ``wpilib_preferences.json``, whose other keys stay."""
+    """Write the team number to a ``wpilib_preferences.json``, and keep its other keys."""
     preferences = _read_preferences(file)
     write_whole(file, [json.dumps(preferences | {"teamNumber": team}, indent=2), "\n"])
 
@@ -82,23 +82,23 @@ def _asked(ask: Callable[[str], str]) -> int:
     question = "What is your team number?"
     while True:
         answer = ask(question).strip()
-        if re.fullmatch(r"[0-9]{1,5}", answer) and 1 <= int(answer) <= MOST_TEAM:
+        if re.fullmatch(r"[0-9]{1,5}", answer) and 1 <= int(answer) <= MAX_TEAM:
             return int(answer)
-        question = f"{answer!r} is no team number: {_RANGE}. What is yours?"
+        question = f"{answer!r} is not a team number: {_RANGE}. What is your team number?"
 
 
-def _said_in_files(project: Project) -> Iterator[Target]:
-    """What the project's files say, the first one to count first."""
+def _targets_in_files(project: Project) -> Iterator[RobotTarget]:
+    """Yield the robots that the project's files specify, in order of priority."""
     if (team := project.settings.team) is not None:
         where = f"{project.pyproject.name}: [tool.pyfrc] team"
-        yield Target(_in_range(team, where), source=where)
-    yield from _said_in_preferences(_preferences_file(project))
-    yield from _said_to_robotpy(project.pyproject)
-    yield from _said_in_old_file(project.root / _OLD_FILE)
+        yield RobotTarget(_in_range(team, where), source=where)
+    yield from _targets_in_preferences(_preferences_file(project))
+    yield from _targets_in_robotpy(project.pyproject)
+    yield from _targets_in_old_file(project.root / _OLD_FILE)
 
 
 def _preferences_file(project: Project) -> Path:
-    """Beside the code, where it is there already; else beside pyproject.toml, which is the project's top."""
+    """Return the existing file beside the code, else the path beside pyproject.toml."""
     beside = project.root / PREFERENCES
     return beside if beside.exists() else project.pyproject.parent / PREFERENCES
 
@@ -112,36 +112,36 @@ def _read_preferences(file: Path) -> dict[str, Any]:
         raise SettingsError(
             f"not valid JSON: {malformed}",
             where=PREFERENCES.as_posix(),
-            remedy="Correct it, or remove it and be asked anew.",
+            remedy="Correct it, or remove it to be asked again.",
         ) from None
     if not isinstance(preferences, dict):
         raise SettingsError("this should be an object, in {}", where=PREFERENCES.as_posix())
     return preferences
 
 
-def _said_in_preferences(file: Path) -> Iterator[Target]:
+def _targets_in_preferences(file: Path) -> Iterator[RobotTarget]:
     preferences = _read_preferences(file)
     name = PREFERENCES.as_posix()
     if (host := preferences.get("robotHostname")) not in (None, ""):
         if not isinstance(host, str):
             raise SettingsError(f"robotHostname = {host!r}: this should be a text", where=name)
-        yield Target(robot=host, source=f"{name}: robotHostname")
-    # The editor's own tools write -1 or 0 where there is none.
+        yield RobotTarget(robot=host, source=f"{name}: robotHostname")
+    # The editor's tools write -1 or 0 if there is not a team number.
     if (team := preferences.get("teamNumber")) not in (None, 0, -1):
-        yield Target(_number(team, name, "teamNumber"), source=f"{name}: teamNumber")
+        yield RobotTarget(_number(team, name, "teamNumber"), source=f"{name}: teamNumber")
 
 
-def _said_to_robotpy(pyproject: Path) -> Iterator[Target]:
+def _targets_in_robotpy(pyproject: Path) -> Iterator[RobotTarget]:
     if not pyproject.is_file():
         return
     file = TomlFile(pyproject)
     team = (file.table_at("tool", "robotpy") or {}).get("team_number")
     if team is not None:
         where = file.place_of("tool", "robotpy", "team_number")
-        yield Target(_number(team, where, "team_number"), source=f"{pyproject.name}: [tool.robotpy] team_number")
+        yield RobotTarget(_number(team, where, "team_number"), source=f"{pyproject.name}: [tool.robotpy] team_number")
 
 
-def _said_in_old_file(file: Path) -> Iterator[Target]:
+def _targets_in_old_file(file: Path) -> Iterator[RobotTarget]:
     if not file.is_file():
         return
     parser = configparser.ConfigParser(interpolation=None)
@@ -149,15 +149,15 @@ def _said_in_old_file(file: Path) -> Iterator[Target]:
         parser.read_string(file.read_text("utf-8-sig"))
     except (configparser.Error, UnicodeDecodeError) as malformed:
         what = " ".join(str(malformed).split())
-        raise SettingsError(f"not a valid file of its kind: {what}", where=_OLD_FILE) from None
+        raise SettingsError(f"not a valid INI file: {what}", where=_OLD_FILE) from None
     host = parser.get("auth", "hostname", fallback="").strip()
     source = f"{_OLD_FILE}: hostname"
     if re.fullmatch(r"[0-9]+", host):
-        yield Target(_number(int(host), _OLD_FILE, "hostname"), source=source)
+        yield RobotTarget(_number(int(host), _OLD_FILE, "hostname"), source=source)
     elif named := re.fullmatch(r"roborio-([0-9]{1,5})-frc(\..*)?", host, re.IGNORECASE):
-        yield Target(_number(int(named[1]), _OLD_FILE, "hostname"), source=source)
+        yield RobotTarget(_number(int(named[1]), _OLD_FILE, "hostname"), source=source)
     elif host:
-        yield Target(robot=host, source=source)
+        yield RobotTarget(robot=host, source=source)
 
 
 def _number(value: object, where: str, key: str) -> int:
@@ -169,6 +169,6 @@ def _number(value: object, where: str, key: str) -> int:
 
 
 def _in_range(team: int, where: str, key: str | None = None) -> int:
-    if not 1 <= team <= MOST_TEAM:
+    if not 1 <= team <= MAX_TEAM:
         raise SettingsError(f"{key} = {team}: {_RANGE}" if key else f"{team}: {_RANGE}", where=where)
     return team

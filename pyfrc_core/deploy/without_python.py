@@ -1,4 +1,4 @@
-"""A robot that has no Python, so that no agent can run on it: what its shell says about it."""
+"""A robot without Python, which cannot run the agent, as inspected by shell commands."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .agent import inventory
 from .agent_stream import PYTHON
 from .connection import Connection
 from .errors import ConnectionFailedError, NoPythonError, RefusedError
-from .preparing import IMAGE_IT, PREPARE, Obstacle, image_problem, other_languages_notice
+from .robot_setup import IMAGE_IT, PREPARE, Obstacle, image_problem, other_languages_notice
 
-# No command's failure matters: what is not there prints nothing.
+# A failing command is ignored: missing files print nothing.
 _LOOK = f"""
 cat {inventory.IMAGE_FILE}
 echo
@@ -25,22 +25,22 @@ ls -d {" ".join(inventory.PROGRAMS)} {inventory.JAVA}
 
 
 class RobotWithoutPython:
-    """What there is on a robot without Python.
+    """A robot without Python.
 
-    :param image:           its image's version; none: unknown
-    :param other_languages: files and directories of programs in Java and C++
+    `image` is its image's version, or None if unknown. `other_languages` has the files and directories of programs in
+    Java and C++.
     """
 
     def __init__(self, connection: Connection) -> None:
         printed = ""
-        with suppress(ConnectionFailedError):  # that there is no Python is certain all the same
+        with suppress(ConnectionFailedError):  # it is still certain that there is no Python
             printed = connection.run(f"exec 2> /dev/null\n{_LOOK}")[1]
         image = inventory.image_in(printed)
         self.image = None if image is None else one_line(image)
         self.other_languages = tuple(one_line(line) for line in printed.splitlines() if line.startswith("/"))
 
     def obstacles(self) -> Iterator[Obstacle]:
-        """Return what is in the way of a deploy, in the order in which it is to be removed."""
+        """Yield the reasons why the robot is not ready, in the order in which to resolve them."""
         try:
             wrong_image = image_problem(self.image, version("wpilib"))
         except PackageNotFoundError:
@@ -50,7 +50,7 @@ class RobotWithoutPython:
         yield Obstacle(f"there is no Python on the robot ({PYTHON})", PREPARE)
 
     def refusal(self, error: NoPythonError) -> RefusedError:
-        """Return the error for a command that needs an agent there."""
+        """Return the error for a command that needs the agent."""
         obstacles = list(self.obstacles())
         what, remedy = [each.text for each in reversed(obstacles)], obstacles[0].remedy
         if self.other_languages:

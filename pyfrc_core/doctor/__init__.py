@@ -1,10 +1,10 @@
-"""What `pyfrc doctor` looks at: this computer's Python and packages, its screen, the robot project, the robot.
+"""The checks of `pyfrc doctor`: this computer's Python, packages and display, the robot project, the robot.
 
-It looks without importing anything that may be broken: what is installed says so itself, and what is to be imported is
-imported in a process apart.
+Modules that may be broken are not imported in this process: packages are checked by their metadata, and imports are
+tested in a separate process.
 """
 
-from .examine import Examination, examine
-from .findings import Finding
+from .check_result import CheckResult
+from .examine import DoctorOptions, examine
 
-__all__ = ["Examination", "Finding", "examine"]
+__all__ = ["CheckResult", "DoctorOptions", "examine"]

@@ -1,4 +1,4 @@
-"""All that `pyfrc doctor` looks at, in the order in which one thing rests on another."""
+"""All checks of `pyfrc doctor`, in the order of their dependencies."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from pathlib import Path
 
 from ..errors import PyfrcError
 from ..project import Project, find_project
-from .computer import examine_extras, examine_window
-from .findings import Finding, hint
-from .imports import examine_imports
+from .check_result import CheckResult, hint
+from .computer import check_extras, check_window
+from .imports import check_imports
 from .installed import find_installed
-from .packages import examine_pyfrc, examine_python, examine_wpilib
+from .packages import check_pyfrc, check_python, check_wpilib
 from .robot import RobotSearch
-from .robot_project import examine_project, problem_of
+from .robot_project import check_project, problem_from_error
 
 
 @dataclass(frozen=True)
-class Examination:
-    """What is to be looked at.
+class DoctorOptions:
+    """The options of `pyfrc doctor`.
 
-    :param directory:   the project's, when the user names it
-    :param main:        its main file, when the user does
-    :param class_name:  its robot class, when the user does
-    :param look_for_robot: whether the robot is looked for, too
-    :param robot:       its address, when the user names it
-    :param team:        the team's number, when the user names it
+    :param directory:  the project's directory, if the user specifies it
+    :param main:       the main file, if the user specifies it
+    :param class_name: the robot class, if the user specifies it
+    :param look_for_robot: whether to check the robot as well
+    :param robot:      the robot's address, if the user specifies it
+    :param team:       the team number, if the user specifies it
     """
 
     directory: Path | None = None
@@ -37,34 +37,34 @@ class Examination:
     team: int | None = None
 
 
-def examine(wanted: Examination) -> Iterator[Finding]:
-    """Look at everything; each finding is answered as soon as it is there."""
+def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
+    """Run all checks, and yield each result as soon as it is available."""
     project, about_project = _project(wanted)
-    # The robot may take its time to answer, while the rest is looked at.
+    # The robot is checked in the background, since it may respond slowly.
     search = RobotSearch(project, wanted.robot, wanted.team) if wanted.look_for_robot else None
     installed = find_installed()
-    yield from examine_python()
-    yield from examine_pyfrc(installed)
-    yield from examine_wpilib(installed)
-    yield from examine_imports(installed)
-    yield from examine_window()
-    yield from examine_extras()
+    yield from check_python()
+    yield from check_pyfrc(installed)
+    yield from check_wpilib(installed)
+    yield from check_imports(installed)
+    yield from check_window()
+    yield from check_extras()
     if about_project is not None:
         yield about_project
     if project is not None:
-        yield from examine_project(project, installed)
+        yield from check_project(project, installed)
     if search is not None:
         yield from search.findings()
 
 
-def _project(wanted: Examination) -> tuple[Project | None, Finding | None]:
-    """The robot project, or why there is none."""
+def _project(wanted: DoctorOptions) -> tuple[Project | None, CheckResult | None]:
+    """Return the robot project, or the reason why there is none."""
     try:
         project = find_project(wanted.directory, wanted.main, wanted.class_name)
-        _ = project.settings  # read here, where what is wrong in them can be told
+        _ = project.settings  # read here, so that errors in the settings become a result
     except (PyfrcError, OSError) as error:
         named = wanted.directory or wanted.main
         if named is None and isinstance(error, PyfrcError) and error.where is None:
             return None, hint("project", "there is none here", "Go to your project's directory, or: pyfrc init")
-        return None, problem_of("project", error, "Correct it there.")
+        return None, problem_from_error("project", error, "Correct it there.")
     return project, None

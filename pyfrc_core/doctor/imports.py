@@ -1,4 +1,4 @@
-"""Whether the libraries that are installed can be imported; found out in a process apart, which they may crash."""
+"""Checks whether installed libraries can be imported, in a separate process, since they may crash."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from .findings import Finding, ok, problem
+from .check_result import CheckResult, ok, problem
 from .installed import Installed
 
-#: Packages, and the module of each that is imported.
+#: Packages, and the module to import from each.
 MODULES = {
     "wpilib": "wpilib",
     "robotpy-commands-v2": "commands2",
@@ -25,10 +25,10 @@ MODULES = {
     "robotpy-pathplannerlib": "pathplannerlib",
 }
 
-#: Seconds until imports count as hanging.
-PATIENCE = 60.0
+#: Seconds after which imports count as hanging.
+TIME_LIMIT = 60.0
 
-# What is said before an import is the last that is said, when it crashes.
+# Prints each module before its import: after a crash, the last line has the module that crashed.
 _PROGRAM = """
 import importlib, sys
 sys.path[:] = sys.argv[1].split("\\n")
@@ -41,18 +41,18 @@ for name in sys.argv[2:]:
 """
 
 
-def examine_imports(installed: Installed, path: list[str] | None = None) -> Iterator[Finding]:
-    """Whether each library that robots use can be imported.
+def check_imports(installed: Installed, path: list[str] | None = None) -> Iterator[CheckResult]:
+    """Check whether each installed library that robots use can be imported.
 
-    :param path: where modules are looked for; default: where this process looks, but not in the current directory
+    :param path: the module search path; default: `sys.path` without the current directory
     """
     packages = {module: name for name, module in MODULES.items() if installed.get(name)}
     remaining = list(packages)
     failures = False
     while remaining:
-        said, ended = _import(remaining, sys.path if path is None else path)
+        output, ended = _import(remaining, sys.path if path is None else path)
         reached = remaining[0]
-        for line in said.splitlines():
+        for line in output.splitlines():
             word, _, rest = line.partition(" ")
             if word == "import" and rest in packages:
                 reached = rest
@@ -62,21 +62,23 @@ def examine_imports(installed: Installed, path: list[str] | None = None) -> Iter
         if ended:
             failures = True
             yield _failed(packages[reached], reached, ended)
-        # Behind one that has ended the process the others have still to be tried.
+        # If a module has ended the process, the modules after it must still be tested.
         remaining = remaining[remaining.index(reached) + 1 :] if ended else []
     if packages and not failures:
         yield ok("imports", f"{', '.join(packages)} can be imported")
 
 
 def _import(modules: list[str], path: list[str]) -> tuple[str, str]:
-    """What was said, and what ended it; nothing, when it came to its end."""
+    """Return the output of the process, and what ended it early; empty if nothing did."""
     looked_in = [each for each in path if each and Path(each) != Path.cwd()]
     command = [sys.executable, "-c", _PROGRAM, "\n".join(looked_in), *modules]
     try:
-        done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=PATIENCE)
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace", timeout=TIME_LIMIT)
     except subprocess.TimeoutExpired as hanging:
-        said = hanging.stdout or b""
-        return said.decode("utf-8", "replace") if isinstance(said, bytes) else said, f"no end after {PATIENCE:g} s"
+        output = hanging.stdout or b""
+        return output.decode("utf-8", "replace") if isinstance(
+            output, bytes
+        ) else output, f"no end after {TIME_LIMIT:g} s"
     if done.returncode < 0:
         try:
             return done.stdout, f"crashes Python ({signal.Signals(-done.returncode).name})"
@@ -85,7 +87,7 @@ def _import(modules: list[str], path: list[str]) -> tuple[str, str]:
     return done.stdout, f"ends Python with {done.returncode}" if done.returncode else ""
 
 
-def _failed(package: str, module: str, how: str) -> Finding:
+def _failed(package: str, module: str, how: str) -> CheckResult:
     remedy = f"pip install --force-reinstall --no-deps {package}"
     if sys.platform == "win32":
         remedy += "; or install Microsoft's Visual C++ Redistributable, which WPILib needs"

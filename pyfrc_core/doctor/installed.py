@@ -1,4 +1,4 @@
-"""What is installed, as the packages say of themselves; none of them is imported."""
+"""Installed packages, from their metadata. None of them is imported."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from packaging.requirements import InvalidRequirement, Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import InvalidVersion, Version
 
-#: What a package needs to be of a WPILib season: one of WPILib's own libraries, in C++.
+#: WPILib's own libraries. Packages that require one of them belong to a WPILib season.
 _WPILIB = {"wpilib", "robotpy-wpiutil", "robotpy-hal", "robotpy-wpimath", "pyntcore", "robotpy-wpinet"}
 _NUMBERED_BY_SEASON = re.compile(r"(20)?(2[0-9])\.")
 
@@ -20,8 +20,8 @@ _NUMBERED_BY_SEASON = re.compile(r"(20)?(2[0-9])\.")
 class Package:
     """An installed distribution.
 
-    :param needs: what it requires here: extras and other platforms' left out
-    :param place: the directory that it is installed in
+    :param needs: its requirements on this platform, without extras
+    :param place: the directory where it is installed
     """
 
     name: str
@@ -31,7 +31,7 @@ class Package:
 
     @property
     def season(self) -> int | None:
-        """The year that its version says it is for."""
+        """Return the year in its version number, or None."""
         found = _NUMBERED_BY_SEASON.match(self.version)
         return 2000 + int(found[2]) if found else None
 
@@ -43,7 +43,7 @@ class Package:
 class Unmet:
     """A requirement of a package that is not met.
 
-    :param there: the version that is installed instead; none: it is missing
+    :param there: the installed version; None if the package is missing
     """
 
     package: Package
@@ -56,13 +56,13 @@ class Unmet:
 
 
 class Installed:
-    """The distributions that Python finds here, by their canonical names; of several of one name, the first counts."""
+    """The installed distributions by canonical name. Of several copies, Python uses the first."""
 
     def __init__(self, packages: Iterable[Package]) -> None:
         self.copies: dict[str, list[Package]] = {}
         for package in packages:
             copies = self.copies.setdefault(canonicalize_name(package.name), [])
-            # Found twice when its directory is twice on the path.
+            # Found twice if its directory is on the path twice.
             if package.place not in {copy.place for copy in copies}:
                 copies.append(package)
 
@@ -71,17 +71,17 @@ class Installed:
         return copies[0] if copies else None
 
     def unmet(self, package: Package) -> Iterator[Unmet]:
-        """What it needs and does not have."""
+        """Yield the requirements of a package that are not met."""
         for needed in package.needs:
             there = self.get(needed.name)
             if there is None or not fits(there.version, needed):
                 yield Unmet(package, needed, there.version if there else None)
 
     def of_wpilib(self) -> list[Package]:
-        """WPILib's own packages, RobotPy's, and what is built upon them, by name."""
+        """Return the packages of WPILib and RobotPy, and those that depend on them, sorted by name."""
         found: set[str] = set()
         before = -1
-        while len(found) > before:  # what needs one of them is one of them, too
+        while len(found) > before:  # a package that requires one of them is one of them
             before = len(found)
             for name, (package, *_) in self.copies.items():
                 if name != "pyfrc" and (
@@ -94,21 +94,21 @@ class Installed:
 
 
 def fits(version: str, needed: Requirement) -> bool:
-    """Whether this version is one that is asked for."""
+    """Return whether a version meets a requirement."""
     try:
         return needed.specifier.contains(Version(version), prereleases=True)
     except InvalidVersion:
-        return True  # nothing can be said
+        return True  # unknown
 
 
 def find_installed() -> Installed:
-    """What this Python would import."""
+    """Return the distributions on the path of this Python."""
     return Installed(filter(None, map(_package, importlib.metadata.distributions())))
 
 
 def _package(found: importlib.metadata.Distribution) -> Package | None:
     name = found.metadata["Name"]
-    if not name:  # remains of one that was not removed wholly
+    if not name:  # left over from an incomplete removal
         return None
     needs = []
     for text in found.requires or ():

@@ -1,4 +1,4 @@
-"""Whether the robot can be reached, and is ready for a deploy: found out while everything else is looked at."""
+"""Checks whether the robot can be reached and is ready for a deploy, in the background."""
 
 from __future__ import annotations
 
@@ -6,60 +6,62 @@ import threading
 from collections.abc import Iterator, Sequence
 
 from ..config.robotpy import load_robot_packages
+from ..deploy.agent_client import AgentClient
 from ..deploy.connection import Connection, connect
 from ..deploy.discovery import RobotNotFoundError, addresses_of, find_robot, parse_address
 from ..deploy.errors import HostKeyError, NoPythonError, OnTheFieldError
 from ..deploy.facts import RobotFacts
-from ..deploy.preparing import other_languages_notice
-from ..deploy.reach import keys_of_robot
-from ..deploy.robot import Robot
 from ..deploy.robot_checks import obstacles
 from ..deploy.robot_packages import unfit_packages
-from ..deploy.team import Target, find_target
+from ..deploy.robot_setup import other_languages_notice
+from ..deploy.target_connection import load_robot_keys
+from ..deploy.team import RobotTarget, find_target
 from ..deploy.without_python import RobotWithoutPython
 from ..errors import PyfrcError, SettingsError, UsageError
 from ..project import Project
-from .findings import Finding, hint, ok, problem
-from .robot_project import problem_of
+from .check_result import CheckResult, hint, ok, problem
+from .robot_project import problem_from_error
 
-#: Seconds until a robot has to be found, when all else has been looked at.
-PATIENCE = 3.0
-#: Seconds more to look at one that was found: a roboRIO takes some for the connection and the start of its Python.
-PATIENCE_WITH_FOUND = 20.0
+#: Seconds to wait for a robot after all other checks.
+SEARCH_SECONDS = 3.0
+#: Additional seconds to check a robot that was found: connecting and starting its Python takes a roboRIO some time.
+CHECK_SECONDS = 20.0
 
 _TOPIC = "robot"
 
 _REMEDY = (
-    "Nothing to do while the robot is off. Else: is this computer on its network, or at its USB cable? "
-    "pyfrc deploy says what was tried."
+    "If the robot is off, there is nothing to do. Otherwise, check the network or the USB cable; pyfrc deploy lists "
+    "the addresses that were tried."
 )
 
 
 class RobotSearch:
-    """A search for the robot, begun at once; it changes nothing on it or here, and pins no key.
+    """Searches for the robot and checks it, in the background. Nothing is changed, and no key is pinned.
 
-    :param robot: its address, when the user has named one
-    :param team: the team's number, when the user has
+    :param robot: the robot's address, if the user specifies it
+    :param team: the team number, if the user specifies it
     """
 
     def __init__(self, project: Project | None, robot: str | None = None, team: int | None = None) -> None:
         self._named = robot is not None or team is not None
-        self._findings: list[Finding] = []
+        self._findings: list[CheckResult] = []
         self._found = False
         self._whose = robot or (f"team {team}" if team is not None else "this project")
         self._thread = threading.Thread(target=self._run, args=(project, robot, team), daemon=True)
         self._thread.start()
 
-    def findings(self) -> list[Finding]:
-        """What has come of it until now, or comes of it soon."""
-        self._thread.join(PATIENCE)
+    def findings(self) -> list[CheckResult]:
+        """Wait for the results, within the time limits, and return them."""
+        self._thread.join(SEARCH_SECONDS)
         if self._found:
-            self._thread.join(PATIENCE_WITH_FOUND)
+            self._thread.join(CHECK_SECONDS)
         findings = list(self._findings)
         if not findings:
-            return [self._silent()]
+            return [self._not_found()]
         if self._thread.is_alive():
-            findings.append(hint(_TOPIC, "looking at it takes long", "See what is on it with: pyfrc deploy-info"))
+            findings.append(
+                hint(_TOPIC, "the check is not finished yet", "To see the robot's state: pyfrc deploy-info")
+            )
         return findings
 
     def _run(self, project: Project | None, robot: str | None, team: int | None) -> None:
@@ -67,28 +69,28 @@ class RobotSearch:
             for finding in self._search(project, robot, team):
                 self._findings.append(finding)
         except OnTheFieldError:
-            self._findings.append(ok(_TOPIC, "the Driver Station is connected to a competition field: left alone"))
+            self._findings.append(ok(_TOPIC, "not checked: the Driver Station is connected to a competition field"))
         except RobotNotFoundError:
-            self._findings.append(self._silent())
+            self._findings.append(self._not_found())
         except HostKeyError as error:
-            remedy = "pyfrc deploy-info shows how to accept its key, if it is your robot."
+            remedy = "If this is your robot, pyfrc deploy-info shows how to accept its key."
             self._findings.append(problem(_TOPIC, error.message, remedy))
         except (PyfrcError, OSError) as error:
-            self._findings.append(problem_of(_TOPIC, error, "Correct it there."))
-        except ImportError as error:  # what is missing for that is a finding of its own
-            remedy = "Correct what is said about pyfrc first."
-            self._findings.append(hint(_TOPIC, f"could not be looked at: {error}", remedy))
+            self._findings.append(problem_from_error(_TOPIC, error, "Correct it there."))
+        except ImportError as error:  # another check reports the missing package
+            remedy = "Solve the problems with pyfrc first."
+            self._findings.append(hint(_TOPIC, f"cannot be checked: {error}", remedy))
 
-    def _search(self, project: Project | None, robot: str | None, team: int | None) -> Iterator[Finding]:
+    def _search(self, project: Project | None, robot: str | None, team: int | None) -> Iterator[CheckResult]:
         if project is None and not self._named:
-            yield hint(_TOPIC, "not looked for: outside of a project, no team is known", "pyfrc doctor --team NUMBER")
+            yield hint(_TOPIC, "not searched: no team is known outside of a project", "pyfrc doctor --team NUMBER")
             return
         try:
-            target = Target(team, robot) if project is None else find_target(project, robot=robot, team=team)
+            target = RobotTarget(team, robot) if project is None else find_target(project, robot=robot, team=team)
         except SettingsError:
             raise
         except UsageError as unknown:
-            yield hint(_TOPIC, f"not looked for: {unknown.message}", unknown.remedy or "pyfrc doctor --team NUMBER")
+            yield hint(_TOPIC, f"not searched: {unknown.message}", unknown.remedy or "pyfrc doctor --team NUMBER")
             return
         if target.robot is not None:
             address = parse_address(target.robot)
@@ -101,40 +103,40 @@ class RobotSearch:
         found = find_robot(candidates, self._whose, take_its_robot=target.robot is None)
         with found.connected:
             self._found = True
-            yield ok(_TOPIC, f"{self._whose} answers at {found.address} ({found.kind})")
-            keys = keys_of_robot(project, target, found)
+            yield ok(_TOPIC, f"{self._whose} found at {found.address} ({found.kind})")
+            keys = load_robot_keys(project, target, found)
             with connect(found.address, keys, connected=found.connected, pin=False) as connection:
                 yield from _examine(project, connection)
 
-    def _silent(self) -> Finding:
-        text = f"{self._whose}: no robot answers"
+    def _not_found(self) -> CheckResult:
+        text = f"{self._whose}: no robot found"
         return problem(_TOPIC, text, _REMEDY) if self._named else hint(_TOPIC, text, _REMEDY)
 
 
-def _examine(project: Project | None, connection: Connection) -> Iterator[Finding]:
+def _examine(project: Project | None, connection: Connection) -> Iterator[CheckResult]:
     try:
-        robot = Robot.start(connection)
+        robot = AgentClient.start(connection)
     except NoPythonError:
         there = RobotWithoutPython(connection)
         yield from (problem(_TOPIC, each.text, each.remedy) for each in there.obstacles())
-        yield from _examine_other_languages(there.other_languages)
+        yield from _check_other_languages(there.other_languages)
     else:
         robot.close()
-        yield from examine_facts(robot.facts, project)
+        yield from check_robot_facts(robot.facts, project)
 
 
-def examine_facts(facts: RobotFacts, project: Project | None) -> Iterator[Finding]:
-    """Whether a robot is ready for programs in Python, and for this project's: what a deploy would refuse."""
+def check_robot_facts(facts: RobotFacts, project: Project | None) -> Iterator[CheckResult]:
+    """Check whether a robot is ready for this project, as a deploy does."""
     problems = [problem(_TOPIC, each.text, each.remedy) for each in obstacles(facts)]
     if project is not None and facts.not_roborio is None and facts.wpilib is not None:
         packages = load_robot_packages(project.pyproject)
         problems += [problem(_TOPIC, str(each), each.remedy) for each in unfit_packages(packages, facts)]
     ready = f"Python {facts.python}, wpilib {facts.wpilib}, image {facts.image}"
     yield from problems or [ok(_TOPIC, ready)]
-    yield from _examine_other_languages(facts.other_languages)
+    yield from _check_other_languages(facts.other_languages)
 
 
-def _examine_other_languages(found: Sequence[str]) -> Iterator[Finding]:
+def _check_other_languages(found: Sequence[str]) -> Iterator[CheckResult]:
     if found:
         text, remedy = other_languages_notice(found)
         yield hint(_TOPIC, text, remedy)

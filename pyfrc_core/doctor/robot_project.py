@@ -1,4 +1,4 @@
-"""Whether the robot project is whole: its program, its settings, its physics and tests, and what it asks for."""
+"""Checks of the robot project: its program, settings, physics, tests and required packages."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from ..project import Project
 from ..project.hidden_libraries import find_hidden_libraries
 from ..runtime.loading import load_robot
 from ..runtime.misspelled_methods import MisspelledMethod, find_misspelled_methods
-from .findings import Finding, hint, ok, problem
+from .check_result import CheckResult, hint, ok, problem
 from .installed import Installed, fits
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
 
 
-def examine_project(project: Project, installed: Installed) -> Iterator[Finding]:
-    """All of it; nothing of it is imported here."""
+def check_project(project: Project, installed: Installed) -> Iterator[CheckResult]:
+    """Check the project, without importing it in this process."""
     yield from _hidden_libraries(project)
     yield from _asked_for(project, installed)
     yield from _robot_class(project)
@@ -37,10 +37,10 @@ def examine_project(project: Project, installed: Installed) -> Iterator[Finding]
         yield hint("tests", "the project has none", "pyfrc add-tests; or run the ready-made ones: pyfrc test --builtin")
 
 
-def problem_of(topic: str, error: PyfrcError | OSError, otherwise: str) -> Finding:
-    """An error as a finding.
+def problem_from_error(topic: str, error: PyfrcError | OSError, otherwise: str) -> CheckResult:
+    """Return an error as a problem.
 
-    :param otherwise: the remedy of an error that has none
+    :param otherwise: the remedy if the error has none
     """
     if not isinstance(error, PyfrcError):
         return problem(topic, str(error), otherwise)
@@ -48,21 +48,21 @@ def problem_of(topic: str, error: PyfrcError | OSError, otherwise: str) -> Findi
     return problem(topic, text, error.remedy or otherwise)
 
 
-def _hidden_libraries(project: Project) -> Iterator[Finding]:
-    """Files of the project by whose names Python would miss a library."""
+def _hidden_libraries(project: Project) -> Iterator[CheckResult]:
+    """Find files of the project that hide a library with the same name."""
     for hidden in find_hidden_libraries(project.root, project.main_file):
         yield problem("project", hidden.text, hidden.remedy)
 
 
-def _asked_for(project: Project, installed: Installed) -> Iterator[Finding]:
-    """What ``[tool.robotpy]`` asks for, and is not here."""
+def _asked_for(project: Project, installed: Installed) -> Iterator[CheckResult]:
+    """Compare ``[tool.robotpy]`` with the packages on this computer."""
     if not project.pyproject.is_file():
         return
     name = project.pyproject.name
     try:
         wanted = load_robot_packages(project.pyproject)
     except SettingsError as malformed:
-        yield problem_of("project", malformed, "Correct it there.")
+        yield problem_from_error("project", malformed, "Correct it there.")
         return
     if project.pyproject.read_bytes().startswith(BOM_UTF8):
         text = f"{name} begins with a byte-order mark, which robotpy and plain pytest do not read"
@@ -78,8 +78,8 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[Finding]:
         )
     if "robotpy_extras" in wanted.lines:
         where = wanted.lines["robotpy_extras"]
-        text = f"{where}: robotpy_extras has another name since 2026, and robotpy deploy refuses this one"
-        yield hint("project", text, "Call it components.")
+        text = f"{where}: robotpy_extras was renamed in 2026, and robotpy deploy refuses the old name"
+        yield hint("project", text, "Rename it to components.")
     for needed in wanted.requires:
         if needed.marker is not None and not needed.marker.evaluate({"extra": ""}):
             continue
@@ -90,13 +90,13 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[Finding]:
             yield problem("project", text, f'pip install "{needed}"')
 
 
-def _robot_class(project: Project) -> Iterator[Finding]:
+def _robot_class(project: Project) -> Iterator[CheckResult]:
     try:
         name, misspelled = run_in_subprocess(_look_at_class, project, "while it was imported")
     except (PyfrcError, OSError) as error:
-        yield problem_of("program", error, "Correct that line; pyfrc test shows more of it.")
-    except Exception as error:  # what the other process could not tell
-        yield problem("program", f"{project.main_file.name} cannot be imported: {error}", "See what pyfrc test says.")
+        yield problem_from_error("program", error, "Correct that line; pyfrc test shows more details.")
+    except Exception as error:  # the other process could not report the error
+        yield problem("program", f"{project.main_file.name} cannot be imported: {error}", "Run pyfrc test for details.")
     else:
         yield ok("program", f"class {name} in {project.main_file}")
         for method in misspelled:
@@ -107,20 +107,20 @@ def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[Misspelle
     return load_robot(project).__name__, find_misspelled_methods(project)
 
 
-def _sim_config(project: Project) -> Iterator[Finding]:
+def _sim_config(project: Project) -> Iterator[CheckResult]:
     from ..config.sim_file import SIM_CONFIG, load_sim_config
 
     topic = SIM_CONFIG.as_posix()
     try:
         loaded = load_sim_config(project.root)
     except (PyfrcError, OSError) as error:
-        yield problem_of(topic, error, "pyfrc config check")
+        yield problem_from_error(topic, error, "pyfrc config check")
         return
     doubtful = [*loaded.warnings, *loaded.lint()]
     if doubtful:
         more = f", and {len(doubtful) - 1} more" if len(doubtful) > 1 else ""
-        yield hint(topic, f"{doubtful[0]}{more}", "See them all with: pyfrc config check")
+        yield hint(topic, f"{doubtful[0]}{more}", "To see them all: pyfrc config check")
     elif loaded.text is None:
-        yield hint(topic, "there is none: everything is at its default", "pyfrc create-physics")
+        yield hint(topic, "there is none: all settings have their defaults", "pyfrc create-physics")
     else:
         yield ok(topic, "no mistakes")

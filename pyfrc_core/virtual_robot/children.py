@@ -1,4 +1,4 @@
-"""Processes of the virtual robot, each with all that it starts: begun apart from the terminal, and ended together."""
+"""Child processes of the virtual robot: each runs in a process group of its own, which ends as a whole."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-#: Seconds for a process to end by itself when it is asked to.
+#: Seconds to wait for a process to end after SIGTERM.
 _PATIENCE = 1.0
 
 
 def start(
     words: Sequence[str], directory: Path, environment: Mapping[str, str], stderr: int
 ) -> subprocess.Popen[bytes]:
-    """Start a process with unbuffered pipes, in a group of its own: Ctrl-C does not reach it."""
+    """Start a process with unbuffered pipes, in a new process group, which Ctrl-C does not reach."""
     flags = 0
     if sys.platform == "win32":
         flags = subprocess.CREATE_NEW_PROCESS_GROUP
@@ -35,7 +35,7 @@ def start(
 
 
 def end(process: subprocess.Popen[bytes]) -> None:
-    """End a process and what it has started; return when it has ended."""
+    """Stop a process and its children. Return when it has ended."""
     if process.poll() is None and sys.platform != "win32":
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGTERM)
@@ -46,10 +46,10 @@ def end(process: subprocess.Popen[bytes]) -> None:
 
 
 def kill_group(process: subprocess.Popen[bytes]) -> None:
-    """End what is left of a process and of what it has started."""
+    """Kill the remaining processes of a process group."""
     if sys.platform == "win32":
         if process.poll() is None:
             subprocess.run(["taskkill", "/F", "/T", "/PID", str(process.pid)], capture_output=True, check=False)
     else:
-        with suppress(ProcessLookupError, PermissionError):  # macOS: the group has only ended processes
+        with suppress(ProcessLookupError, PermissionError):  # on macOS: the group has only zombies
             os.killpg(process.pid, signal.SIGKILL)

@@ -1,4 +1,4 @@
-"""The console service of a robot: sends what the robot program prints to all who listen. Standard library only."""
+"""A robot's console service, which sends the robot program's output to all clients. Standard library only."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from contextlib import suppress
 PORT = 1741
 
 _TEXT = 12
-_LONGEST = 65000
-#: Seconds for which a listener that reads nothing may hold the program's output.
-_PATIENCE = 1.0
+_MAX_LINE_BYTES = 65000
+#: Seconds after which a client that reads nothing is disconnected.
+_SEND_SECONDS = 1.0
 
 
-def framed(line: bytes, number: int) -> bytes:
-    """Return a line of output as the console frames it: length, kind, time in seconds, number, text."""
-    body = struct.pack(">BfH", _TEXT, time.monotonic() % 1e6, number % 65536) + line[:_LONGEST]
+def text_frame(line: bytes, number: int) -> bytes:
+    """Return a console frame with a line of output: length, kind, time in seconds, number, text."""
+    body = struct.pack(">BfH", _TEXT, time.monotonic() % 1e6, number % 65536) + line[:_MAX_LINE_BYTES]
     return struct.pack(">H", len(body)) + body
 
 
-class Console:
-    """A console on this computer.
+class ConsoleServer:
+    """A console server on this computer. It uses a free port if the usual one is taken.
 
-    :param host: the loopback address at which it listens; at another port than a robot's when that is taken
+    :param host: the loopback address at which it listens
     """
 
     def __init__(self, host: str) -> None:
@@ -35,41 +35,41 @@ class Console:
         except OSError:
             self._server = socket.create_server((host, 0))
         self.port: int = self._server.getsockname()[1]
-        self._listeners: list[socket.socket] = []
+        self._clients: list[socket.socket] = []
         self._lock = threading.Lock()
         self._number = 0
         threading.Thread(target=self._accept, name="virtual robot: console", daemon=True).start()
 
     def send(self, line: bytes) -> None:
-        """Send a line to all who listen."""
+        """Send a line to all clients."""
         with self._lock:
             self._number += 1
-            for listener in list(self._listeners):
+            for client in list(self._clients):
                 try:
-                    listener.sendall(framed(line, self._number))
+                    client.sendall(text_frame(line, self._number))
                 except OSError:
-                    self._listeners.remove(listener)
-                    listener.close()
+                    self._clients.remove(client)
+                    client.close()
 
     def close(self) -> None:
-        """Hang up."""
+        """Stop the server and disconnect all clients."""
         close_server(self._server)
         with self._lock:
-            for listener in self._listeners:
-                listener.close()
-            self._listeners.clear()
+            for client in self._clients:
+                client.close()
+            self._clients.clear()
 
     def _accept(self) -> None:
         with suppress(OSError):
             while True:
-                listener, _ = self._server.accept()
-                listener.settimeout(_PATIENCE)
+                client, _ = self._server.accept()
+                client.settimeout(_SEND_SECONDS)
                 with self._lock:
-                    self._listeners.append(listener)
+                    self._clients.append(client)
 
 
 def close_server(server: socket.socket) -> None:
-    """Close a listening socket, and end the `accept` of another thread."""
+    """Close a listening socket, and end `accept` in another thread."""
     with suppress(OSError):
         server.shutdown(socket.SHUT_RDWR)
     server.close()

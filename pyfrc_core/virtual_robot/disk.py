@@ -1,4 +1,4 @@
-"""The virtual robot's disk: a directory that looks to the deploy agent like the root of a roboRIO."""
+"""The virtual robot's disk: a directory with the same layout as a roboRIO's root directory."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from ..deploy.agent.disk import text_of, write_whole
 from ..deploy.agent.inventory import IMAGE_FILE
-from ..deploy.agent.places import Places
+from ..deploy.agent.robot_paths import RobotPaths
 from ..deploy.agent.system import lock
-from ..deploy.preparing import VIRTUAL_IMAGE
+from ..deploy.robot_setup import VIRTUAL_IMAGE
 from ..errors import PyfrcError, UsageError
 
 if TYPE_CHECKING:
@@ -24,35 +24,35 @@ class RobotDisk:
 
     :param directory: created if it does not exist
     :param fresh:     remove the robot's programs first; its SSH key stays
-    :raises UsageError: when the directory holds other files
-    :raises PyfrcError: when a virtual robot is running in it, or it cannot be written
+    :raises UsageError: if the directory has other files
+    :raises PyfrcError: if a virtual robot is using it, or it cannot be written
     """
 
     def __init__(self, directory: Path, fresh: bool = False) -> None:
         self.directory = directory
-        self.places = Places(str(directory / "root"))
+        self.paths = RobotPaths(str(directory / "root"))
         self._key_file = directory / "host_key"
         self._port_file = directory / "port"
         try:
             if directory.is_dir() and any(directory.iterdir()) and not self._key_file.exists():
                 raise UsageError(
-                    "this directory holds other files than a virtual robot's",
+                    "this directory has files that are not from a virtual robot",
                     where=directory,
-                    remedy="Name a new or empty directory with --directory DIR.",
+                    remedy="Choose a new or empty directory with --directory DIR.",
                 )
             directory.mkdir(parents=True, exist_ok=True)
             self._lock = (directory / "lock").open("a+", encoding="utf-8")
         except OSError as error:
             raise PyfrcError(
-                f"cannot keep the virtual robot's files here: {(error.strerror or str(error)).lower()}",
+                f"cannot store the virtual robot's files here: {(error.strerror or str(error)).lower()}",
                 where=directory,
-                remedy="Name a directory that you may write with --directory DIR.",
+                remedy="Choose a writable directory with --directory DIR.",
             ) from error
         try:
             self._take_lock()
             self.key = self._host_key()
             if fresh:
-                shutil.rmtree(self.places.root, ignore_errors=True)
+                shutil.rmtree(self.paths.root, ignore_errors=True)
             self._create()
         except BaseException:
             self._lock.close()
@@ -73,7 +73,7 @@ class RobotDisk:
         return int(text) if text.isdecimal() else None
 
     def write_address(self, address: str, port: int) -> None:
-        """Keep the port for the next start, and the address for the message to a second start in this directory."""
+        """Store the port for the next start, and the address for the error message of a second start."""
         write_whole(self._port_file, str(port))
         self._lock.truncate(0)
         self._lock.write(json.dumps({"address": address}))
@@ -87,14 +87,14 @@ class RobotDisk:
             raise PyfrcError(
                 f"a virtual robot is already running here{_at(self._lock.read())}",
                 where=self.directory,
-                remedy="Deploy to it, or end it with Ctrl-C, or start another one with --directory DIR.",
+                remedy="Deploy to it, stop it with Ctrl-C, or start another one with --directory DIR.",
             ) from None
 
     def _host_key(self) -> paramiko.PKey:
         import paramiko
 
         if not self._key_file.exists():
-            # Written beside first: a file with half a key would stop all later starts.
+            # Written atomically: an incomplete key file would prevent all later starts.
             beside = self._key_file.with_suffix(".new")
             paramiko.ECDSAKey.generate().write_private_key_file(str(beside))
             beside.replace(self._key_file)
@@ -102,17 +102,17 @@ class RobotDisk:
             return paramiko.ECDSAKey.from_private_key_file(str(self._key_file))
         except paramiko.SSHException as error:
             raise PyfrcError(
-                f"this is no SSH key: {error}",
+                f"this is not an SSH key: {error}",
                 where=self._key_file,
-                remedy="Remove the directory; the virtual robot then begins without programs, and with another key.",
+                remedy="Remove the directory; the virtual robot then starts without programs, and with a new key.",
             ) from error
 
     def _create(self) -> None:
-        temporary = self.places.of("/tmp")
-        shutil.rmtree(temporary, ignore_errors=True)  # as on a robot, when it is switched on
-        for each in (self.places.home, temporary, self.places.of(IMAGE_FILE).parent):
+        temporary = self.paths.of("/tmp")
+        shutil.rmtree(temporary, ignore_errors=True)  # as on a robot, at each start
+        for each in (self.paths.home, temporary, self.paths.of(IMAGE_FILE).parent):
             each.mkdir(parents=True, exist_ok=True)
-        self.places.of(IMAGE_FILE).write_text(f'[ImageMetadata]\nIMAGEVERSION = "{VIRTUAL_IMAGE}"\n')
+        self.paths.of(IMAGE_FILE).write_text(f'[ImageMetadata]\nIMAGEVERSION = "{VIRTUAL_IMAGE}"\n')
 
 
 def _at(text: str) -> str:

@@ -1,7 +1,7 @@
-"""Whose process is at the other end of a connection within this computer.
+"""Identifies the user at the other end of a connection on this computer.
 
-A robot lets everyone in; a virtual robot runs programs as its user, and so must not do that for other users of the same
-computer. Only Linux says whose a connection is; elsewhere, all users of the computer are let in.
+A robot accepts every user. A virtual robot runs programs as its own user, so it must reject other users of the same
+computer. Only Linux provides the user of a connection; on other systems, all users of the computer are accepted.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _TABLE = Path("/proc/net/tcp")
 
 
 def is_other_user(connection: socket.socket) -> bool:
-    """Return whether the process at the other end of a loopback connection is known to be another user's."""
+    """Return whether the other end of a loopback connection belongs to another user; False if unknown."""
     if sys.platform != "linux":
         return False
     ends = [_as_in_table(*connection.getpeername()), _as_in_table(*connection.getsockname())]

@@ -1,6 +1,6 @@
-"""Runs a robot program in WPILib's simulation, in real time: what ``python -m robotpy --main FILE run`` is on a robot.
+"""Runs a robot program in WPILib's simulation in real time, as ``python -m robotpy --main FILE run`` does on a robot.
 
-Started by the supervisor, which keeps its standard input open: when that ends, so does the program.
+The supervisor starts it and keeps its standard input open. The program ends when its standard input is closed.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import sys
 import threading
 from pathlib import Path
 
-#: Where dashboards look for NetworkTables.
+#: The standard port of NetworkTables.
 _TABLES_PORT = 5810
 
 
 def main() -> None:
-    """Import the main file, and run the robot class in it until it ends."""
+    """Import the main file, and run its robot class."""
     parser = argparse.ArgumentParser("robotpy")
     parser.add_argument("--main", required=True, type=Path)
     parser.add_argument("-v", "--verbose", action="store_true")
@@ -57,7 +57,7 @@ def _run(main: Path) -> bool:
 
     sys.path[0] = str(main.parent)
     wpilib.getDeployDirectory = lambda: str(main.parent / "deploy")
-    # WPILib's own server would listen at all of this computer's addresses.
+    # WPILib's own server would listen at all addresses of this computer.
     ntcore.NetworkTableInstance.getDefault().startServer("networktables.json", "127.0.0.1", 0, _tables_port())
     specification = importlib.util.spec_from_file_location("robot", main)
     assert specification is not None
@@ -69,7 +69,7 @@ def _run(main: Path) -> bool:
 
 
 def _tables_port() -> int:
-    """Return a free port: the usual one, unless another robot program on this computer has it."""
+    """Return the standard port if it is free, else another free port."""
     for port in (_TABLES_PORT, 0):
         try:
             with socket.create_server(("127.0.0.1", port)) as probe:

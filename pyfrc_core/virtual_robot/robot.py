@@ -1,4 +1,4 @@
-"""A virtual robot as a whole: its disk, its program, its console, its SSH server."""
+"""A virtual robot: its disk, program, console and SSH server."""
 
 from __future__ import annotations
 
@@ -12,33 +12,33 @@ from types import TracebackType
 from ..deploy.agent.virtual import VARIABLE, VirtualRobotClient
 from ..errors import PyfrcError
 from ..terminal_text import visible
-from .console import Console
+from .console import ConsoleServer
 from .disk import RobotDisk
 from .supervisor import Control, Supervisor
 
 HOST = "127.0.0.1"
-#: The first port that is tried where none is named, and how many.
+#: The first default port, and the number of ports to try.
 FIRST_PORT = 2222
 _PORTS = 100
 
 
 def default_directory() -> Path:
-    """Return where a virtual robot keeps its files when no directory is named: in the user's data directory."""
+    """Return the default directory for a virtual robot's files, in the user's data directory."""
     import platformdirs
 
     return platformdirs.user_data_path("pyfrc", appauthor=False) / "virtual-robot"
 
 
 class VirtualRobot:
-    """A virtual robot that is switched on, until the end of the ``with`` block.
+    """A virtual robot that runs until the end of the ``with`` block.
 
-    :param directory: where its files are kept between starts
-    :param port:      of its SSH server on this computer; none: that of the last start, else the first free one from
+    :param directory: where it stores its files
+    :param port:      the port of its SSH server; default: the port of the last start, else the first free one from
         `FIRST_PORT` on
-    :param fresh:     begin without any program
-    :param on_line:   called with each line that its program prints, from a thread
-    :param on_end:    called with what has ended its program, from a thread
-    :raises PyfrcError: when the port is taken, or another virtual robot runs in the directory
+    :param fresh:     start without programs
+    :param on_line:   called in a separate thread with each line of its program's output
+    :param on_end:    called in a separate thread with the reason for the end of its program
+    :raises PyfrcError: if the port is not free, or another virtual robot uses the directory
     """
 
     def __init__(
@@ -57,19 +57,19 @@ class VirtualRobot:
             listening = stack.enter_context(_listener(port, disk.last_port()))
             self.directory = directory
             self.port: int = listening.getsockname()[1]
-            console = Console(HOST)
+            console = ConsoleServer(HOST)
             stack.callback(console.close)
 
             def printed(line: bytes) -> None:
                 console.send(line)
                 on_line(visible(line.decode(errors="replace")))
 
-            supervisor = Supervisor(disk.places, printed, on_end)
+            supervisor = Supervisor(disk.paths, printed, on_end)
             control = Control(supervisor)
             stack.callback(control.close)
-            client = VirtualRobotClient(str(disk.places.root), control.port, control.key, console.port)
+            client = VirtualRobotClient(str(disk.paths.root), control.port, control.key, console.port)
             environment = {**os.environ, VARIABLE: client.to_text()}
-            server = SshServer(listening, disk.key, console.port, disk.places.home, environment)
+            server = SshServer(listening, disk.key, console.port, disk.paths.home, environment)
             supervisor.start()
             stack.callback(supervisor.close)
             stack.callback(server.close)
@@ -78,7 +78,7 @@ class VirtualRobot:
 
     @property
     def address(self) -> str:
-        """As ``pyfrc deploy --robot`` takes it."""
+        """The address for ``pyfrc deploy --robot``."""
         return f"{HOST}:{self.port}"
 
     def __enter__(self) -> VirtualRobot:
@@ -91,7 +91,7 @@ class VirtualRobot:
 
 
 def _listener(port: int | None, last: int | None) -> socket.socket:
-    """Listen at the port that is named; else at that of the last start, at which projects have pinned its key."""
+    """Listen at the given port, else at the port of the last start, for which projects have pinned its key."""
     ports = [port] if port is not None else [last, *range(FIRST_PORT, FIRST_PORT + _PORTS)]
     for each in ports:
         if each is not None:
@@ -103,5 +103,5 @@ def _listener(port: int | None, last: int | None) -> socket.socket:
     raise PyfrcError(
         f"the port cannot be used: {os.strerror(number or 0)}",
         where=f"{HOST}:{port if port is not None else FIRST_PORT}",
-        remedy="Another program may have it. Name another one with --port N, or leave --port out.",
+        remedy="Another program may use it. Choose another port with --port N, or leave out --port.",
     )

@@ -1,4 +1,4 @@
-"""A virtual robot for the command line: shown until Ctrl-C, or for as long as another command runs."""
+"""A virtual robot for the command line: it runs until Ctrl-C, or as long as another command."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ..errors import UsageError
 from ..interruption import ending_like_ctrl_c
 from .robot import VirtualRobot, default_directory
 
-#: Seconds between two looks for Ctrl-C, which interrupts no endless wait on Windows.
-_TURN = 0.5
+#: Seconds between two checks for Ctrl-C, which does not interrupt a wait without time limit on Windows.
+_CHECK_SECONDS = 0.5
 
 
 def show(
@@ -24,11 +24,11 @@ def show(
     on_line: Callable[[str], object],
     on_news: Callable[[str], object],
 ) -> None:
-    """Keep a virtual robot switched on until Ctrl-C, or a signal that ends a process.
+    """Run a virtual robot until Ctrl-C or SIGTERM.
 
-    :param on_line: called with each line that its program prints
-    :param on_news: called with what else there is to say
-    :raises PyfrcError: when it cannot be started
+    :param on_line: called with each line of its program's output
+    :param on_news: called with other messages
+    :raises PyfrcError: if it cannot be started
     """
     directory = (directory or default_directory()).absolute()
     with (
@@ -40,16 +40,16 @@ def show(
     ):
         on_news(f"A virtual robot is running at {robot.address}; its files are in {directory}")
         on_news(f"Deploy to it, in a robot project: pyfrc deploy --robot {robot.address}")
-        on_news("What its program prints follows. Ctrl-C ends it; its programs are kept.")
+        on_news("The output of its program follows. Ctrl-C stops the robot; its programs are kept.")
         while True:
-            threading.Event().wait(_TURN)
+            threading.Event().wait(_CHECK_SECONDS)
 
 
 def run_command(command: Sequence[str], directory: Path | None, port: int | None, fresh: bool) -> int:
-    """Run a command with a virtual robot's address as last argument; the robot ends with it.
+    """Run a command with a virtual robot's address as last argument, and stop the robot when it has ended.
 
     :return: the command's exit code
-    :raises PyfrcError: when the robot or the command cannot be started
+    :raises PyfrcError: if the robot or the command cannot be started
     """
     program = shutil.which(command[0])
     if program is None:

@@ -1,6 +1,6 @@
-"""The virtual robot's SSH server: lets a robot's users in without a password, and runs their Python.
+"""The virtual robot's SSH server: it accepts a robot's users without a password, and runs Python commands.
 
-It runs Python commands only, since that is what a deploy sends; there is no shell, as there is none on Windows.
+It has no shell, since Windows has none. A deploy needs only Python commands.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ if TYPE_CHECKING:
 
 _USERS = (PROGRAM_USER, ADMINISTRATOR)
 _NOT_FOUND = 127  # a shell's exit code for a command that does not exist
-_SIGNALLED = 128  # a shell's exit code for a command that a signal has ended, less the signal
+_SIGNALLED = 128  # a shell adds the signal's number to this exit code
 _STEP_SECONDS = 15.0
 
 
 class SshServer:
     """An SSH server at a listening socket, until `close`.
 
-    :param key:         the robot's
-    :param console:     the port of its console, which the server's greeting names
-    :param home:        where commands are run
-    :param environment: of the commands
+    :param key:         the robot's host key
+    :param console:     the port of its console, which is part of the server's greeting
+    :param home:        the working directory of commands
+    :param environment: the environment variables of commands
     """
 
     def __init__(
         self, listening: socket.socket, key: PKey, console: int, home: Path, environment: Mapping[str, str]
     ) -> None:
-        # Who only looks whether a robot is there breaks off, which is no news.
+        # Clients that only search for a robot disconnect immediately, which is normal.
         logging.getLogger("paramiko").setLevel(logging.CRITICAL)
         self._listening = listening
         self._key = key
@@ -63,7 +63,7 @@ class SshServer:
         threading.Thread(target=self._accept, name="virtual robot: SSH server", daemon=True).start()
 
     def close(self) -> None:
-        """End all connections, and what runs over them."""
+        """Close all connections, and kill their commands."""
         close_server(self._listening)
         with self._lock:
             transports, processes = list(self._transports), list(self._processes)
@@ -97,10 +97,10 @@ class SshServer:
 
     def _run(self, channel: Channel, command: str) -> None:
         """Run a command, with the channel as its input and output."""
-        with suppress(OSError, EOFError):  # the laptop is gone
+        with suppress(OSError, EOFError):  # the laptop has disconnected
             words = _words(command)
             if not words or not Path(words[0]).name.startswith("python3"):
-                channel.sendall_stderr(f"a virtual robot runs Python only, not: {command}\n".encode())
+                channel.sendall_stderr(f"a virtual robot runs only Python, not: {command}\n".encode())
                 channel.send_exit_status(_NOT_FOUND)
             else:
                 channel.send_exit_status(self._run_python(channel, words[1:]))
@@ -140,7 +140,7 @@ def _feed(channel: Channel, process: subprocess.Popen[bytes]) -> None:
     with suppress(OSError, EOFError), process.stdin:
         while data := channel.recv(65536):
             view = memoryview(data)
-            while view:  # the pipe is unbuffered, and takes what it has room for
+            while view:  # the pipe is unbuffered, and may accept only a part
                 view = view[process.stdin.write(view) :]
 
 
@@ -152,9 +152,9 @@ def _send_errors(channel: Channel, process: subprocess.Popen[bytes]) -> None:
 
 
 class _Session(paramiko.ServerInterface):
-    """One connection: who may log in, and what may be asked for.
+    """The policy for one connection: users and requests.
 
-    :param run: runs a command over a channel
+    :param run: runs a command with a channel as its input and output
     """
 
     def __init__(self, run: Callable[[Channel, str], None]) -> None:

@@ -1,4 +1,4 @@
-"""Starts the robot program, and starts it again whenever it ends, as the roboRIO's `lvrt` does."""
+"""Starts the robot program and restarts it after its end, as `lvrt` does on a roboRIO."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from multiprocessing.connection import Connection, Listener
 from pathlib import Path
 
 from ..deploy.agent.disk import text_of
-from ..deploy.agent.places import COMMAND, DEBUG_COMMAND, Places
+from ..deploy.agent.robot_paths import COMMAND, DEBUG_COMMAND, RobotPaths
 from . import children
 
 _RUNNER = "pyfrc_core.virtual_robot.program"
-_LAST_WORDS = 1.0  # seconds
+_FINAL_OUTPUT_SECONDS = 1.0
 
 
 class Supervisor:
-    """The robot program of a virtual robot, kept running until `close`.
+    """Keeps the robot program of a virtual robot running until `close`.
 
-    :param on_line: called with each line that the program prints, from a thread
-    :param on_end:  called with what has ended the program, from a thread; and with why there is nothing to start
+    :param on_line: called in a separate thread with each line of the program's output
+    :param on_end:  called in a separate thread with the reason for the program's end, or for not starting it
     """
 
-    def __init__(self, places: Places, on_line: Callable[[bytes], object], on_end: Callable[[str], object]) -> None:
-        self._places = places
+    def __init__(self, paths: RobotPaths, on_line: Callable[[bytes], object], on_end: Callable[[str], object]) -> None:
+        self._paths = paths
         self._on_line = on_line
         self._on_end = on_end
         self._state = threading.Condition()
@@ -41,16 +41,16 @@ class Supervisor:
         self._thread = threading.Thread(target=self._run, name="virtual robot: supervisor", daemon=True)
 
     def start(self) -> None:
-        """Start what is current on the robot's disk."""
+        """Start the current program on the robot's disk."""
         self._thread.start()
 
     def processes(self) -> list[int]:
-        """Return the processes of the program."""
+        """Return the process ids of the program."""
         with self._state:
             return [] if self._process is None else [self._process.pid]
 
     def stop(self) -> None:
-        """Stop the program; return when it has ended."""
+        """Stop the program. Return when it has ended."""
         with self._state:
             self._wanted = False
             process = self._process
@@ -60,7 +60,7 @@ class Supervisor:
                 self._state.wait_for(lambda: self._process is not process)
 
     def restart(self) -> None:
-        """Stop the program and start what is current; return when the old one has ended."""
+        """Stop the program and start the current one. Return when the old one has ended."""
         self.stop()
         with self._state:
             self._wanted = True
@@ -89,26 +89,26 @@ class Supervisor:
             reader.start()
             code = process.wait()
             children.kill_group(process)
-            reader.join(_LAST_WORDS)  # what the program has started may hold its output open
+            reader.join(_FINAL_OUTPUT_SECONDS)  # child processes of the program may keep its output open
             with self._state:
                 asked_for = not self._wanted
                 self._process = None
                 self._state.notify_all()
             if not asked_for:
-                self._on_end(f"the robot program has ended ({_end_of(code)}); it is started again")
+                self._on_end(f"the robot program has ended ({_end_of(code)}); restarting it")
 
     def _start(self) -> subprocess.Popen[bytes] | None:
-        debug = self._places.debug_flag.exists()
-        command = text_of(self._places.home / (DEBUG_COMMAND if debug else COMMAND))
+        debug = self._paths.debug_flag.exists()
+        command = text_of(self._paths.home / (DEBUG_COMMAND if debug else COMMAND))
         if not command:
             return None
-        words = program_words(command, self._places)
+        words = program_words(command, self._paths)
         if words is None:
-            self._on_end(f"nothing is started: this is no start command of a Python program: {command.strip()}")
+            self._on_end(f"no program is started: this is not a start command of a Python program: {command.strip()}")
             return None
-        home = str(self._places.home)
+        home = str(self._paths.home)
         environment = {**os.environ, "HOME": home, "USERPROFILE": home, "PYTHONUSERBASE": site.getuserbase()}
-        return children.start(words, self._places.home, environment, stderr=subprocess.STDOUT)
+        return children.start(words, self._paths.home, environment, stderr=subprocess.STDOUT)
 
     def _read(self, process: subprocess.Popen[bytes]) -> None:
         assert process.stdout is not None
@@ -124,10 +124,10 @@ class Supervisor:
         process.stdin.close()
 
 
-def program_words(command: str, places: Places) -> list[str] | None:
-    """Return the command that runs on this computer what a robot's start command runs; none: it is no such command.
+def program_words(command: str, paths: RobotPaths) -> list[str] | None:
+    """Translate a robot's start command to a command for this computer, or return None if it is another command.
 
-    ``... python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run`` keeps Python's options and those of `robotpy`.
+    ``... python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run`` keeps the options of Python and of `robotpy`.
     """
     try:
         words = shlex.split(command)
@@ -138,7 +138,7 @@ def program_words(command: str, places: Places) -> list[str] | None:
         return None
     if words[module + 1] != "robotpy" or main == len(words):
         return None
-    words[main] = str(places.of(words[main]))
+    words[main] = str(paths.of(words[main]))
     return [sys.executable, "-X", "utf8", *words[python + 1 : module], "-m", _RUNNER, *words[module + 2 :]]
 
 
@@ -147,33 +147,33 @@ def _end_of(code: int) -> str:
 
 
 class Control:
-    """Lets the agents that run on the virtual robot stop and start its program.
+    """A server through which deploy agents stop and start the program.
 
-    :param supervisor: which does it
+    :param supervisor: starts and stops the program
     """
 
     def __init__(self, supervisor: Supervisor) -> None:
         self._supervisor = supervisor
         self._closed = False
         self._key = secrets.token_bytes(32)
-        # More than one may wait: agents of several laptops.
+        # Agents of several laptops may connect at the same time.
         self._listener = Listener(("127.0.0.1", 0), backlog=16, authkey=self._key)
         threading.Thread(target=self._accept, name="virtual robot: control", daemon=True).start()
 
     @property
     def key(self) -> str:
-        """The key that agents show, in hexadecimal."""
+        """The authentication key for agents, in hexadecimal."""
         return self._key.hex()
 
     @property
     def port(self) -> int:
-        """Where agents find it on this computer."""
+        """The port on this computer."""
         address = self._listener.address
         assert isinstance(address, tuple)
         return int(address[1])
 
     def close(self) -> None:
-        """Let no agent do anything any more."""
+        """Stop the server."""
         self._closed = True
         self._listener.close()
 

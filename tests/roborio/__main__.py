@@ -46,7 +46,7 @@ def main() -> int:
             proxy = Proxy((robot.host, robot.port), round_trip=0.02, rate=500_000, host=robot.host)
             where = f"{robot.host}:{stack.enter_context(proxy).port}"
         print(f"A roboRIO look-alike runs at {where}. In a robot project: pyfrc deploy --robot {where}")
-        print("What its program prints follows; Ctrl-C ends it.", flush=True)
+        print("The output of its program follows. Ctrl-C stops it.", flush=True)
         robot.echo = True
         with contextlib.suppress(KeyboardInterrupt):
             threading.Event().wait()

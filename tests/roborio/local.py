@@ -17,8 +17,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
-from pyfrc_core.deploy.manifest import Manifest, survey
-from pyfrc_core.deploy.robot import COMMAND, Deployed, DeployRequest, Robot
+from pyfrc_core.deploy.agent_client import COMMAND, AgentClient, Deployed, DeployRequest
+from pyfrc_core.deploy.manifest import Manifest, build_manifest
 
 ROBOT_PY = "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n"
 
@@ -150,10 +150,10 @@ class LocalRobot:
         shutil.copytree(self.root, root, symlinks=True)
         return LocalRobot(root)
 
-    def start(self, agents: Agents, **options: int | bool | None) -> Robot:
+    def start(self, agents: Agents, **options: int | bool | None) -> AgentClient:
         """An agent on it; for the options see `Agents.channel`."""
         self._agents, self._options = agents, options
-        return Robot.start(self, hello={"root": str(self.root)})
+        return AgentClient.start(self, hello={"root": str(self.root)})
 
     def open(self, command: str) -> LocalChannel:
         """What a connection does: run the agent."""
@@ -251,7 +251,7 @@ class Agents:
 
 def _skip_bootstrap(channel: LocalChannel) -> None:
     """Such an agent has its modules already: they are left out of what is sent to it."""
-    from pyfrc_core.deploy.robot import agent_package
+    from pyfrc_core.deploy.agent_client import agent_package
 
     package = agent_package()
     send = channel.sendall
@@ -301,4 +301,4 @@ def project_of(directory: Path, files: Mapping[str, str | bytes]) -> Manifest:
         file = directory / name
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(content.encode() if isinstance(content, str) else content)
-    return survey(directory, large=True)
+    return build_manifest(directory, large=True)

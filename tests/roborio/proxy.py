@@ -11,7 +11,7 @@ from collections import deque
 from dataclasses import dataclass, field
 from types import TracebackType
 
-PIECE = 1448  # bytes: what one packet on the wire carries
+CHUNK_BYTES = 1448  # bytes: what one packet on the wire carries
 
 
 @dataclass
@@ -125,7 +125,7 @@ class Proxy:
 
     def _take(self, way: Way) -> None:
         try:
-            piece = way.source.recv(PIECE)
+            piece = way.source.recv(CHUNK_BYTES)
         except OSError:
             piece = b""
         if not piece:

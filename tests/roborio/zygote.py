@@ -17,7 +17,7 @@ import sys
 import traceback
 from typing import Any
 
-from pyfrc_core.deploy.agent import program, releases, serve, system, watching
+from pyfrc_core.deploy.agent import host, program, releases, serve, start_monitor, system
 
 _CHANGES = {
     "os.rename",
@@ -98,16 +98,20 @@ class Calls:
         self.count += event in ("call", "c_call")
 
 
-def agent(conversation: int, alive: int, options: dict[str, Any]) -> None:
+def agent(connection: int, alive: int, options: dict[str, Any]) -> None:
     """Be an agent; its steps, or its calls, are told at its end."""
-    os.dup2(conversation, 0)
-    os.dup2(conversation, 1)
-    os.close(conversation)
+    os.dup2(connection, 0)
+    os.dup2(connection, 1)
+    os.close(connection)
     steps = Steps(options.get("last_step"), options.get("loses", False), options["root"])
     if options["all_signs"]:
         serve.Activity = functools.partial(serve.Activity, pause=0.0)  # type: ignore[misc,assignment]
     if options["runs"] is not None:
-        seen = {"verdict": watching.RUNNING if options["runs"] else watching.ENDED, "heard": True, "seen": True}
+        seen = {
+            "verdict": start_monitor.RUNNING if options["runs"] else start_monitor.ENDED,
+            "heard": True,
+            "seen": True,
+        }
         program.Program.watch = lambda *watch: {**seen, "seconds": 1.0, "age": 1.0, "lived": 1.0}  # type: ignore[method-assign]
     counted: Steps | Calls = Calls() if options["calls"] else steps
     try:
@@ -125,7 +129,7 @@ def agent(conversation: int, alive: int, options: dict[str, Any]) -> None:
 def main() -> None:
     """Fork an agent for each message, with its sockets."""
     control = socket.socket(fileno=int(sys.argv[1]))
-    serve.processes = set  # this machine's are not looked through each time
+    host.RoboRio.processes = lambda robot: set()  # type: ignore[method-assign]  # listing all processes takes long
     while True:
         with contextlib.suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:

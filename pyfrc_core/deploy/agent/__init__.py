@@ -1,5 +1,5 @@
-"""The robot's side of a deploy: plain Python 3.9, standard library only.
+"""The deploy agent, which runs on the robot: Python 3.9 and the standard library only.
 
-`robot` sends these modules to the robot, in the order of their dependence, over the standard input of one exec; nothing
-of them is installed there. Here they are imported for the frames, and by tests.
+`deploy.agent_client` sends the source of these modules to the robot through the standard input of one SSH command.
+Nothing is installed on the robot. On the laptop, the modules are imported for the frame format and by tests.
 """

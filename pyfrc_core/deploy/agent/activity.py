@@ -1,4 +1,4 @@
-"""Signs of life: over a silent link, a laptop cannot know an agent that works from one that is gone."""
+"""Keep-alive messages: they let the laptop distinguish a busy agent from a lost connection."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-#: Seconds after which a call to the system is no longer taken for work.
-_LONGEST_CALL = 600.0
+#: Seconds after which a blocking system call no longer counts as progress.
+_MAX_CALL_SECONDS = 600.0
 
 
 class Activity:
-    """What the agent works on, and how far it is; sent to the laptop about once a second.
+    """Report the agent's progress to the laptop about once a second.
 
-    A sign is sent only where work was done since the last one, or while the system is waited for: an agent that hangs
-    is silent.
+    A keep-alive message is sent only if work was done since the previous one, or during a blocking system call. An
+    agent that hangs sends none.
 
-    :param say:   sends a frame
-    :param clock: seconds that only grow
-    :param pause: seconds between two signs
+    :param send:  sends a message
+    :param clock: a monotonic clock, in seconds
+    :param pause: seconds between two messages
     """
 
     def __init__(
-        self, say: Callable[..., None], clock: Callable[[], float] = time.monotonic, pause: float = 1.0
+        self, send: Callable[..., None], clock: Callable[[], float] = time.monotonic, pause: float = 1.0
     ) -> None:
-        self._say = say
+        self._send = send
         self._clock = clock
         self._pause = pause
         self._last = clock()
@@ -33,29 +33,29 @@ class Activity:
         self._count = self._of = 0
 
     def reset(self) -> None:
-        """Begin to work on an answer: its first sign is due in a second."""
+        """Start a new request: its first keep-alive message is due after `pause` seconds."""
         self._last = self._clock()
 
     def begin(self, phase: str, of: int = 0) -> None:
-        """Begin a phase.
+        """Start a phase.
 
-        :param phase: a word that the laptop knows
-        :param of:    how many steps it has; 0: not known
+        :param phase: its name in the protocol
+        :param of:    its number of steps; 0 if unknown
         """
         self._phase, self._count, self._of = phase, 0, of
 
     def step(self, count: int = 1) -> None:
-        """Count steps that are done. With none, something of the next one is done."""
+        """Add completed steps. Zero means that part of the next step is done."""
         self._count += count
         now = self._clock()
         if now - self._last >= self._pause:
             self._last = now
-            self._say(alive={"phase": self._phase, "count": self._count, "of": self._of})
+            self._send(alive={"phase": self._phase, "count": self._count, "of": self._of})
 
     def wait_for(self, call: Callable[..., Any], *args: Any) -> Any:
-        """Return what a call returns in which the system may be busy for long, such as ``syncfs``.
+        """Run a call that may block for long, such as ``syncfs``, and return its result.
 
-        It is made in a thread, which no frame is sent from.
+        The call runs in a separate thread; messages are sent from the current one.
         """
         self.step(0)
         outcome: list[Any] = []
@@ -73,10 +73,10 @@ class Activity:
         try:
             while thread.is_alive():
                 thread.join(self._pause)
-                if self._clock() - began < _LONGEST_CALL:
+                if self._clock() - began < _MAX_CALL_SECONDS:
                     self.step(0)
         finally:
-            thread.join()  # where the laptop is gone, too: what holds the lock then does nothing any more
+            thread.join()  # even after a lost connection: the deploy lock must not be released before the call ends
         if failure:
             raise failure[0]
         return outcome[0]

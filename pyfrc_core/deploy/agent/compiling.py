@@ -1,4 +1,4 @@
-"""The compiled forms of a program's files, made on the robot: it then starts in seconds less."""
+"""Compiling a program's source files on the robot, which saves seconds at its start."""
 
 from __future__ import annotations
 
@@ -18,37 +18,37 @@ from typing import Any
 
 from .activity import Activity
 from .disk import files_below, link_or_copy
-from .places import CODE, Refusal
+from .robot_paths import CODE, Refusal
 from .system import end_with_parent
 
-#: Bytes of memory for the process that compiles; a robot of 256 MB has a program that runs meanwhile.
+#: Memory for the compiling process, in bytes. A robot with 256 MB runs its program meanwhile.
 _MEMORY = 38_000_000
-#: What it may take in any case, of these.
+#: Memory that it may always allocate, in bytes.
 _LEAST_MEMORY = 8_000_000
-#: How often another process goes on where one was killed.
-_MOST_RESTARTS = 4
+#: How often a killed process is replaced.
+_MAX_RESTARTS = 4
 
 
 class Compiler:
-    """Compiles sources in a separate process: while others are received, and in memory that is not the agent's.
+    """Compiles sources in a separate process, with memory of its own, while other files are received.
 
-    A source that needs too much memory is left out: the program compiles it when it imports it. When the system kills
-    the process, another one goes on; a source at which two were killed is left out as well. Where a process cannot be
-    forked, on a virtual robot, the agent compiles by itself.
+    A source that needs too much memory is skipped: the program compiles it when it imports it. If the system kills the
+    process, another one continues; a source at which two processes were killed is skipped as well. On systems without
+    ``fork``, which only virtual robots have, the agent itself compiles.
 
-    :param directory: below which they are
-    :param names:     in the order in which they are there
-    :param debug:     whether their `assert` statements are kept
-    :param program:   those that the program imports when it starts; others need not be valid
+    :param directory: contains the sources
+    :param names:     relative paths, in the order in which the files become available
+    :param debug:     keep `assert` statements
+    :param program:   files that the program imports at its start; other files may be invalid
     """
 
     def __init__(self, directory: Path, names: Sequence[str], debug: bool, program: Collection[str] = ()) -> None:
         self._directory = directory
         self._debug = debug
         self._program = program
-        #: The path, line and message of the program's first source that this Python cannot compile.
+        #: Path, line and message of the program's first source that this Python cannot compile.
         self._failure: list[Any] = []
-        self._there_now = 0
+        self._available = 0
         self._child: int | None = None
         self._names: Sequence[str] = ()
         self._begin(names)
@@ -57,43 +57,43 @@ class Compiler:
         self._names = names
         if not names or not hasattr(os, "fork"):
             return
-        # A byte for each source that is there, and one for each that is compiled. A pipe holds 65,536 of them, so that
-        # neither process waits for the other's reading before there are twice as many sources.
-        there, self._there = os.pipe()
+        # One pipe has a byte for each available source, the other a byte for each compiled one. A pipe holds 65,536
+        # bytes, so neither process blocks with up to that many sources.
+        available, self._to_child = os.pipe()
         self._compiled, compiled = os.pipe()
         self._child = os.fork()
         if self._child == 0:
             try:
-                os.close(self._there)
+                os.close(self._to_child)
                 end_with_parent()
                 _limit_memory()
                 for name in names:
-                    if self._failure or not os.read(there, 1):
-                        break  # the deploy is refused, or over
+                    if self._failure or not os.read(available, 1):
+                        break  # the deploy was refused or has ended
                     self._compile(name)
                     os.write(compiled, b".")
                 os.write(compiled, b"\0" + json.dumps(self._failure).encode())
             finally:
                 os._exit(0)
-        os.close(there)
+        os.close(available)
         os.close(compiled)
 
-    def next_is_there(self) -> None:
-        """Let it compile the next source."""
+    def add_next(self) -> None:
+        """Report that the next source is available."""
         if self._child is None:
-            self._compile(self._names[self._there_now])
-            self._there_now += 1
+            self._compile(self._names[self._available])
+            self._available += 1
             return
-        with suppress(BrokenPipeError):  # it has ended early: the program compiles the rest itself
-            os.write(self._there, b".")
+        with suppress(BrokenPipeError):  # the process was killed; `finish` starts another
+            os.write(self._to_child, b".")
 
     def finish(self, activity: Activity) -> None:
-        """Wait until it has compiled all sources; all of them are there.
+        """Wait until all sources are compiled. All of them must be available.
 
-        :raises Refusal: when this Python cannot compile one of the program's files
+        :raises Refusal: if this Python cannot compile one of the program's files
         """
         killed_at = ""
-        for restarts_left in reversed(range(_MOST_RESTARTS + 1)):
+        for restarts_left in reversed(range(_MAX_RESTARTS + 1)):
             left = self._wait(activity)
             if left and left[0] == killed_at:
                 left = left[1:]
@@ -102,24 +102,24 @@ class Compiler:
             killed_at = left[0]
             self._begin(left)
             for _ in left:
-                self.next_is_there()
+                self.add_next()
         if self._failure:
             path, line, message = self._failure
             version = ".".join(map(str, sys.version_info[:2]))
             raise Refusal(
                 "syntax",
                 f"{path}:{line}: the robot's Python {version} cannot compile this: {message}",
-                "The robot still has the program that it had. Correct the line, or write it as that Python needs it.",
+                "The robot still has its old program. Correct the line, or use syntax of that Python version.",
             )
 
     def _wait(self, activity: Activity) -> Sequence[str]:
-        """Return the sources that are left since it has ended early."""
+        """Wait for the process. Return the sources that it has not compiled if it was killed."""
         if self._child is None:
             return ()
         activity.begin("compile", len(self._names))
         end, failure, done = b"", b"", 0
         while True:
-            # A robot takes a second for ten sources, and more for a large one.
+            # A robot compiles about ten sources in a second; a large one takes longer.
             if not select.select([self._compiled], [], [], 1.0)[0]:
                 activity.step(0)
                 continue
@@ -158,23 +158,23 @@ class Compiler:
                 message = str(getattr(error, "msg", failure))[:200]
                 self._failure = [name, getattr(error, "lineno", None) or 1, message]
         except Exception:
-            pass  # such as a name that is too long with the cache's ending
+            pass  # for example, the name of the compiled file is too long
 
     def _end(self) -> None:
         assert self._child is not None
         os.waitpid(self._child, 0)
         self._child = None
-        os.close(self._there)
+        os.close(self._to_child)
         os.close(self._compiled)
 
 
 def _limit_memory() -> None:
-    """Let a source that needs more than there is for this process raise a `MemoryError`."""
+    """Limit the memory of this process: compiling a source that needs more raises `MemoryError`."""
     if sys.platform != "linux":
         return
     import resource
 
-    gc.freeze()  # the agent's objects stay shared with it
+    gc.freeze()  # keeps the agent's memory pages shared
     lines = (line.split(":", 1) for line in Path("/proc/self/status").read_text().splitlines())
     sizes = {name: int(text.split()[0]) * 1024 for name, text in lines if name in ("VmData", "VmRSS")}
     most = sizes["VmData"] + max(_MEMORY - sizes["VmRSS"], _LEAST_MEMORY)
@@ -187,34 +187,37 @@ def _cache_of(file: str, debug: bool) -> str:
 
 
 def compile_below(directory: Path, debug: bool, activity: Activity, program: Collection[str] = ()) -> None:
-    """Compile what is not compiled yet; for `program` see `Compiler`."""
+    """Compile the sources below a directory that have no compiled file yet.
+
+    :param program: see `Compiler`
+    """
     compiled = CompiledForms()
     sources = [(name, entry.path) for name, entry in files_below(directory) if name.endswith(".py")]
     names = [name for name, path in sources if not compiled.includes(path, debug)]
     with Compiler(directory, names, debug, program) as compiler:
         for _ in names:
-            compiler.next_is_there()
+            compiler.add_next()
         compiler.finish(activity)
 
 
 class CompiledForms:
-    """The compiled forms of sources, in the directories ``__pycache__`` beside them. Each of these is listed once."""
+    """Compiled files in ``__pycache__`` directories. Each directory is listed once."""
 
     def __init__(self) -> None:
         self._listed: dict[str, dict[str, list[str]]] = {}
         self._made: set[str] = set()
 
     def of(self, source: str) -> list[str]:
-        """The compiled forms of the file `source`."""
+        """Return the compiled files of a source."""
         directory, forms = self._forms(source)
         return [f"{directory}/__pycache__/{form}" for form in forms]
 
     def includes(self, source: str, debug: bool) -> bool:
-        """Whether the form is there that the robot is going to start."""
+        """Return whether a source has the compiled file that the robot will use."""
         return Path(_cache_of(source, debug)).name in self._forms(source)[1]
 
     def link(self, source: str, target: str) -> None:
-        """Let `target`, which is the same file as `source`, have its compiled forms, too."""
+        """Link the compiled files of `source` for `target`, which is a link to the same file."""
         directory, forms = self._forms(source)
         if not forms:
             return

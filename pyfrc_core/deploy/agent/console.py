@@ -1,4 +1,4 @@
-"""What the robot program prints, as the robot's console service sends it."""
+"""A client of the robot's console service, which sends the output of the robot program."""
 
 from __future__ import annotations
 
@@ -7,32 +7,33 @@ import socket
 import struct
 import time
 
-from .virtual import virtual_robot
-
-#: The console's ports: for listeners of any kind, and for the Driver Station.
+#: The console's ports: for any client, and for the Driver Station.
 PORTS = (1741, 1740)
-#: Kinds of messages: the first byte of each.
+#: Kinds of messages, the first byte of each.
 ERROR, TEXT = 11, 12
 #: An empty frame.
 KEEP_ALIVE = b"\0\0"
 _KEEP_ALIVE_SECONDS = 1.0
-#: Seconds for which more output is waited for when some has come, so that each line costs no turn of its own.
-_MORE = 0.02
+#: Seconds to wait for more output after the first, so that several lines are read together.
+_BATCH_SECONDS = 0.02
 
 
-class Console:
-    """A listener to the console, as far as there is one."""
+class ConsoleClient:
+    """A connection to the console, if it can be reached.
 
-    def __init__(self) -> None:
+    :param ports: loopback ports to try in turn
+    """
+
+    def __init__(self, ports: tuple[int, ...]) -> None:
+        self._ports = ports
         self._socket: socket.socket | None = None
         self._unread = b""
         self._keep_alive = 0.0
 
-    def listen(self) -> None:
-        """Connect; what is printed from now on is heard."""
-        self.leave()
-        virtual = virtual_robot()
-        for port in PORTS if virtual is None else (virtual.console,):
+    def connect(self) -> None:
+        """Connect, to receive the output from now on."""
+        self.disconnect()
+        for port in self._ports:
             try:
                 self._socket = socket.create_connection(("127.0.0.1", port), timeout=1.0)
             except OSError:
@@ -40,14 +41,14 @@ class Console:
             self._socket.setblocking(False)
             return
 
-    def leave(self) -> None:
+    def disconnect(self) -> None:
         """Disconnect."""
         if self._socket is not None:
             self._socket.close()
         self._socket, self._unread = None, b""
 
-    def hear(self, seconds: float) -> str:
-        """Wait so long for output, and return what has come: whole lines."""
+    def receive(self, seconds: float) -> str:
+        """Wait up to `seconds` for output, and return the complete lines that have arrived."""
         if self._socket is None:
             time.sleep(seconds)
             return ""
@@ -58,20 +59,20 @@ class Console:
                 self._keep_alive = now + _KEEP_ALIVE_SECONDS
             if not select.select([self._socket], [], [], seconds)[0]:
                 return ""
-            time.sleep(min(_MORE, seconds))
-            piece = self._socket.recv(1 << 18)
+            time.sleep(min(_BATCH_SECONDS, seconds))
+            chunk = self._socket.recv(1 << 18)
         except BlockingIOError:
             return ""
         except OSError:
-            piece = b""
-        messages, self._unread = split_frames(self._unread + piece)
-        if not piece:
-            self.leave()
+            chunk = b""
+        messages, self._unread = split_frames(self._unread + chunk)
+        if not chunk:
+            self.disconnect()
         return "".join(map(console_text, messages))
 
 
 def split_frames(received: bytes) -> tuple[list[bytes], bytes]:
-    """Return the messages that are complete, and the bytes after them, which are no whole frame yet."""
+    """Return the complete messages, and the remaining bytes of an incomplete frame."""
     messages, start = [], 0
     while len(received) >= start + 2:
         end = start + 2 + int.from_bytes(received[start : start + 2], "big")
@@ -83,7 +84,7 @@ def split_frames(received: bytes) -> tuple[list[bytes], bytes]:
 
 
 def console_text(message: bytes) -> str:
-    """What one message of the console says, a line; nothing, if it is of another kind."""
+    """Return the text of a console message as one line; empty for other kinds of messages."""
     if message[:1] == bytes([TEXT]):
         line = message[1 + 4 + 2 :].decode(errors="replace")
         return line if line.endswith("\n") else line + "\n"

@@ -1,4 +1,4 @@
-"""What the transaction needs of a file system: to have written, to write whole, to swap, to know what is in a file."""
+"""File operations of a deploy: atomic writes, directory walks, removal, hard links, free space."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ BLOCK = 1 << 16
 
 
 def write_whole(file: Path, text: str, mode: int = 0o644) -> None:
-    """Write a file so that nobody, not even after a power cut, finds half of it."""
+    """Write a file atomically: after a power cut it has the old or the new content."""
     beside = file.with_name(f".{file.name}.new")
     with beside.open("w", encoding="utf-8", errors="surrogateescape") as stream:
         stream.write(text)
@@ -25,7 +25,7 @@ def write_whole(file: Path, text: str, mode: int = 0o644) -> None:
 
 
 def text_of(file: Path) -> str | None:
-    """What is in a text file; none: it is not there."""
+    """Return the content of a text file, or None if it cannot be read."""
     try:
         return file.read_text(encoding="utf-8", errors="surrogateescape")
     except OSError:
@@ -33,9 +33,9 @@ def text_of(file: Path) -> str | None:
 
 
 def everything_below(directory: Path) -> Iterator[tuple[str, os.DirEntry[str]]]:
-    """All files, links and directories below a directory by their relative names, without Python's caches.
+    """Yield the relative path and entry of each file, link and directory below a directory.
 
-    A directory comes before what is in it.
+    ``__pycache__`` directories are skipped. A directory comes before its content.
     """
     waiting = [("", str(directory))]
     while waiting:
@@ -56,16 +56,16 @@ def _entries(directory: str) -> list[os.DirEntry[str]]:
         with os.scandir(directory) as entries:
             return sorted(entries, key=lambda entry: entry.name)
     except OSError:
-        return []  # the program has removed it, or it is another user's
+        return []  # removed by the program meanwhile, or not readable for this user
 
 
 def files_below(directory: Path) -> Iterator[tuple[str, os.DirEntry[str]]]:
-    """The regular files among `everything_below`."""
+    """Yield the regular files among `everything_below`."""
     return ((name, entry) for name, entry in everything_below(directory) if entry.is_file(follow_symlinks=False))
 
 
 def remove(path: Path) -> None:
-    """Remove a file or a whole directory, if it is there."""
+    """Remove a file or a directory tree, if it exists."""
     if path.is_dir() and linked_directory(path) is None:
         shutil.rmtree(path)
     else:
@@ -74,12 +74,12 @@ def remove(path: Path) -> None:
 
 
 def remove_if_possible(path: Path) -> None:
-    """Remove of a file or directory what we may: others of the robot's users may have put theirs into it."""
+    """Remove a directory tree, except for entries that belong to other users of the robot."""
     shutil.rmtree(path, ignore_errors=True)
 
 
 def link_or_copy(source: str, target: str) -> None:
-    """Make `target` another name of the file (or link) `source`, or a copy where there can be none."""
+    """Create `target` as a hard link to `source`, or as a copy if hard links are not supported."""
     try:
         link_file(source, target)
     except FileNotFoundError:
@@ -89,5 +89,5 @@ def link_or_copy(source: str, target: str) -> None:
 
 
 def free_bytes(directory: Path) -> int:
-    """The bytes that may still be written in this file system."""
+    """Return the free space of this file system, in bytes."""
     return shutil.disk_usage(directory).free

@@ -1,4 +1,4 @@
-"""Which modules and packages the robot's Python has. Nothing is imported: that would take seconds, and run code."""
+"""Modules and packages of the robot's Python. Nothing is imported, since that would take seconds and run code."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _METADATA = (".dist-info", ".egg-info")
 
 
 def look_up(modules: Iterable[str]) -> dict[str, Any]:
-    """Describe this Python to the laptop.
+    """Return facts about this Python: missing modules, packages, suffixes of extension modules, machine.
 
-    :param modules: dotted names; the result has those of them that cannot be found
+    :param modules: dotted names to look for
     """
     return {
         "missing_modules": [name for name in modules if not is_there(name)],
@@ -28,19 +28,19 @@ def look_up(modules: Iterable[str]) -> dict[str, Any]:
 
 
 def is_there(name: str) -> bool:
-    """Return whether a module can be found; true where only importing its package could tell."""
+    """Return whether a module can be found; also True if only an import of its package could show this."""
     specification = _find(name.partition(".")[0])
     parts = name.split(".")
     for depth in range(2, len(parts) + 1):
         if specification is None or specification.submodule_search_locations is None:
-            break  # the module may make its submodules itself, as `os` makes `os.path`
+            break  # the module may create its submodules at import, as `os` creates `os.path`
         below = specification.submodule_search_locations
         specification = _find_below(".".join(parts[:depth]), list(below))
     return specification is not None
 
 
 def installed_packages() -> dict[str, str]:
-    """Return the versions of the installed distributions by their normalized names."""
+    """Return the versions of installed distributions by normalized name."""
     found: dict[str, str] = {}
     for place in _path():
         try:
@@ -49,14 +49,14 @@ def installed_packages() -> dict[str, str]:
             continue
         for each in names:
             if each.endswith(_METADATA):
-                # By the names of directories: opening each of them takes a robot a second.
+                # From the names of directories: reading each of them takes a robot one second.
                 name, _, version = each.rpartition(".")[0].partition("-")
                 found.setdefault(re.sub(r"[-_.]+", "-", name).lower(), version.partition("-")[0])
     return found
 
 
 def _path() -> list[str]:
-    """Where the robot program finds modules besides its own: not in the directory that the agent was started in."""
+    """Return `sys.path` without the agent's working directory, which is not on the robot program's path."""
     return [each for each in sys.path if each]
 
 
@@ -69,10 +69,10 @@ def _find(name: str) -> ModuleSpec | None:
     return None
 
 
-def _find_below(name: str, places: list[str]) -> ModuleSpec | None:
-    """Find a submodule by its package's directories. The import system's own way would import the package first."""
+def _find_below(name: str, paths: list[str]) -> ModuleSpec | None:
+    """Find a submodule in its package's directories. `importlib.util.find_spec` would import the package first."""
     portions: list[str] = []
-    for place in places:
+    for place in paths:
         finder = pkgutil.get_importer(place)
         specification = None if finder is None else finder.find_spec(name, None)
         if specification is None:

@@ -1,7 +1,7 @@
-"""The releases on the robot, and how one of them becomes what the robot starts.
+"""The releases on the robot, and switching between them.
 
-``~/py`` is a link to ``~/.pyfrc/releases/<number>``; beside each release is ``<number>.json``, its record. A release is
-complete before it has that name, and never has it any more once its removal has begun.
+``~/py`` is a link to ``~/.pyfrc/releases/<number>``. Each release has a record, ``<number>.json``, in the same
+directory. A release gets its name when it is complete, and loses it before its removal begins.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 
 from .activity import Activity
 from .disk import everything_below, link_or_copy, remove, remove_if_possible, text_of, write_whole
-from .places import CODE, COMMAND, DEBUG_COMMAND, HOME, Places, Refusal
+from .robot_paths import CODE, COMMAND, DEBUG_COMMAND, HOME, Refusal, RobotPaths
 from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link, replace_link
 
 Record = dict[str, Any]
@@ -25,13 +25,16 @@ Record = dict[str, Any]
 _KEPT = 3
 _TRASH = "trash-"
 _DIRECT = HOME + "/.pyfrc/releases"
-#: Bytes of a file's name that leave room for an ending; of a longer one so many characters are kept.
-_LONGEST_NAME, _SHORTENED = 220, 50
+#: The longest file name to which a suffix is added, in bytes; longer names are cut to this number of characters.
+_MAX_NAME_BYTES, _CUT_LENGTH = 220, 50
 _OTHER_TOOLS_CODE = (".py", ".pyi", ".pyc")
 
 
 def start_commands(main: str) -> dict[str, str | None]:
-    """What is in the files that name the robot's start command, for the program with this main file."""
+    """Return the content of the robot's start command files for a program with this main file.
+
+    :raises Refusal: if the main file's name has characters that are not allowed in a command
+    """
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_./-]*", main):
         raise Refusal(
             "main",
@@ -46,36 +49,36 @@ def start_commands(main: str) -> dict[str, str | None]:
 
 
 class Releases:
-    """The releases, the current one, and the start command."""
+    """The releases on the robot, and its start command."""
 
-    def __init__(self, places: Places, activity: Activity) -> None:
-        self.places = places
+    def __init__(self, paths: RobotPaths, activity: Activity) -> None:
+        self.paths = paths
         self.activity = activity
-        #: Records as they were read, by what shows that the file has been replaced since.
+        #: Cached records, each with the identity of its file: device, inode, modification time, size.
         self._records: dict[int, tuple[tuple[int, ...], Record]] = {}
 
     def flush(self, directory: Path) -> None:
-        """Wait until all that was written in this file system is on the disk."""
+        """Wait until all data written to this file system is on the disk."""
         self.activity.begin("sync")
         self.activity.wait_for(flush, directory)
 
     def remove(self, path: Path, *, if_possible: bool = False) -> None:
-        """Remove a file or a whole directory, if it is there.
+        """Remove a file or a directory tree, if it exists.
 
-        :param if_possible: leave what we may not remove: others of the robot's users may have put theirs into it
+        :param if_possible: keep entries that belong to other users of the robot
         """
         self.activity.begin("remove")
         self.activity.wait_for(remove_if_possible if if_possible else remove, path)
 
     def directory(self, number: int) -> Path:
-        """Where a release is."""
-        return self.places.releases / str(number)
+        """Return the directory of a release."""
+        return self.paths.releases / str(number)
 
     def numbers(self) -> list[int]:
-        """The complete releases, oldest first."""
-        if not self.places.releases.is_dir():
+        """Return the numbers of the complete releases, oldest first."""
+        if not self.paths.releases.is_dir():
             return []
-        names = [each.name for each in self.places.releases.iterdir() if each.name.isdigit()]
+        names = [each.name for each in self.paths.releases.iterdir() if each.name.isdigit()]
         return sorted(int(name) for name in names if self._is_complete(int(name)))
 
     def _is_complete(self, number: int) -> bool:
@@ -83,21 +86,21 @@ class Releases:
         return directory.is_dir() and not directory.is_symlink() and self._record_file(number).exists()
 
     def next_number(self) -> int:
-        """A number that no release has had, as far as is known."""
-        names = [each.name.split(".")[0] for each in self.places.releases.glob("*")]
+        """Return an unused number, higher than those of all known releases."""
+        names = [each.name.split(".")[0] for each in self.paths.releases.glob("*")]
         return max((int(name) for name in names if name.isdigit()), default=0) + 1
 
     def _record_file(self, number: int) -> Path:
-        return self.places.releases / f"{number}.json"
+        return self.paths.releases / f"{number}.json"
 
     def record(self, number: int) -> Record:
-        """What is known of a release: its files with their hashes, its start commands, what it was deployed from."""
+        """Return the record of a release: files with hashes, start commands, origin; empty if there is none."""
         file = self._record_file(number)
         try:
             state = file.stat()
         except OSError:
             return {}
-        # It is never written into, only replaced; another agent may have done so.
+        # The file is only ever replaced, possibly by another agent.
         identity = (state.st_dev, state.st_ino, state.st_mtime_ns, state.st_size)
         if self._records.get(number, ((), {}))[0] != identity:
             try:
@@ -108,19 +111,19 @@ class Releases:
         return dict(self._records[number][1])
 
     def write_record(self, number: int, record: Record) -> None:
-        """Keep what is known of a release."""
-        self.places.releases.mkdir(parents=True, exist_ok=True)
+        """Write the record of a release."""
+        self.paths.releases.mkdir(parents=True, exist_ok=True)
         write_whole(self._record_file(number), json.dumps(record))
 
     def ran(self, number: int) -> bool:
-        """Return whether a watch has seen this release run."""
+        """Return whether a watch has ever confirmed that this release runs."""
         return bool(self.record(number).get("ran"))
 
     def record_start(self, number: int, ran: bool, ended: bool) -> None:
-        """Record what is known of the starts of a release, if it is still there.
+        """Record the result of a watched start, if the release still exists.
 
-        :param ran:   whether a watch has seen it run, at any start
-        :param ended: whether it ended at the last start that was watched
+        :param ran:   whether any watch has confirmed that it runs
+        :param ended: whether it ended during the last watched start
         """
         record = self.record(number)
         known = {**record, "ran": ran, "ended": ended}
@@ -128,9 +131,10 @@ class Releases:
             self.write_record(number, known)
 
     def fallback(self, number: int | None) -> int | None:
-        """Return the release that a rollback from this one goes back to, or None without one.
+        """Return the release that a rollback from this one selects, or None if there is none.
 
-        It is the one that this one replaced, unless only others were seen to run: then it is the newest of these.
+        This is the release that it replaced. If that release was never confirmed to run, it is the newest earlier one
+        that was, if any.
         """
         numbers = self.numbers()
         earlier = [each for each in numbers if number is None or each < number]
@@ -141,133 +145,138 @@ class Releases:
         return before if before in ran or not ran else ran[-1]
 
     def current(self) -> int | None:
-        """The release that ``~/py`` is; none: another tool has put something there, or nothing is."""
-        release = linked_directory(self.places.code)
-        if release is not None and release.parent == self.places.releases and release.name.isdigit():
+        """Return the release that ``~/py`` links to, or None: another tool's program, or no program."""
+        release = linked_directory(self.paths.code)
+        if release is not None and release.parent == self.paths.releases and release.name.isdigit():
             return int(release.name) if release.is_dir() else None
         return None
 
     def code(self) -> Path | None:
-        """The directory with the code that the robot starts now."""
-        return self.places.code.resolve() if self.places.code.is_dir() else None
+        """Return the directory with the code that the robot starts, or None."""
+        return self.paths.code.resolve() if self.paths.code.is_dir() else None
 
     def is_other_tools(self) -> bool:
-        """Whether ``~/py`` is another tool's directory."""
-        return self.places.code.is_dir() and linked_directory(self.places.code) is None
+        """Return whether ``~/py`` is a directory created by another tool."""
+        return self.paths.code.is_dir() and linked_directory(self.paths.code) is None
 
-    def listed(self, directory: Path) -> set[str] | None:
-        """The files that a release came with; the program has written the others. None: it is not one of ours."""
-        if directory.parent == self.places.releases.resolve() and directory.name.isdigit():
+    def manifest_paths(self, directory: Path) -> set[str] | None:
+        """Return the deployed files of a release, or None if it is not a release. The program wrote all others."""
+        if directory.parent == self.paths.releases.resolve() and directory.name.isdigit():
             record = self.record(int(directory.name))
             if "files" in record:
                 return {*record["files"], "deploy.json"}
         return None
 
     def switch(self, number: int, commands: dict[str, str | None], taken: int | None) -> None:
-        """Make a release current: at every moment the start command names the old program or the new one, whole.
+        """Make a release current. At every moment, the start command refers to the complete old or new program.
 
-        One rename does it when the start command stays the same. Otherwise the command first names the release's own
-        directory, which is the moment of the change, and ``~/py`` only when that has followed.
+        If the start command stays the same, one rename is enough. Otherwise the command first refers to the release's
+        own directory, which is the moment of the switch, and to ``~/py`` again after that link has been replaced.
 
-        :param taken: the release as which another tool's directory is kept; its record is there already
+        :param taken: the release number for another tool's directory in ``~/py``, whose record is already written
         """
         direct = {name: text and text.replace(f"{CODE}/", f"{_DIRECT}/{number}/") for name, text in commands.items()}
-        changed = any(text_of(self.places.home / name) != text for name, text in commands.items())
+        changed = any(text_of(self.paths.home / name) != text for name, text in commands.items())
         detour = changed or not REPLACES_LINKS
-        link = self.places.own / "py" if taken is None else self.directory(taken)
+        link = self.paths.own / "py" if taken is None else self.directory(taken)
         remove(link)
-        make_link(link, self.directory(number), self.places.code)
-        self.flush(self.places.own)
+        make_link(link, self.directory(number), self.paths.code)
+        self.flush(self.paths.own)
         if detour:
             self._write_commands(direct)
         if taken is None:
-            replace_link(link, self.places.code)
-        elif not exchange(link, self.places.code):
-            # Without renameat2 the directory has to be moved before the link can have its place.
+            replace_link(link, self.paths.code)
+        elif not exchange(link, self.paths.code):
+            # Without renameat2, the directory must be moved before the link can replace it.
             if not detour:
                 self._write_commands(direct)
                 detour = True
-            link.replace(self.places.own / "py")
-            self.places.code.rename(self.directory(taken))
-            (self.places.own / "py").replace(self.places.code)
-        self.flush(self.places.home)
+            link.replace(self.paths.own / "py")
+            self.paths.code.rename(self.directory(taken))
+            (self.paths.own / "py").replace(self.paths.code)
+        self.flush(self.paths.home)
         if detour:
             self._write_commands(commands)
 
     def _write_commands(self, commands: dict[str, str | None]) -> None:
         for name, text in commands.items():
             if text is not None:
-                write_whole(self.places.home / name, text)
-        self.flush(self.places.home)
+                write_whole(self.paths.home / name, text)
+        self.flush(self.paths.home)
         for name, text in commands.items():
             if text is None:
-                remove(self.places.home / name)
+                remove(self.paths.home / name)
 
     def set_debug(self, debug: bool) -> None:
-        """Let the robot start the program for debugging, or the ordinary way."""
-        # Of another user, it can stay: both start commands name the same program.
+        """Select whether the robot starts the program for debugging."""
+        # Another user's file may stay: both start commands refer to the same program.
         with suppress(PermissionError):
             if debug:
-                self.places.debug_flag.touch()
+                self.paths.debug_flag.touch()
             else:
-                remove(self.places.debug_flag)
+                remove(self.paths.debug_flag)
 
-    def take_over(self, number: int) -> None:
-        """Write the record under which another tool's directory is going to be a release.
+    def adopt_directory(self, number: int) -> None:
+        """Write the record for another tool's directory, which becomes a release.
 
-        :raises Refusal: when the directory cannot be moved
+        :raises Refusal: if the directory cannot be moved
         """
-        if not os.access(self.places.code, os.W_OK):
+        if not os.access(self.paths.code, os.W_OK):
             raise Refusal(
                 "disk",
-                f"{CODE} belongs to another user of the robot, and so cannot be moved out of the way",
+                f"{CODE} belongs to another user of the robot, and cannot be moved",
                 f"Give it to lvuser, as admin on the robot: chown -R lvuser:ni {CODE}",
             )
-        commands = {name: text_of(self.places.home / name) for name in (COMMAND, DEBUG_COMMAND)}
-        deployed = text_of(self.places.code / "deploy.json")
+        commands = {name: text_of(self.paths.home / name) for name in (COMMAND, DEBUG_COMMAND)}
+        deployed = text_of(self.paths.code / "deploy.json")
         try:
             about = json.loads(deployed or "{}")
         except ValueError:
             about = {}
-        debug = self.places.debug_flag.exists()
+        debug = self.paths.debug_flag.exists()
         self.write_record(number, {"taken": True, "debug": debug, "commands": commands, "deploy": about})
 
     def recover(self) -> None:
-        """Clear up after a deploy that was cut, and finish one that was cut past its decisive moment."""
-        if not self.places.own.is_dir():
+        """Clean up after an interrupted deploy, and complete it if it was interrupted after the switch."""
+        if not self.paths.own.is_dir():
             return
-        command = text_of(self.places.home / (DEBUG_COMMAND if self.places.debug_flag.exists() else COMMAND)) or ""
+        command = text_of(self.paths.home / (DEBUG_COMMAND if self.paths.debug_flag.exists() else COMMAND)) or ""
         started = re.search(re.escape(_DIRECT) + r"/(\d+)/", command)
         if started is not None and self._is_complete(int(started[1])):
             number = int(started[1])
             taken = None
             if self.is_other_tools():
                 taken = self.next_number()
-                self.take_over(taken)
+                self.adopt_directory(taken)
             self.switch(number, self.record(number)["commands"], taken)
-        for each in self.places.own.iterdir():
+        for each in self.paths.own.iterdir():
             if each.name.startswith(_TRASH):
                 self.remove(each, if_possible=True)
-            elif each not in (self.places.lock, self.places.releases):
+            elif each not in (self.paths.lock, self.paths.releases):
                 self.remove(each)
         for name in (COMMAND, DEBUG_COMMAND):
-            remove(self.places.home / f".{name}.new")
-        if self.places.releases.is_dir():
-            for each in self.places.releases.iterdir():
+            remove(self.paths.home / f".{name}.new")
+        if self.paths.releases.is_dir():
+            for each in self.paths.releases.iterdir():
                 number_text = each.name.split(".json")[0]
                 if (
                     not (number_text.isdigit() and self._is_complete(int(number_text)))
-                    and each.name not in self._kept()
+                    and each.name not in self._startable()
                 ):
                     self.remove(each)
         current = self.current()
         if current is not None:
-            self.settle(current)
+            self.carry_late_writes(current)
 
     def prune(self, kept: int = _KEPT) -> None:
-        """Remove old releases, but so many; never one that the robot may start, nor the newest that was seen to run."""
+        """Remove old releases.
+
+        Releases that the robot may start, and the newest one that was confirmed to run, are always kept.
+
+        :param kept: how many releases to keep
+        """
         numbers = self.numbers()
-        keep = {int(each) for each in self._kept()}
+        keep = {int(each) for each in self._startable()}
         keep.update([each for each in numbers if self.ran(each)][-1:])
         current = self.current()
         if kept > 1 and current is not None and self.record(current).get("from") in numbers:
@@ -283,45 +292,48 @@ class Releases:
                 self.remove(trash, if_possible=True)
 
     def _free_name(self, prefix: str) -> Path:
-        names = (self.places.own / f"{prefix}{number}" for number in count(1))
+        names = (self.paths.own / f"{prefix}{number}" for number in count(1))
         return next(name for name in names if not name.exists())
 
-    def _kept(self) -> set[str]:
-        """The releases that the robot may start as things are."""
-        texts = [text_of(self.places.home / name) or "" for name in (COMMAND, DEBUG_COMMAND)]
+    def _startable(self) -> set[str]:
+        """Return the numbers of the releases that the robot may start in its current state."""
+        texts = [text_of(self.paths.home / name) or "" for name in (COMMAND, DEBUG_COMMAND)]
         kept = {number for text in texts for number in re.findall(re.escape(_DIRECT) + r"/(\d+)/", text)}
         current = self.current()
         return kept if current is None else {*kept, str(current)}
 
-    def carry(self, old: Path, new: Path, before: dict[str, int] | None) -> dict[str, int]:
-        """Take what the program has written beside its code along, as further names of the same files.
+    def carry_over(self, old: Path, new: Path, before: dict[str, int] | None) -> dict[str, int]:
+        """Link files that the program wrote in the release `old` into the release `new`.
 
-        What it has written in `new` under the same name is kept beside it, with another name.
+        An existing file in `new` that the program wrote under the same name is kept under another name.
 
-        :param before: what was carried the first time, by its name; then only what the old program has written since
-            is taken, and nothing that the new one has changed
-        :return: the files that are the same in both, by name, with their inode numbers
+        :param before: the result of the first call for these releases; then only files that the old program has written
+            since are linked, and files that the new program has changed are kept
+        :return: the paths of files that both releases share, with their inode numbers
         """
-        listed, came_with_new = self.listed(old), self.listed(new) or set()
-        # Directories that hold only code come with the code, or go with it.
+        old_manifest, new_manifest = self.manifest_paths(old), self.manifest_paths(new) or set()
+        # Directories that contain only code belong to the manifest.
         code_in: set[str] = set()
-        for name in listed or ():
+        for name in old_manifest or ():
             above = name.rpartition("/")[0]
             while above and above not in code_in:
                 code_in.add(above)
                 above = above.rpartition("/")[0]
         carried: dict[str, int] = {}
-        between = self.places.own / "carried"
+        between = self.paths.own / "carried"
         self.activity.begin("carry")
         for name, entry in everything_below(old):
             self.activity.step()
-            is_code = name.endswith(_OTHER_TOOLS_CODE) or name == "deploy.json" if listed is None else name in listed
-            if is_code or name in came_with_new:
+            if old_manifest is None:
+                is_code = name.endswith(_OTHER_TOOLS_CODE) or name == "deploy.json"
+            else:
+                is_code = name in old_manifest
+            if is_code or name in new_manifest:
                 continue
             target = new / name
             try:
                 if entry.is_dir(follow_symlinks=False):
-                    if before is None and listed is not None and name not in code_in:
+                    if before is None and old_manifest is not None and name not in code_in:
                         target.mkdir(parents=True, exist_ok=True)
                     continue
                 inode = os.lstat(entry.path).st_ino
@@ -337,29 +349,29 @@ class Releases:
                     between.replace(target)
                     carried[name] = inode
             except (FileNotFoundError, FileExistsError, NotADirectoryError, IsADirectoryError, PermissionError):
-                # The program has removed it, or the new one has a file where the old had a directory; or it is
-                # another user's, which the program could not read either.
+                # Removed by the program; or a file in one release and a directory in the other; or not readable
+                # for this user and therefore for the program.
                 continue
         return carried
 
-    def settle(self, number: int) -> None:
-        """Take along what the previous program has still written after the switch; once, when it runs no more."""
+    def carry_late_writes(self, number: int) -> None:
+        """Link files that the previous program wrote after the switch. Call this once, after its end."""
         record = self.record(number)
         if "carried" in record:
             previous = self.directory(record["carried"]["from"])
             if previous.is_dir():
-                self.carry(previous.resolve(), self.directory(number).resolve(), record["carried"]["files"])
+                self.carry_over(previous.resolve(), self.directory(number).resolve(), record["carried"]["files"])
             del record["carried"]
             self.write_record(number, record)
 
 
 def _keep_beside(target: Path, replacement: Path, release: str) -> None:
-    """Give a file that is about to be replaced another name, unless its replacement has the same content."""
+    """Keep a file under another name before its replacement, unless the content is the same."""
     if target.is_dir() and not target.is_symlink():
-        return  # which is not replaced
+        return  # directories are not replaced
     if not (target.is_symlink() or replacement.is_symlink()) and filecmp.cmp(target, replacement, shallow=False):
         return
-    name = target.name if len(os.fsencode(target.name)) <= _LONGEST_NAME else target.name[:_SHORTENED]
+    name = target.name if len(os.fsencode(target.name)) <= _MAX_NAME_BYTES else target.name[:_CUT_LENGTH]
     for number in count(1):
         beside = target.with_name(f"{name}.release-{release}" + (f"-{number}" if number > 1 else ""))
         if not os.path.lexists(beside):

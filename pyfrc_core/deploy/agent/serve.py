@@ -1,4 +1,4 @@
-"""The agent's conversation: facts first, then one answer to each request, until the laptop hangs up."""
+"""The agent's main loop: it sends the robot's facts, then responds to requests until the laptop disconnects."""
 
 from __future__ import annotations
 
@@ -14,53 +14,60 @@ from typing import Any, BinaryIO
 
 from .activity import Activity
 from .content_index import sha256_of
-from .deploying import Deploy, plan
 from .disk import files_below, free_bytes, remove, text_of
+from .host import Host, RoboRio, age_of
 from .imports import look_up
-from .inventory import IMAGE_FILE, find_other_languages, image_in
-from .places import COMMAND, DEBUG_COMMAND, Lock, Places, Refusal
-from .program import KILL_SCRIPT, Program, age_of, processes, stop
+from .inventory import IMAGE_FILE, image_in
+from .program import Program
 from .releases import Releases
+from .robot_paths import COMMAND, DEBUG_COMMAND, Lock, Refusal, RobotPaths
+from .start_monitor import ENDED, RUNNING, UNHEARD
 from .system import become, is_root, user
-from .virtual import virtual_robot
-from .watching import ENDED, RUNNING, UNHEARD
-from .wire import EndedError, Said, Wire, WireError
+from .transaction import Deploy, plan
+from .virtual import VirtualRobotClient
+from .wire import EndedError, Message, Wire, WireError
 
 _USER = "lvuser"
 
 
 def main(source: BinaryIO) -> None:
-    """Talk to the laptop, over `source` and standard output."""
+    """Run the agent. Requests come from `source`; responses go to standard output."""
     wire = Wire(source, os.fdopen(os.dup(1), "wb"))
-    hello = wire.hear()
-    virtual = virtual_robot()
-    root = hello.get("root") if virtual is None else virtual.root
-    if root is None and is_root():
-        become(_USER)
+    hello = wire.receive()
+    host: Host | None = VirtualRobotClient.from_environment()
+    if host is None:
+        root = hello.get("root")
+        if root is None and is_root():
+            become(_USER)
+        host = RoboRio(RobotPaths(root or "/"))
     try:
-        Agent(wire, Places(root or "/"), hello).serve()
+        Agent(wire, host, hello).serve()
     except (WireError, ConnectionError):
-        sys.exit(1)  # the laptop is gone
+        sys.exit(1)  # the laptop has disconnected
 
 
 class Agent:
-    """What the laptop can ask for."""
+    """Handles the requests of one laptop.
 
-    def __init__(self, wire: Wire, places: Places, hello: Said) -> None:
+    :param hello: the laptop's first message
+    """
+
+    def __init__(self, wire: Wire, host: Host, hello: Message) -> None:
         self._wire = wire
-        self._places = places
-        self._activity = Activity(wire.say)
-        self._releases = Releases(places, self._activity)
-        self._program = Program(places)
+        self._host = host
+        self._paths = host.paths
+        self._activity = Activity(wire.send)
+        self._releases = Releases(host.paths, self._activity)
+        self._program = Program(host)
         self._hello = hello
         self._who = str(hello.get("who") or "somebody")
-        #: Held from a change of the program until it has been started again and watched.
+        #: The deploy lock, held from a change of the program to the end of the watch.
         self._lock: ExitStack | None = None
-        #: The release that was started and has not been watched yet.
+        #: The release that was started and not watched yet.
         self._started: int | None = None
-        #: The manifest that was last planned with: a deploy that brings none is of these files.
+        #: The manifest of the last plan: a deploy without a manifest uses it.
         self._files: list[Any] = []
-        self._requests: dict[str, Callable[[Said], Said]] = {
+        self._requests: dict[str, Callable[[Message], Message]] = {
             "plan": self._plan,
             "deploy": self._deploy,
             "restart": lambda request: self._restart(),
@@ -71,73 +78,73 @@ class Agent:
         }
 
     def serve(self) -> None:
-        """Answer until the laptop hangs up."""
-        self._answer(self.facts, self._hello)
+        """Respond to requests until the laptop disconnects."""
+        self._respond(self.facts, self._hello)
         while True:
-            # Where no lock is held, the laptop may have to ask its user something.
-            self._wire.impatient = self._lock is not None
+            # Without the lock, the laptop may be waiting for its user.
+            self._wire.limits_silence = self._lock is not None
             try:
-                request = self._wire.hear()
+                request = self._wire.receive()
             except EndedError:
                 return
-            self._answer(lambda request: self._requests[request["op"]](request), request)
+            self._respond(lambda request: self._requests[request["op"]](request), request)
 
-    def _answer(self, do: Callable[[Said], Said], request: Said) -> None:
+    def _respond(self, handle: Callable[[Message], Message], request: Message) -> None:
         self._activity.reset()
         try:
-            self._wire.say(done=do(request))
+            self._wire.send(done=handle(request))
         except WireError:
-            raise  # the laptop is gone, or does not speak as we do: there is nobody to tell
+            raise  # the laptop has disconnected, or violates the protocol
         except Refusal as refusal:
-            self._say_error(refusal.kind, str(refusal), refusal.remedy, **refusal.details)
+            self._send_error(refusal.kind, str(refusal), refusal.remedy, **refusal.details)
         except OSError as error:
             if isinstance(error, ConnectionError):
                 raise
             if error.errno in (errno.ENOSPC, errno.EDQUOT):
-                free = free_bytes(self._places.home)
-                self._say_error(
+                free = free_bytes(self._paths.home)
+                self._send_error(
                     "space",
                     f"the robot's disk is full: {free:,} bytes are free",
                     "Remove what the project does not need, or old logs from the robot.",
                     free=free,
                 )
             else:
-                self._say_error(
-                    "disk", f"{error.filename or 'the robot'}: {error.strerror}", "Look at its owner and mode."
+                self._send_error(
+                    "disk", f"{error.filename or 'the robot'}: {error.strerror}", "Check its owner and permissions."
                 )
         except Exception:
-            self._say_error("bug", "the agent on the robot has failed", "", traceback=traceback.format_exc())
+            self._send_error("bug", "the agent on the robot has failed", "", traceback=traceback.format_exc())
 
-    def _say_error(self, kind: str, message: str, remedy: str, **details: Any) -> None:
-        self._wire.say(error=kind, message=message, remedy=remedy, **details)
+    def _send_error(self, kind: str, message: str, remedy: str, **details: Any) -> None:
+        self._wire.send(error=kind, message=message, remedy=remedy, **details)
 
-    def facts(self, request: Said) -> Said:
-        """What there is on the robot."""
-        ini = text_of(self._places.of("/etc/natinst/share/ni-rt.ini"))
+    def facts(self, request: Message) -> Message:
+        """Return the robot's facts: versions, releases, the state of its program."""
+        ini = text_of(self._paths.of("/etc/natinst/share/ni-rt.ini"))
         releases, python = self._releases, look_up(request.get("modules") or ())
-        program = processes()
+        program = self._host.processes()
         return {
             **python,
             "wpilib": python["packages"].get("wpilib"),
             "python": ".".join(map(str, sys.version_info[:3])),
-            "image": image_in(text_of(self._places.of(IMAGE_FILE)) or ""),
+            "image": image_in(text_of(self._paths.of(IMAGE_FILE)) or ""),
             "startup_dlls": any(line.startswith("StartupDLLs") for line in (ini or "").splitlines()),
-            "kill_script": virtual_robot() is not None or self._places.of(KILL_SCRIPT).exists(),
-            "free": free_bytes(self._places.home) if self._places.home.is_dir() else 0,
+            "kill_script": self._host.has_kill_script(),
+            "free": free_bytes(self._paths.home) if self._paths.home.is_dir() else 0,
             "user": user(),
-            "home": self._places.home.is_dir(),
+            "home": self._paths.home.is_dir(),
             "current": releases.current(),
-            "releases": [self._about(number) for number in releases.numbers()],
-            "other_code": releases.is_other_tools() and any(True for _ in files_below(self._places.code)),
-            "deploy_json": text_of(self._places.code / "deploy.json"),
-            "command": text_of(self._places.home / COMMAND),
-            "debug": self._places.debug_flag.exists(),
+            "releases": [self._summary(number) for number in releases.numbers()],
+            "other_code": releases.is_other_tools() and any(True for _ in files_below(self._paths.code)),
+            "deploy_json": text_of(self._paths.code / "deploy.json"),
+            "command": text_of(self._paths.home / COMMAND),
+            "debug": self._paths.debug_flag.exists(),
             "running": bool(program),
             "program_age": age_of(program),
-            "other_languages": find_other_languages(self._places),
+            "other_languages": self._host.other_languages(),
         }
 
-    def _about(self, number: int) -> Said:
+    def _summary(self, number: int) -> Message:
         record = self._releases.record(number)
         known = {key: record.get(key) for key in ("main", "debug", "deploy", "from")}
         known.update({key: bool(record.get(key)) for key in ("taken", "ran", "ended")})
@@ -145,26 +152,26 @@ class Agent:
 
     @contextmanager
     def _transaction(self, keep: bool = False) -> Iterator[None]:
-        """The lock is held meanwhile.
+        """Hold the deploy lock.
 
-        :param keep: and when all went well, after it, for the restart that follows
+        :param keep: also after the block, for the restart that follows, unless the block raises an exception
         """
-        self._wire.impatient = True
-        if not self._places.home.is_dir():
-            raise Refusal("roborio", f"there is no {self._places.home} here: this is no roboRIO")
+        self._wire.limits_silence = True
+        if not self._paths.home.is_dir():
+            raise Refusal("roborio", f"there is no {self._paths.home} here: this is not a roboRIO")
         held, self._lock = self._lock, None
         with held or ExitStack() as lock:
             if held is None:
-                lock.enter_context(Lock(self._places, self._who))
+                lock.enter_context(Lock(self._paths, self._who))
             yield
             if keep:
                 self._lock = lock.pop_all()
 
-    def _plan(self, request: Said) -> Said:
+    def _plan(self, request: Message) -> Message:
         self._files = request["files"]
         return plan(self._releases, self._files)
 
-    def _deploy(self, request: Said) -> Said:
+    def _deploy(self, request: Message) -> Message:
         request.setdefault("files", self._files)
         with self._transaction(keep=not request.get("in_place")):
             self._releases.recover()
@@ -172,23 +179,23 @@ class Agent:
                 done = Deploy(self._releases, self._wire, request).run()
                 return {**done, "fallback": self._releases.fallback(done["release"])}
             except BaseException:
-                with suppress(ConnectionError):  # what is left the next deploy clears up
-                    self._releases.remove(self._places.incoming, if_possible=True)
+                with suppress(ConnectionError):  # the next deploy removes the rest
+                    self._releases.remove(self._paths.incoming, if_possible=True)
                 raise
 
-    def _restart(self) -> Said:
+    def _restart(self) -> Message:
         with self._transaction(keep=True):
             self._activity.begin("stop")
             self._started = current = self._releases.current()
             name = None if current is None else self._releases.record(current).get("main")
-            main = None if name is None else self._places.code / name
+            main = None if name is None else self._paths.code / name
             survived = self._activity.wait_for(lambda: self._program.restart(main))
             if current is not None:
-                self._releases.settle(current)
+                self._releases.carry_late_writes(current)
         return {"survived": survived}
 
-    def _watch(self, request: Said) -> Said:
-        # Locked: somebody else's restart in the middle of it would be taken for this program's end.
+    def _watch(self, request: Message) -> Message:
+        # Locked: a restart by another computer would look like the end of this program.
         with self._lock or ExitStack():
             self._lock = None
             seconds = float(request["seconds"])
@@ -196,16 +203,16 @@ class Agent:
             started, self._started = self._started, None
             if started is not None:
                 ran = watched["verdict"] in (RUNNING, UNHEARD) or self._releases.ran(started)
-                with suppress(OSError):  # a full disk does not change the verdict
+                with suppress(OSError):  # a full disk must not change the verdict
                     self._releases.record_start(started, ran, watched["verdict"] == ENDED)
             return watched
 
-    def _roll_back(self, request: Said) -> Said:
+    def _roll_back(self, request: Message) -> Message:
         with self._transaction(keep=True):
             self._releases.recover()
             return self._roll_back_to(request.get("release"))
 
-    def _roll_back_to(self, asked: int | None) -> Said:
+    def _roll_back_to(self, asked: int | None) -> Message:
         releases, numbers, current = self._releases, self._releases.numbers(), self._releases.current()
         number = asked
         if number is None:
@@ -220,23 +227,23 @@ class Agent:
         if not any(record["commands"].values()):
             raise Refusal("release", f"release {number} was left by another tool, and had no start command")
         files = record.get("files", {})
-        lacking = sorted(path for path in files if not (directory / path).is_file())
-        if lacking:
+        missing = sorted(path for path in files if not (directory / path).is_file())
+        if missing:
             raise Refusal(
-                "release", f"release {number} is not whole any more: {lacking[0]} is missing", "Choose another."
+                "release", f"release {number} is no longer complete: {missing[0]} is missing", "Choose another."
             )
         code, taken = releases.code(), None
         if releases.is_other_tools():
             taken = releases.next_number()
-            releases.take_over(taken)
+            releases.adopt_directory(taken)
         if code is not None and code != directory:
-            carried = releases.carry(code, directory, None)
+            carried = releases.carry_over(code, directory, None)
             record["carried"] = {"from": current if taken is None else taken, "files": carried}
             releases.write_record(number, record)
         changed = self._changed(files, directory)
         releases.switch(number, record["commands"], taken)
         releases.set_debug(bool(record.get("debug")))
-        return {"release": number, "previous": current, "changed": changed, "about": self._about(number)}
+        return {"release": number, "previous": current, "changed": changed, "about": self._summary(number)}
 
     def _changed(self, files: dict[str, str], directory: Path) -> list[str]:
         self._activity.begin("check", len(files))
@@ -247,23 +254,23 @@ class Agent:
             self._activity.step()
         return sorted(changed)
 
-    def _undeploy(self) -> Said:
-        """First nothing starts the program any more, then it is stopped, then it is removed."""
+    def _undeploy(self) -> Message:
+        """Remove the start commands, so that a power cut cannot restart the program; then stop it, then remove it."""
         with self._transaction():
             for name in (COMMAND, DEBUG_COMMAND):
-                remove(self._places.home / name)
+                remove(self._paths.home / name)
             self._releases.set_debug(False)
-            self._releases.flush(self._places.home)
+            self._releases.flush(self._paths.home)
             self._activity.begin("stop")
-            self._activity.wait_for(partial(stop, self._places, start=False))
-            there = self._places.code.exists() or self._places.code.is_symlink()
-            self._releases.remove(self._places.code)
-            for each in self._places.own.iterdir():
-                if each != self._places.lock:
+            self._activity.wait_for(partial(self._host.stop, start=False))
+            there = self._paths.code.exists() or self._paths.code.is_symlink()
+            self._releases.remove(self._paths.code)
+            for each in self._paths.own.iterdir():
+                if each != self._paths.lock:
                     self._releases.remove(each)
-            # Last, and while it is held: whoever waits for it begins with a new one.
-            with suppress(OSError):  # Windows removes no file that is open
-                remove(self._places.lock)
-                self._places.own.rmdir()
-            self._releases.flush(self._places.home)
+            # Last, and while it is held: computers that wait for it then create a new file.
+            with suppress(OSError):  # Windows cannot remove an open file
+                remove(self._paths.lock)
+                self._paths.own.rmdir()
+            self._releases.flush(self._paths.home)
         return {"removed": there}

@@ -1,6 +1,6 @@
-"""What differs by operating system: locks, links, exchanged names, waiting for a pipe, users.
+"""Functions that depend on the operating system: locks, links, atomic exchange, waiting for a pipe, users.
 
-A roboRIO runs Linux. A virtual robot runs on whatever its user's computer has. Only Linux has been tested.
+A roboRIO runs Linux. A virtual robot runs on its user's system. Only Linux has been tested.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ import time
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-#: Whether a link can take the place of another link by one rename.
+#: Whether one rename can replace a link by another link.
 REPLACES_LINKS = sys.platform != "win32"
 
-_EXCHANGE = 2  # of renameat2, and of renamex_np
+_EXCHANGE = 2  # flag of renameat2 and of renamex_np
 _AT_FDCWD = -100
 _RENAMEAT2 = {"x86_64": 316, "armv7l": 382, "aarch64": 276}
 _SET_DEATH_SIGNAL = 1  # prctl
 
 
 def flush(directory: Path) -> None:
-    """Wait until all that was written in this file system is on the disk.
+    """Wait until all data written to this file system is on the disk.
 
-    One wait for everything is as safe as one for each file and directory, and much faster on flash memory. Windows can
-    only wait for single files: there, a power cut may lose what was written last.
+    One ``syncfs`` is as safe as an ``fsync`` for each file and directory, and much faster on flash memory. Windows can
+    only flush single files, so a power cut may lose the last writes there.
     """
     if sys.platform == "win32":
         return
@@ -45,7 +45,7 @@ def flush(directory: Path) -> None:
 
 
 def exchange(one: Path, other: Path) -> bool:
-    """Exchange what two names refer to, atomically; false where the system cannot."""
+    """Exchange two directory entries atomically. Return False if the system does not support this."""
     if sys.platform == "win32":
         return False
     if sys.platform == "darwin":
@@ -59,7 +59,7 @@ def exchange(one: Path, other: Path) -> bool:
 
 
 def make_link(link: Path, directory: Path, place: Path) -> None:
-    """Create `link`, which will be renamed to `place` and then lead to `directory`."""
+    """Create a link to `directory`. Its relative target is correct after a rename to `place`."""
     if sys.platform == "win32":
         import _winapi
 
@@ -69,7 +69,7 @@ def make_link(link: Path, directory: Path, place: Path) -> None:
 
 
 def linked_directory(link: Path) -> Path | None:
-    """Return where a link leads to, without following further links; none: it is no link."""
+    """Return the target of a link without following further links, or None if it is not a link."""
     try:
         target = str(link.readlink())
     except OSError:
@@ -78,16 +78,16 @@ def linked_directory(link: Path) -> Path | None:
 
 
 def replace_link(link: Path, place: Path) -> None:
-    """Rename a link to `place`, where another link may be; atomic where `REPLACES_LINKS`."""
+    """Rename a link to `place` and replace an existing link there; atomic if `REPLACES_LINKS`."""
     if not REPLACES_LINKS and linked_directory(place) is not None:
         place.unlink()
     link.replace(place)
 
 
 def link_file(source: str, target: str) -> None:
-    """Make `target` another name of the file (or link) `source`.
+    """Create `target` as a hard link to the file (or symbolic link) `source`.
 
-    :raises OSError: when this file system has no such links
+    :raises OSError: if the file system does not support hard links
     """
     if os.link in os.supports_follow_symlinks:
         os.link(source, target, follow_symlinks=False)
@@ -96,14 +96,14 @@ def link_file(source: str, target: str) -> None:
 
 
 def lock(stream: TextIO) -> None:
-    """Lock an open file until it is closed, or its process has ended.
+    """Lock an open file. Closing it or the end of the process releases the lock.
 
-    :raises OSError: when another process has locked it
+    :raises OSError: if another process holds the lock
     """
     if sys.platform == "win32":
         import msvcrt
 
-        # Others cannot read what is locked there: so a byte far behind the content is.
+        # Windows prevents reading a locked range, so the lock covers one byte far beyond the content.
         os.lseek(stream.fileno(), 1 << 30, os.SEEK_SET)
         msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK, 1)
     else:
@@ -113,7 +113,7 @@ def lock(stream: TextIO) -> None:
 
 
 def readable(stream: BinaryIO, seconds: float) -> bool:
-    """Wait until an unbuffered pipe can be read, or has ended; false: not within `seconds`."""
+    """Wait up to `seconds` until an unbuffered pipe has data or is closed. Return False after a timeout."""
     if sys.platform == "win32":
         import msvcrt
 
@@ -128,14 +128,14 @@ def readable(stream: BinaryIO, seconds: float) -> bool:
 
 
 def end_with_parent() -> None:
-    """Have this process, a fork, killed when its parent ends; only Linux can."""
+    """Let the system kill this forked process when its parent ends (Linux only)."""
     library = ctypes.CDLL(None)
     if hasattr(library, "prctl"):
         library.prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
 
 
 def user() -> str:
-    """Return the name of the user that this process runs as."""
+    """Return the user name of this process."""
     if sys.platform == "win32":
         return getpass.getuser()
     import pwd
@@ -144,12 +144,12 @@ def user() -> str:
 
 
 def is_root() -> bool:
-    """Return whether this process may become another user."""
+    """Return whether this process may switch to another user."""
     return sys.platform != "win32" and os.geteuid() == 0
 
 
 def become(name: str) -> None:
-    """Run as another user from now on, so that files that are written belong to that user."""
+    """Switch this process to another user, who then owns new files."""
     if sys.platform != "win32":
         import pwd
 

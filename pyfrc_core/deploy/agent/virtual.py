@@ -1,27 +1,26 @@
-"""A virtual robot, seen by the agent that runs on it: where its files are, and how its program is stopped and started.
+"""A virtual robot as the host of the agent.
 
-The virtual robot describes itself in an environment variable of what it runs: no laptop can set it, and a roboRIO does
-not have it.
+The virtual robot describes itself in an environment variable of the agent's process. A laptop cannot set this variable,
+and it does not exist on a roboRIO.
 """
 
 from __future__ import annotations
 
 import json
 import os
-from functools import cache
-from typing import Any
+from collections.abc import Callable
+
+from .robot_paths import RobotPaths
 
 VARIABLE = "PYFRC_VIRTUAL_ROBOT"
-
-Said = dict[str, Any]
 
 
 class VirtualRobotClient:
     """The virtual robot that runs this agent.
 
-    :param root:    the directory that holds its files
+    :param root:    the directory with its files
     :param control: the loopback port of its supervisor
-    :param key:     which the supervisor asks for, in hexadecimal
+    :param key:     the supervisor's authentication key, in hexadecimal
     :param console: the loopback port of its console
     """
 
@@ -32,37 +31,55 @@ class VirtualRobotClient:
         self.console = console
 
     @classmethod
-    def from_text(cls, text: str) -> VirtualRobotClient:
-        """Read what `to_text` has written."""
-        return cls(**json.loads(text))
+    def from_environment(cls) -> VirtualRobotClient | None:
+        """Return the virtual robot that runs this agent, or None on a roboRIO."""
+        text = os.environ.get(VARIABLE)
+        return None if text is None else cls(**json.loads(text))
 
     def to_text(self) -> str:
         """Return the value of the environment variable."""
         return json.dumps(vars(self))
 
+    @property
+    def paths(self) -> RobotPaths:
+        return RobotPaths(self.root)
+
+    @property
+    def console_ports(self) -> tuple[int, ...]:
+        return (self.console,)
+
+    def has_kill_script(self) -> bool:
+        """Return whether the program can be stopped and started."""
+        return True
+
+    def other_languages(self) -> list[str]:
+        """Return nothing: a virtual robot runs only programs in Python."""
+        return []
+
     def processes(self) -> set[int]:
-        """Return the processes of its robot program."""
-        return set(self._ask("processes"))
+        """Return the process ids of the robot program."""
+        return set(self._request("processes"))
 
-    def stop(self) -> None:
-        """Stop its program; return when it has ended."""
-        self._ask("stop")
+    def is_running(self, process: int) -> bool:
+        """Return whether a process of the program still runs."""
+        return process in self.processes()
 
-    def restart(self) -> None:
-        """Stop its program and start what is current; return when the old one has ended."""
-        self._ask("restart")
+    def serves_network_tables(self, process: int) -> bool | None:
+        """Return None: each virtual robot on a computer has another port."""
+        return None
 
-    def _ask(self, request: str) -> list[int]:
+    def stop(self, start: bool, meanwhile: Callable[[], None] = lambda: None) -> bool:
+        """Stop the program, and start the current one if wanted. Return when the old one has ended.
+
+        :return: False, since the program always ends
+        """
+        self._request("restart" if start else "stop")
+        return False
+
+    def _request(self, name: str) -> list[int]:
         # Imported here: a roboRIO does not need it.
         from multiprocessing.connection import Client
 
         with Client(("127.0.0.1", self.control), authkey=bytes.fromhex(self.key)) as connection:
-            connection.send(request)
+            connection.send(name)
             return list(connection.recv())
-
-
-@cache
-def virtual_robot() -> VirtualRobotClient | None:
-    """Return the virtual robot that runs this agent; none on a roboRIO."""
-    text = os.environ.get(VARIABLE)
-    return None if text is None else VirtualRobotClient.from_text(text)

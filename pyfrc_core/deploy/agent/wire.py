@@ -1,6 +1,6 @@
-"""Frames over a pair of byte streams: JSON for what is said, compressed pieces for contents.
+"""Frames over a pair of byte streams: messages in JSON, and compressed chunks of file contents.
 
-A frame is the length of its body in four bytes (big-endian), one byte for its kind, and the body.
+A frame is the length of its body (four bytes, big-endian), one byte for its kind, and the body.
 """
 
 from __future__ import annotations
@@ -13,52 +13,56 @@ from typing import Any, BinaryIO
 
 from .system import readable
 
-SAID, CONTENT = b"J", b"C"
+MESSAGE, CONTENT = b"J", b"C"
 HEADER = struct.Struct(">Ic")
-#: No longer frame, and no longer JSON in one, is taken; in bytes. A manifest of 100,000 files is within it.
-LONGEST = 1 << 24
-#: Bytes in a piece of contents.
-PIECE = 1 << 15
+#: The maximum length of a frame and of its JSON, in bytes: enough for a manifest of 100,000 files.
+MAX_FRAME_BYTES = 1 << 24
+#: Bytes in a chunk of file contents.
+CHUNK_BYTES = 1 << 15
 
-Said = dict[str, Any]
+Message = dict[str, Any]
 
 
 class WireError(Exception):
-    """What has come is no frame."""
+    """The received data is not a valid frame."""
 
 
 class EndedError(WireError):
-    """The stream has ended, perhaps in the middle of a frame."""
+    """The stream has ended, possibly in the middle of a frame."""
 
 
 def frame(kind: bytes, body: bytes) -> bytes:
-    """A frame as it goes over the wire."""
+    """Return the bytes of a frame."""
     return HEADER.pack(len(body), kind) + body
 
 
-def said_frame(said: Said) -> bytes:
-    """A frame with something said."""
-    return frame(SAID, zlib.compress(json.dumps(said, separators=(",", ":")).encode()))
+def message_frame(message: Message) -> bytes:
+    """Return the bytes of a frame with a message."""
+    return frame(MESSAGE, zlib.compress(json.dumps(message, separators=(",", ":")).encode()))
 
 
-def read_frame(read: Callable[[int], bytes], longest: int = LONGEST) -> tuple[bytes, bytes]:
-    """The next frame's kind and body; `read` gives exactly so many bytes, fewer only at the end of the stream."""
+def read_frame(read: Callable[[int], bytes], longest: int = MAX_FRAME_BYTES) -> tuple[bytes, bytes]:
+    """Return the kind and body of the next frame.
+
+    :param read: returns the requested number of bytes; fewer only at the end of the stream
+    :raises WireError: if the data is not a frame, or the frame is too long
+    """
     header = read(HEADER.size)
     if len(header) < HEADER.size:
         raise EndedError("the stream has ended")
     length, kind = HEADER.unpack(header)
-    if kind not in (SAID, CONTENT) or length > longest:
-        raise WireError(f"this is no frame: {header!r}")
+    if kind not in (MESSAGE, CONTENT) or length > longest:
+        raise WireError(f"this is not a frame: {header!r}")
     body = read(length)
     if len(body) < length:
         raise EndedError("the stream has ended in the middle of a frame")
     return kind, body
 
 
-def text_in(kind: bytes, body: bytes, longest: int = LONGEST) -> bytes:
-    """Return the JSON of what a frame says."""
-    if kind != SAID:
-        raise WireError("contents have come where something was to be said")
+def unpack_message(kind: bytes, body: bytes, longest: int = MAX_FRAME_BYTES) -> bytes:
+    """Return the JSON text of a message frame."""
+    if kind != MESSAGE:
+        raise WireError("received file contents instead of a message")
     try:
         unpacking = zlib.decompressobj()
         text = unpacking.decompress(body, longest)
@@ -69,62 +73,62 @@ def text_in(kind: bytes, body: bytes, longest: int = LONGEST) -> bytes:
     return text
 
 
-def said_in(kind: bytes, body: bytes) -> Said:
-    """Return what a frame says."""
+def parse_message(kind: bytes, body: bytes) -> Message:
+    """Return the message of a frame."""
     try:
-        said = json.loads(text_in(kind, body))
+        message = json.loads(unpack_message(kind, body))
     except (ValueError, RecursionError) as error:
         raise WireError(f"a frame cannot be read: {error}") from error
-    if not isinstance(said, dict):
+    if not isinstance(message, dict):
         raise WireError("a frame does not hold one JSON object")
-    return said
+    return message
 
 
 class Wire:
-    """The robot's end: standard input and output.
+    """The robot's end of the connection: standard input and output.
 
-    :param patience: seconds for which a transaction waits for the next byte, before it takes the laptop for gone
+    :param silence_limit: seconds after which a silent laptop counts as disconnected, while `limits_silence` is set
     """
 
-    def __init__(self, source: BinaryIO, target: BinaryIO, patience: float = 20.0) -> None:
+    def __init__(self, source: BinaryIO, target: BinaryIO, silence_limit: float = 20.0) -> None:
         self._source = source
         self._target = target
-        self._patience = patience
-        #: Whether a laptop that says nothing for so long is taken for gone.
-        self.impatient = False
+        self._silence_limit = silence_limit
+        #: Whether a silent laptop counts as disconnected.
+        self.limits_silence = False
 
-    def say(self, **said: Any) -> None:
-        """Send something said."""
-        self._target.write(said_frame(said))
+    def send(self, **message: Any) -> None:
+        """Send a message."""
+        self._target.write(message_frame(message))
         self._target.flush()
 
-    def hear(self) -> Said:
-        """What is said next; contents that were still under way when a deploy was refused are passed over."""
+    def receive(self) -> Message:
+        """Return the next message. Contents that were already sent when a deploy was refused are skipped."""
         kind, body = read_frame(self._read)
         while kind == CONTENT:
             kind, body = read_frame(self._read)
-        return said_in(kind, body)
+        return parse_message(kind, body)
 
-    def content(self) -> bytes:
-        """The next piece of contents, compressed."""
+    def receive_contents(self) -> bytes:
+        """Return the next chunk of file contents, compressed."""
         kind, body = read_frame(self._read)
         if kind != CONTENT:
-            raise WireError("something was said where contents were to come")
+            raise WireError("received a message instead of file contents")
         return body
 
-    def pending(self) -> bool:
-        """Whether something has come, or the other end is gone."""
+    def has_input(self) -> bool:
+        """Return whether data has arrived, or the connection is closed."""
         return readable(self._source, 0)
 
     def _read(self, count: int) -> bytes:
-        # The source is unbuffered, so that `readable` sees all that has come.
-        pieces = []
+        # The source is unbuffered, so that `readable` detects all data that has arrived.
+        chunks = []
         while count:
-            if self.impatient and not readable(self._source, self._patience):
-                raise WireError(f"nothing has come for {self._patience} s")
-            piece = self._source.read(count)
-            if not piece:
+            if self.limits_silence and not readable(self._source, self._silence_limit):
+                raise WireError(f"no data for {self._silence_limit} s")
+            chunk = self._source.read(count)
+            if not chunk:
                 break
-            pieces.append(piece)
-            count -= len(piece)
-        return b"".join(pieces)
+            chunks.append(chunk)
+            count -= len(chunk)
+        return b"".join(chunks)

@@ -1,10 +1,10 @@
-"""Whether a program that was started runs: judged from its processes and its output.
+"""Decides from a program's processes and output whether it has started.
 
-`StartMonitor` is a state machine. It is given the time and what was seen; it reads no clock, looks at no process and
-never waits, so that each order of events can be tested.
+`StartMonitor` is a state machine. Its caller passes the time and observations. It reads no clock, inspects no process
+and never waits, so that tests can cover every order of events.
 
-A roboRIO starts a program that has ended again at once. So a program that crashes is seen as a process that is replaced
-by another; a program that runs keeps its process.
+A roboRIO restarts a program immediately after its end. A crashing program is therefore visible as a process that is
+replaced by another. A working program keeps its process.
 """
 
 from __future__ import annotations
@@ -12,56 +12,56 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-#: The verdicts. `STARTING`: the process lives, and has not reported the end of its start within the limit.
-#: `UNHEARD`: the process has lived for `unheard` seconds, and the console is silent, or the program reports no start.
+#: The verdicts. `STARTING`: the process runs, and has not reported the end of its start within the time limit.
+#: `UNHEARD`: the process has run for `unheard` seconds, and the console is silent or the program does not report.
 RUNNING, ENDED, STARTING, UNHEARD = "running", "ended", "starting", "unheard"
 VERDICTS = (RUNNING, ENDED, STARTING, UNHEARD)
 
 #: WPILib's report that `robotInit` is over.
 STARTED = "Robot program startup complete"
 _TRACEBACK = "Traceback (most recent call last):"
-#: WPILib's report that the program is over. A thread of the program may keep its process alive all the same.
+#: WPILib's report that the program has ended. A thread of the program may still keep its process alive.
 _OVER = ("The robot program quit unexpectedly", "Unexpected return from startCompetition()")
-#: What a new process prints before any robot code can report that it has started.
+#: Output of a new process, before robot code can report its start.
 _BEGINNING = re.compile(r"Robot program starting|WPILib version \d|registered SIGUSR2 for PID \d")
 
-#: Seconds for which a program has to live on after its start: half of what the start took, within these bounds. A slow
-#: robot needs longer for its first loop as well. The shortest sees a crash half a second after a start of no time.
-_SHORTEST_TRIAL, _LONGEST_TRIAL = 0.6, 2.0
-#: Seconds for which it has to live on after a traceback. That need not be its end: code logs errors that it has caught.
+#: Bounds, in seconds, of the trial period after the start, which is half as long as the start itself. A slow robot also
+#: needs longer for its first loop. The minimum detects a crash 0.5 s after a very short start.
+_MIN_TRIAL, _MAX_TRIAL = 0.6, 2.0
+#: Seconds for which it must run after a traceback. A traceback does not always mean a crash: code logs caught errors.
 _AFTER_TRACEBACK = 3.0
-#: Seconds after the restart in which one process may be replaced without a traceback: the robot's kill script and its
-#: supervisor may both start the program.
+#: Seconds after the restart in which one process may be replaced without a traceback, since the kill script and the
+#: robot's supervisor may both start the program.
 _DOUBLE_START = 2.0
-#: Seconds without any process after which the robot counts as not starting the program; and the same after a traceback.
+#: Seconds without a process after which the program counts as ended; the second value applies after a traceback.
 _ABSENT, _ABSENT_AFTER_TRACEBACK = 10.0, 2.0
-#: Seconds in which the last output of an ended program may still arrive.
-_LAST_OUTPUT = 0.5
-#: Seconds in which output that arrives may still be of the process before.
+#: Seconds to wait for the last output of an ended program.
+_FINAL_OUTPUT = 0.5
+#: Seconds after the end of a process in which its output may still arrive.
 _LATE_OUTPUT = 0.3
 
 
 class StartMonitor:
-    """Judges the start of a program.
+    """Observes the start of a program and gives a verdict.
 
-    :param old:     the processes of the program before, from a moment before the restart
-    :param reports: whether the program reports that `robotInit` is over
+    :param old:     processes of the old program, from just before the restart
+    :param reports: whether the program reports the end of `robotInit`
     """
 
     def __init__(self, old: Iterable[int], reports: bool = True) -> None:
         self._old = frozenset(old)
         self._reports = reports
-        #: The program's process, while there is one.
+        #: The program's current process, if any.
         self.process: int | None = None
         #: When it was first seen.
         self._since = 0.0
-        self._others: set[int] = set()  # its children, which may outlive it
-        #: Whether anything was printed by the new program.
+        self._others: set[int] = set()  # its child processes, which may outlive it
+        #: Whether output of the new program was received.
         self.heard = False
-        #: Whether a process was ever seen.
+        #: Whether a process of the new program was ever found.
         self.seen = False
         self._old_seen = float("-inf")
-        #: For how many seconds a program was seen that has ended since: the one that decides the verdict.
+        #: For how many seconds the ended process that decides the verdict has run.
         self.lived = 0.0
         self._restarted: float | None = None
         self._absent: float | None = None
@@ -70,27 +70,28 @@ class StartMonitor:
         self._forget()
 
     def _forget(self) -> None:
-        """The evidence about the current process."""
+        """Reset the observations of the current process."""
         self._begun = False
         self._started: float | None = None
         self._traceback: float | None = None
         self._over: float | None = None
 
     def restarted(self, now: float) -> None:
-        """The kill script has ended: from now on, a process that ends is evidence."""
+        """Record that the kill script has ended: from now on, the end of a process counts."""
         self._restarted = now
 
     @property
     def is_restarted(self) -> bool:
-        """Whether the kill script has ended."""
+        """Return whether the kill script has ended."""
         return self._restarted is not None
 
-    def see(self, now: float, processes: Iterable[int], text: str = "") -> bool:
-        """Take in one look at the robot.
+    def observe(self, now: float, processes: Iterable[int], text: str = "") -> bool:
+        """Record one observation.
 
-        :param processes: those of any robot program, old and new
-        :param text: the lines that were printed since the last look, and before `processes` were looked at
-        :return: whether the text is the new program's
+        :param now: the time in seconds
+        :param processes: processes of any robot program, old and new
+        :param text: lines received since the last observation, read before `processes` were listed
+        :return: whether the text is output of the new program
         """
         found, lines = frozenset(processes), text.splitlines()
         if found & self._old:
@@ -106,7 +107,7 @@ class StartMonitor:
             self._read(now, lines)
         elif fresh:
             self._begin(now, min(fresh))
-            self._read(now, lines[_last_beginning(lines) :])  # what stands before may be of the process before
+            self._read(now, lines[_last_beginning(lines) :])  # earlier lines may belong to the previous process
         elif now - self._old_seen > _LATE_OUTPUT:
             self._read(now, lines)
         self._others |= fresh.difference([self.process])
@@ -140,20 +141,20 @@ class StartMonitor:
                 self.lived = now - self._since
 
     def verdict(self, now: float, limit: float, unheard: float) -> str | None:
-        """Return what has become of the program, or None while that is open.
+        """Return the verdict, or None while it is undecided.
 
         :param limit:   seconds after the restart at which a start is reported as slow
-        :param unheard: seconds of its process after which a program is judged by that alone, if its console is silent
-            or it reports no start
+        :param unheard: seconds after which a program is judged by its process alone, if the console is silent or the
+            program does not report its start
         """
         if self._restarted is None:
             return None
         if self._dead is not None:
-            return ENDED if now - self._dead >= _LAST_OUTPUT else None
+            return ENDED if now - self._dead >= _FINAL_OUTPUT else None
         if self.process is None:
             return self._absent_verdict(now, limit)
         if self._over is not None:
-            return ENDED if now - self._over >= 2 * _LAST_OUTPUT else None
+            return ENDED if now - self._over >= 2 * _FINAL_OUTPUT else None
         left = self.trial_left(now)
         if left is not None:
             return None if left else RUNNING
@@ -168,16 +169,16 @@ class StartMonitor:
         return ENDED if now - since >= min(patience, limit) else None
 
     def trial_left(self, now: float) -> float | None:
-        """Return for how many seconds a program has to live on; None before it has started, and after its end."""
+        """Return the remaining seconds of the trial period; None before the start and after the end."""
         if self._started is None or self.process is None or self._over is not None or self._dead is not None:
             return None
-        trial = min(_LONGEST_TRIAL, max(_SHORTEST_TRIAL, (self._started - self._since) / 2))
-        if self._ends:  # one was replaced already
-            trial = _LONGEST_TRIAL
+        trial = min(_MAX_TRIAL, max(_MIN_TRIAL, (self._started - self._since) / 2))
+        if self._ends:  # a process was already replaced
+            trial = _MAX_TRIAL
         return max(0.0, self._started + trial - now, self._proof_left(now))
 
     def _proof_left(self, now: float) -> float:
-        """For how many seconds a process has to live on after a traceback, if there was one."""
+        """Return for how many seconds a process must still run after a traceback."""
         return 0.0 if self._traceback is None else max(0.0, self._traceback + _AFTER_TRACEBACK - now)
 
     def seconds(self, now: float) -> float:
@@ -185,10 +186,10 @@ class StartMonitor:
         return 0.0 if self._restarted is None else now - self._restarted
 
     def age(self, now: float) -> float:
-        """Return for how many seconds the current process has been seen; 0 without one."""
+        """Return for how many seconds the current process has been observed; 0 without one."""
         return now - self._since if self.process is not None else 0.0
 
 
 def _last_beginning(lines: list[str]) -> int:
-    """The index of the last line with which a process begins; the number of lines without one."""
+    """Return the index of the last line that a new process prints first, or the number of lines if there is none."""
     return max((index for index, line in enumerate(lines) if _BEGINNING.search(line)), default=len(lines))

@@ -1,7 +1,7 @@
-"""How a roboRIO is prepared for Python programs: one wording for `pyfrc deploy`, `pyfrc doctor` and docs/deploy.md.
+"""Instructions for preparing a roboRIO, shared by `pyfrc deploy`, `pyfrc doctor` and docs/deploy.md.
 
-Python, WPILib and the project's packages for the robot's processor are installed by the season's own tool, the command
-`robotpy` of the package `robotpy`. It is not a dependency of pyfrc: a robot needs it once after it was imaged.
+The `robotpy` command of the package `robotpy` installs Python, WPILib and the project's packages on the robot. It is
+not a dependency of pyfrc, since it is needed only once after imaging.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 from ..season import CURRENT, SEASONS
 
-#: The image that a virtual robot names: it is none, and needs none.
+#: The image name of a virtual robot, which has no image.
 VIRTUAL_IMAGE = "virtual robot"
 
-#: The commands, in their order; the second needs the internet, the third the robot.
+#: The commands in order. The second needs the internet, the third the robot.
 COMMANDS = ("python -m pip install robotpy", "python -m robotpy sync", "python -m robotpy deploy")
 
 _SECTION = 'docs/deploy.md, "A freshly imaged robot", has every step.'
@@ -32,12 +32,12 @@ PREPARE = (
 )
 
 _REMOVE_OTHER_LANGUAGES = "To remove it: pyfrc undeploy --java-cpp"
-_MOST_NAMED = 2  # files of other languages
+_MAX_NAMED = 2  # files of other languages
 
-#: How the robot gets what ``[tool.robotpy]`` in pyproject.toml asks for.
+#: How to install the packages in ``[tool.robotpy]`` on the robot.
 INSTALL_PACKAGES = f"with internet: {COMMANDS[1]}; then at the robot: {COMMANDS[2]}"
 
-#: How a virtual robot gets a package; the package's name follows.
+#: How to install a package for a virtual robot, without the package's name.
 INSTALL_FOR_VIRTUAL_ROBOT = "in the environment in which pyfrc virtual-robot runs: python -m pip install"
 
 _IMAGE_VERSION = re.compile(r"FRC_roboRIO2?_((20[0-9]{2})_v[0-9.]+)")
@@ -45,11 +45,11 @@ _IMAGE_VERSION = re.compile(r"FRC_roboRIO2?_((20[0-9]{2})_v[0-9.]+)")
 
 @dataclass(frozen=True)
 class Obstacle:
-    """Why a robot is not ready for a program.
+    """A reason why a robot is not ready for a program.
 
-    :param text:    what is wrong
-    :param remedy:  what to do about it
-    :param certain: whether no program could run; otherwise it might, and the user may try
+    :param text:    the problem
+    :param remedy:  how to solve it
+    :param certain: whether programs cannot run at all; otherwise they might run
     """
 
     text: str
@@ -58,33 +58,32 @@ class Obstacle:
 
 
 def other_languages_notice(found: Sequence[str]) -> tuple[str, str]:
-    """Return what Java or C++ costs on a robot, and how to remove it.
+    """Return a notice about programs in Java and C++ on a robot, and how to remove them.
 
-    :param found: files and directories of programs in these languages
+    :param found: their files and directories
     """
-    named = ", ".join(found[:_MOST_NAMED])
-    if len(found) > _MOST_NAMED:
-        named += f" and {len(found) - _MOST_NAMED} more"
+    named = ", ".join(found[:_MAX_NAMED])
+    if len(found) > _MAX_NAMED:
+        named += f" and {len(found) - _MAX_NAMED} more"
     return f"Java or C++ takes disk space and memory on the robot ({named})", _REMOVE_OTHER_LANGUAGES
 
 
 def same_version_on_both(version: str) -> str:
-    """Return how the robot gets the WPILib that this computer has.
+    """Return how to install this computer's version of WPILib on the robot.
 
-    :param version: of `wpilib`, here
+    :param version: the version of `wpilib` on this computer
     """
     return (
-        f'Have the same on both: robotpy_version = "{version}" under [tool.robotpy] in pyproject.toml; '
+        f'Use the same version on both: robotpy_version = "{version}" under [tool.robotpy] in pyproject.toml; '
         f"{INSTALL_PACKAGES}."
     )
 
 
 def image_problem(image: str | None, wpilib: str) -> str | None:
-    """Return why a robot's image is not one that the season's tools accept.
+    """Return why the season's tools do not accept a robot's image, or None if they accept it.
 
-    :param image:  as the robot gives it, ``FRC_roboRIO_2026_v1.2``; none: unknown
+    :param image:  the robot's image, such as ``FRC_roboRIO_2026_v1.2``; None if unknown
     :param wpilib: the version of `wpilib` on this computer
-    :return: none, where it is accepted
     """
     if image == VIRTUAL_IMAGE:
         return None
@@ -96,16 +95,17 @@ def image_problem(image: str | None, wpilib: str) -> str | None:
         return None
     season = wpilib.partition(".")[0]
     if year != season:
-        return f"the robot's image is of {year} ({version}), wpilib {wpilib} needs that of {season}"
-    return f"the robot's image is {version}, the season's is {_NEWEST_IMAGE}"
+        return f"the robot's image is of {year} ({version}), but wpilib {wpilib} needs the image of {season}"
+    return f"the robot's image is {version}, but this season's image is {_NEWEST_IMAGE}"
 
 
 def python_problem(python: str, wpilib: str) -> str | None:
-    """Return why a robot's Python is not the season's. A virtual robot has this computer's, which is fine, too.
+    """Return why a robot's Python is not the season's version, or None if it is.
 
-    :param python: its version, ``3.14.0``
+    This computer's version is accepted as well, for virtual robots.
+
+    :param python: its version, such as ``3.14.0``
     :param wpilib: the version of `wpilib` on this computer
-    :return: none, where it is the right one
     """
     season = SEASONS.get(int(wpilib.partition(".")[0]))
     if season is None:

@@ -1,7 +1,7 @@
-"""What the robot sends, checked field by field: it may be broken, or a computer that pretends to be a robot.
+"""Validation of the robot's messages, field by field: a robot may be broken, or another computer may imitate it.
 
-By hand and not with pydantic, whose import takes longer (0.1 to 0.3 s) than all the rest of a deploy before the first
-round trip. Texts that are shown in one line are made safe for a terminal here.
+Not done with pydantic, whose import takes longer (0.1 to 0.3 s) than all other work of a deploy before the first round
+trip. Texts for display in one line are made safe for a terminal here.
 """
 
 from __future__ import annotations
@@ -12,44 +12,45 @@ from typing import Any, TypeVar
 
 from ..terminal_text import one_line
 
-#: No size or number that a robot sends is larger.
-_LARGEST = 1 << 53
-#: Values in an answer, counted by the brackets and commas of its JSON, also those in texts: a path may have some.
-_MOST_VALUES = 150_000
+#: The maximum of all numbers from a robot.
+_MAX_NUMBER = 1 << 53
+#: The maximum number of values in a message, estimated from the brackets and commas in its JSON.
+_MAX_VALUES = 150_000
 
 Kind = TypeVar("Kind")
 
 
-class AnswerError(Exception):
-    """A field is missing, or is not what it should be."""
+class ResponseError(Exception):
+    """A field is missing or invalid."""
 
 
 def parse_json(text: bytes) -> dict[str, Any]:
-    """Return the object in an answer.
+    """Return the JSON object in a message.
 
-    :raises AnswerError: when it is no object in JSON, or has too many values: each takes far more memory than its text
+    :raises ResponseError: if it is not a JSON object, or has too many values, which need far more memory than their
+        text
     """
-    if sum(map(text.count, (b",", b"[", b"{"))) > _MOST_VALUES:
-        raise AnswerError("a frame has too many values")
+    if sum(map(text.count, (b",", b"[", b"{"))) > _MAX_VALUES:
+        raise ResponseError("a frame has too many values")
     try:
         value = json.loads(text)
     except RecursionError as error:
-        raise AnswerError("values are nested too deeply in a frame") from error
+        raise ResponseError("values are nested too deeply in a frame") from error
     except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise AnswerError(f"a frame is not JSON: {error}") from error
-    except ValueError as error:  # Python's own message is about a setting of the interpreter
-        raise AnswerError("a number in a frame has too many digits") from error
+        raise ResponseError(f"a frame is not JSON: {error}") from error
+    except ValueError as error:  # Python's message refers to a setting of the interpreter
+        raise ResponseError("a number in a frame has too many digits") from error
     if not isinstance(value, dict):
-        raise AnswerError("a frame does not hold one JSON object")
+        raise ResponseError("a frame does not hold one JSON object")
     return value
 
 
 class Fields:
-    """An object that the robot has sent. Each method returns a field, or raises `AnswerError`."""
+    """An object from the robot. Each method returns a field, or raises `ResponseError` if it is missing or invalid."""
 
-    def __init__(self, value: object, name: str = "its answer") -> None:
+    def __init__(self, value: object, name: str = "its response") -> None:
         if not isinstance(value, dict):
-            raise AnswerError(f"{name} is {_shown(value)}, not an object")
+            raise ResponseError(f"{name} is {_shown(value)}, not an object")
         self._fields: dict[str, Any] = value
         self._name = name
 
@@ -57,79 +58,79 @@ class Fields:
         return key in self._fields
 
     def text(self, key: str) -> str:
-        """A text of any length, as it was sent."""
+        """Return a text unchanged."""
         return self._of(key, str, "a text")
 
     def line(self, key: str) -> str:
-        """A text in one line."""
+        """Return a text as one line that is safe for a terminal."""
         return one_line(self.text(key))
 
     def line_or_none(self, key: str) -> str | None:
-        """The same, or none."""
+        """Return a text as one line, or None."""
         return None if self._is_null(key) else self.line(key)
 
     def text_or_none(self, key: str) -> str | None:
-        """A text of any length, or none."""
+        """Return a text unchanged, or None."""
         return None if self._is_null(key) else self.text(key)
 
     def flag(self, key: str) -> bool:
-        """Whether."""
+        """Return a Boolean."""
         return self._of(key, bool, "true or false")
 
     def flag_or_none(self, key: str) -> bool | None:
-        """The same, or none."""
+        """Return a Boolean, or None."""
         return None if self._is_null(key) else self.flag(key)
 
     def count(self, key: str) -> int:
-        """A number from 0 on."""
+        """Return an integer that is not negative."""
         number = self._of(key, int, "a number")
-        if not 0 <= number <= _LARGEST:
-            raise AnswerError(f"{key!r} is {_shown(number)}, out of range")
+        if not 0 <= number <= _MAX_NUMBER:
+            raise ResponseError(f"{key!r} is {_shown(number)}, out of range")
         return number
 
     def count_or_none(self, key: str) -> int | None:
-        """The same, or none."""
+        """Return an integer that is not negative, or None."""
         return None if self._is_null(key) else self.count(key)
 
     def seconds(self, key: str) -> float:
-        """A time from 0 on."""
+        """Return a time in seconds that is not negative."""
         number = self._fields.get(key)
-        if not isinstance(number, (int, float)) or number is True or not 0 <= number <= _LARGEST:
-            raise AnswerError(f"{key!r} is {_shown(number)}, not a time")
+        if not isinstance(number, (int, float)) or number is True or not 0 <= number <= _MAX_NUMBER:
+            raise ResponseError(f"{key!r} is {_shown(number)}, not a time")
         return float(number)
 
     def seconds_or_none(self, key: str) -> float | None:
-        """The same, or none."""
+        """Return a time in seconds that is not negative, or None."""
         return None if self._is_null(key) else self.seconds(key)
 
     def one_of(self, key: str, known: Sequence[str]) -> str:
-        """A word of those that are known."""
+        """Return a text that is one of `known`."""
         word = self.text(key)
         if word not in known:
-            raise AnswerError(f"{key!r} is {_shown(word)}, not one of: {', '.join(known)}")
+            raise ResponseError(f"{key!r} is {_shown(word)}, not one of: {', '.join(known)}")
         return word
 
     def texts(self, key: str) -> tuple[str, ...]:
-        """A list of texts, as they were sent."""
+        """Return a list of texts, unchanged."""
         values = self._of(key, list, "a list")
         if not all(isinstance(each, str) for each in values):
-            raise AnswerError(f"{key!r} is not a list of texts")
+            raise ResponseError(f"{key!r} is not a list of texts")
         return tuple(values)
 
     def objects(self, key: str) -> list[Fields]:
-        """A list of objects."""
+        """Return a list of objects."""
         return [Fields(each, repr(key)) for each in self._of(key, list, "a list")]
 
     def object(self, key: str) -> Fields:
-        """An object."""
+        """Return an object."""
         return Fields(self._of(key, dict, "an object"), repr(key))
 
     def record(self, key: str) -> dict[str, str]:
-        """An object of texts, as a file on the robot has it: whatever it holds, in lines; empty where it is none."""
+        """Return an object's fields as lines that are safe for a terminal; empty if it is not an object."""
         return _record(self._fields.get(key))
 
     def record_in_text(self, key: str) -> dict[str, str]:
-        """The same, in a text with JSON."""
+        """Return the same for a text that contains JSON."""
         try:
             return _record(json.loads("{}" if self._is_null(key) else self.text(key) or "{}"))
         except (ValueError, RecursionError):
@@ -140,10 +141,10 @@ class Fields:
 
     def _of(self, key: str, kind: type[Kind], what: str) -> Kind:
         if key not in self._fields:
-            raise AnswerError(f"{key!r} is missing in {self._name}")
+            raise ResponseError(f"{key!r} is missing in {self._name}")
         value = self._fields[key]
-        if not isinstance(value, kind) or type(value) is not kind:  # true is no number
-            raise AnswerError(f"{key!r} is {_shown(value)}, not {what}")
+        if not isinstance(value, kind) or type(value) is not kind:  # True is an int in Python, but not a number in JSON
+            raise ResponseError(f"{key!r} is {_shown(value)}, not {what}")
         return value
 
 
@@ -158,5 +159,5 @@ def _shown(value: object) -> str:
         return "an object" if isinstance(value, dict) else "a list"
     try:
         return one_line(json.dumps(value), 40)
-    except ValueError:  # Python writes no integers of thousands of digits
+    except ValueError:  # Python refuses to print integers with thousands of digits
         return "a huge number"

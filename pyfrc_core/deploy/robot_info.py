@@ -1,4 +1,4 @@
-"""What is on a robot, for people and for tools."""
+"""Information about a robot, as text or JSON."""
 
 from __future__ import annotations
 
@@ -7,24 +7,27 @@ from dataclasses import asdict
 
 from ..project import Project
 from .facts import Release, RobotFacts
-from .progress import Conversation
-from .reach import RobotChoice, chosen_target, robot_of
+from .progress import UserInterface
+from .target_connection import RobotChoice, choose_target, connected_agent
 
 _ENDED = "ended at its last watched start"
 
 
-def show_info(project: Project | None, choice: RobotChoice, talk: Conversation) -> None:
-    """Tell what is on the robot: which program, who has deployed it, and which releases are kept."""
-    with robot_of(project, chosen_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
+def show_info(project: Project | None, choice: RobotChoice, talk: UserInterface) -> None:
+    """Show the robot's program, who deployed it, and the kept releases."""
+    with connected_agent(project, choose_target(project, choice, talk.ask), choice, talk.progress) as (
+        connection,
+        robot,
+    ):
         name, key = connection.recognized.name, connection.key.fingerprint
-        told = {"host": connection.host, "robot_name": name or None, "host_key": key, **asdict(robot.facts)}
-        talk.progress.result(told, info_text(robot.facts, name), asked_for=True)
+        info = {"host": connection.host, "robot_name": name or None, "host_key": key, **asdict(robot.facts)}
+        talk.progress.result(info, info_text(robot.facts, name), requested=True)
 
 
 def info_text(facts: RobotFacts, name: str) -> str:
-    """Return what is on the robot, for people.
+    """Return the information as text.
 
-    :param name: the robot's name; empty: it has none
+    :param name: the robot's name; empty if it has none
     """
     lines = [
         *([f"name       {name}"] if name else []),
@@ -42,7 +45,7 @@ def info_text(facts: RobotFacts, name: str) -> str:
 
 
 def _program_state(facts: RobotFacts) -> str:
-    """What is known of the program: a robot starts one that crashes again and again, so a process alone says little."""
+    """Return the program's state. Robots restart a crashing program forever, so a process alone proves little."""
     age = "" if facts.program_age is None else f"{facts.program_age:.{0 if facts.program_age >= 10 else 1}f} s"
     if any(each.number == facts.current and each.ended for each in facts.releases):
         now = f"started again {age} ago" if age else "started again"
@@ -53,8 +56,8 @@ def _program_state(facts: RobotFacts) -> str:
 
 
 def _release_line(release: Release, current: int | None) -> str:
-    told = dict(_deployed(release.deploy_json))
-    parts = [told.get("date", "date unknown"), told.get("by"), told.get("commit")]
+    deployed = dict(_deployed(release.deploy_json))
+    parts = [deployed.get("date", "date unknown"), deployed.get("by"), deployed.get("commit")]
     parts += ["left by another tool"] if release.taken else []
     if release.ran or release.ended:
         parts.append(_ENDED if release.ended else "seen to run")
@@ -63,7 +66,7 @@ def _release_line(release: Release, current: int | None) -> str:
 
 
 def _deployed(record: Mapping[str, str]) -> list[tuple[str, str]]:
-    """What ``deploy.json`` says, in our words."""
+    """Return the rows to show for a ``deploy.json``."""
     rows = []
     if "deploy-user" in record:
         rows.append(("by", f"{record['deploy-user']} on {record.get('deploy-host', 'an unknown computer')}"))
@@ -73,7 +76,7 @@ def _deployed(record: Mapping[str, str]) -> list[tuple[str, str]]:
         rows.append(("from", record["code-path"]))
     if "git-desc" in record:
         description = record["git-desc"]
-        dirty = ", with changes that are not committed" if description.endswith("-dirty") else ""
+        dirty = ", with uncommitted changes" if description.endswith("-dirty") else ""
         branch = f" on {record['git-branch']}" if "git-branch" in record else ""
         rows.append(("commit", f"{description.removesuffix('-dirty')}{branch}{dirty}"))
     return rows

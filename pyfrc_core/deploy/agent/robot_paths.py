@@ -1,4 +1,4 @@
-"""Where things are on a roboRIO, what a failure is called, and the lock that a deploy holds."""
+"""Paths on a roboRIO, the agent's exception, and the deploy lock."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from .system import lock
 HOME = "/home/lvuser"
 CODE = HOME + "/py"
 COMMAND, DEBUG_COMMAND = "robotCommand", "robotDebugCommand"
-#: Seconds in which a lock may still be let go by the agent of a deploy that was cut a moment ago.
+#: Seconds to wait for a lock: the agent of a deploy that was just interrupted may still hold it.
 _GRACE = 2.0
 
 
 class Refusal(Exception):
-    """What was asked for cannot be done; nothing has been changed.
+    """The request cannot be carried out.
 
-    :param kind:   a word for programs: ``locked``, ``space``, ...
-    :param remedy: what the user can do about it
+    :param kind:   the error's name in the protocol: ``locked``, ``space``, ...
+    :param remedy: what the user can do
     """
 
     def __init__(self, kind: str, message: str, remedy: str = "", **details: Any) -> None:
@@ -32,34 +32,34 @@ class Refusal(Exception):
         self.details = details
 
 
-class Places:
+class RobotPaths:
     """The robot's directories and files.
 
-    :param root: what stands before all of them; on a robot ``/``
+    :param root: the directory that contains all of them; ``/`` on a robot
     """
 
     def __init__(self, root: str = "/") -> None:
         self.root = Path(root)
         self.home = self.of(HOME)
-        #: What the robot starts; a link to a release, or a directory that another tool has made.
+        #: The code that the robot starts: a link to a release, or a directory created by another tool.
         self.code = self.of(CODE)
         self.own = self.home / ".pyfrc"
         self.releases = self.own / "releases"
-        #: Where the next release is put together.
+        #: Where the next release is assembled.
         self.incoming = self.own / "incoming"
         self.lock = self.own / "lock"
         self.debug_flag = self.of("/tmp/frcdebug")
 
     def of(self, path: str) -> Path:
-        """A path of the robot's, as it is to be opened here."""
+        """Return where a path of the robot is in this file system."""
         return self.root / path.lstrip("/")
 
 
 class Lock:
-    """Held by whoever changes the robot's programs; it is let go when its process ends, however that ends."""
+    """The exclusive right to change the robot's programs. The system releases it when the process ends."""
 
-    def __init__(self, places: Places, who: str) -> None:
-        self._file = places.lock
+    def __init__(self, paths: RobotPaths, who: str) -> None:
+        self._file = paths.lock
         self._who = who
         self._stream: TextIO | None = None
 
@@ -70,7 +70,7 @@ class Lock:
             stream = self._file.open("a+", encoding="utf-8")
             try:
                 lock(stream)
-                if self._is_still(stream):
+                if self._is_current(stream):
                     break
             except OSError:
                 if time.monotonic() > give_up:
@@ -90,8 +90,8 @@ class Lock:
         stream.write(json.dumps({"who": self._who}))
         stream.flush()
 
-    def _is_still(self, stream: TextIO) -> bool:
-        """Whether this is the lock's file, and not one that an undeploy has removed while we waited for it."""
+    def _is_current(self, stream: TextIO) -> bool:
+        """Return whether this is still the lock file, and not one that an undeploy has removed meanwhile."""
         try:
             return os.path.samestat(os.fstat(stream.fileno()), self._file.stat())
         except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""A deploy as the robot does it: put the next release together beside the current one, and only then switch."""
+"""The deploy transaction on the robot: assemble the next release beside the current one, then switch to it."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from typing import Any
 
 from .activity import Activity
 from .compiling import CompiledForms, Compiler, compile_below
-from .content_index import DEPLOY_JSON, ContentIndex, Wanted, sha256_of, wanted_of
+from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest, sha256_of
 from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, write_whole
-from .places import COMMAND, DEBUG_COMMAND, Refusal
 from .releases import Record, Releases, start_commands
-from .wire import Said, Wire
+from .robot_paths import COMMAND, DEBUG_COMMAND, Refusal
+from .wire import Message, Wire
 
-#: Bytes to be left free on the robot's disk after a deploy, for the program's own files.
+#: Bytes of disk space that stay free for the program's own files after a deploy.
 _RESERVE = 256 * 1024
 
 
-class Contents:
-    """The contents that come over the wire: one compressed stream of them all, one after the other."""
+class ContentReader:
+    """Reads the file contents that the laptop sends: all of them in one compressed stream."""
 
     def __init__(self, wire: Wire, activity: Activity) -> None:
         self._wire = wire
@@ -32,50 +32,56 @@ class Contents:
         self._unpacking = zlib.decompressobj()
         self._ready = b""
 
-    def write(self, wanted: Wanted, file: Path) -> None:
-        """Write the next one to `file`."""
+    def write(self, wanted: WantedFile, file: Path) -> None:
+        """Write the next content to `file`.
+
+        :raises Refusal: if it does not have the expected hash
+        """
         digest, left = hashlib.sha256(), wanted.size
         with file.open("wb") as stream:
             while left:
-                piece = self._take(left)
-                digest.update(piece)
-                stream.write(piece)
-                left -= len(piece)
-                self._activity.step(len(piece))
+                chunk = self._take(left)
+                digest.update(chunk)
+                stream.write(chunk)
+                left -= len(chunk)
+                self._activity.step(len(chunk))
         if digest.hexdigest() != wanted.sha256:
             raise Refusal("changed", f"{wanted.path} was changed while it was sent", "Deploy again.")
 
     def end(self) -> None:
-        """Hear the end of the stream."""
+        """Read the end of the stream.
+
+        :raises Refusal: if it has more contents
+        """
         while self._ready or not self._unpacking.eof:
             if self._ready or self._unpack():
-                raise Refusal("protocol", "more contents have come than were asked for")
+                raise Refusal("protocol", "received more contents than requested")
 
     def _take(self, most: int) -> bytes:
         while not self._ready:
             if self._unpacking.eof:
-                raise Refusal("protocol", "fewer contents have come than were asked for")
+                raise Refusal("protocol", "received fewer contents than requested")
             self._ready = self._unpack()
-        piece, self._ready = self._ready[:most], self._ready[most:]
-        return piece
+        chunk, self._ready = self._ready[:most], self._ready[most:]
+        return chunk
 
     def _unpack(self) -> bytes:
-        packed = self._unpacking.unconsumed_tail or self._wire.content()
+        packed = self._unpacking.unconsumed_tail or self._wire.receive_contents()
         try:
             return self._unpacking.decompress(packed, BLOCK)
         except zlib.error as error:
-            raise Refusal("protocol", f"the contents cannot be unpacked: {error}") from error
+            raise Refusal("protocol", f"the contents cannot be decompressed: {error}") from error
 
 
 class Deploy:
-    """One deploy; the lock is held, and the last one's debris is gone."""
+    """One deploy. The caller holds the deploy lock and has called `Releases.recover`."""
 
-    def __init__(self, releases: Releases, wire: Wire, request: Said) -> None:
+    def __init__(self, releases: Releases, wire: Wire, request: Message) -> None:
         self._releases = releases
         self._activity = releases.activity
-        self._places = releases.places
+        self._paths = releases.paths
         self._wire = wire
-        self._wanted = wanted_of(request["files"])
+        self._wanted = parse_manifest(request["files"])
         self._about = request.get("deploy_json") or {}
         self._main = str(request["main"])
         self._debug = bool(request.get("debug"))
@@ -83,8 +89,8 @@ class Deploy:
         self._program = frozenset(request.get("program") or ())
         self._commands = start_commands(self._main)
 
-    def run(self) -> Said:
-        """Do it; what is to be told to the laptop."""
+    def run(self) -> Message:
+        """Carry out the deploy, and return the result for the laptop."""
         if self._main not in {each.path for each in self._wanted}:
             raise Refusal("main", f"there is no {self._main} among the files")
         at_hand = ContentIndex(self._releases, self._wanted, self._activity)
@@ -94,17 +100,17 @@ class Deploy:
             _refuse_clashes(wanted, code)
         else:
             wanted = self._wanted
-        at_hand = self._make_room(wanted, at_hand)
+        at_hand = self._check_disk_space(wanted, at_hand)
         missing = at_hand.missing(wanted)
-        self._wire.say(need=[each.path for each in missing], bytes=sum(each.size for each in missing))
+        self._wire.send(need=[each.path for each in missing], bytes=sum(each.size for each in missing))
         current = self._releases.current()
         if not (self._in_place and code is not None) and current is not None and self._is_current(current, at_hand):
-            return self._again(current)
-        self._fill(wanted, missing, at_hand)
-        told = {"files": len(missing), "bytes": sum(each.size for each in missing)}
+            return self._redeploy(current)
+        self._fill_incoming(wanted, missing, at_hand)
+        sent = {"files": len(missing), "bytes": sum(each.size for each in missing)}
         if self._in_place and code is not None:
-            return {**self._overwrite(code, wanted), **told}
-        return {**self._release(), **told}
+            return {**self._overwrite(code, wanted), **sent}
+        return {**self._release(), **sent}
 
     def _is_current(self, current: int, at_hand: ContentIndex) -> bool:
         files = self._releases.record(current).get("files")
@@ -112,8 +118,8 @@ class Deploy:
         same = files == {each.path: each.sha256 for each in self._wanted}
         return same and all(at_hand.has(each, directory) for each in self._wanted)
 
-    def _again(self, current: int) -> Said:
-        """The same files as they are there already: only who has deployed them is new."""
+    def _redeploy(self, current: int) -> Message:
+        """Update only the record of the current release, which already has the same files."""
         directory = self._releases.directory(current)
         record = self._releases.record(current)
         record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
@@ -123,20 +129,23 @@ class Deploy:
         self._switch(current, None)
         return {"release": current, "previous": current, "files": 0, "bytes": 0, "taken": None, "unchanged": True}
 
-    def _make_room(self, wanted: list[Wanted], at_hand: ContentIndex) -> ContentIndex:
-        """Look for room for what is written: contents, and compiled files, up to twice as large as their sources.
+    def _check_disk_space(self, wanted: list[WantedFile], at_hand: ContentIndex) -> ContentIndex:
+        """Check that there is enough disk space, and remove old releases if there is not.
 
-        :return: what is at hand when there is room; old releases may have had to go
+        Contents and compiled files are counted; a compiled file may have twice the size of its source.
+
+        :return: the index of contents, which is new if releases were removed
+        :raises Refusal: if there is not enough disk space
         """
         needed = _RESERVE
         for each in wanted:
             needed += 512
             if at_hand.same_file(each) is None:
                 needed += (each.size + 4095) // 4096 * 4096 * (3 if each.path.endswith(".py") else 1)
-        if free_bytes(self._places.home) < needed:
+        if free_bytes(self._paths.home) < needed:
             self._releases.prune(kept=1)
             at_hand = ContentIndex(self._releases, self._wanted, self._activity)
-        free = free_bytes(self._places.home)
+        free = free_bytes(self._paths.home)
         if free < needed:
             raise Refusal(
                 "space",
@@ -147,9 +156,9 @@ class Deploy:
             )
         return at_hand
 
-    def _fill(self, wanted: list[Wanted], missing: list[Wanted], at_hand: ContentIndex) -> None:
-        """Put the wanted files into the incoming directory, compiled."""
-        incoming, activity = self._places.incoming, self._activity
+    def _fill_incoming(self, wanted: list[WantedFile], missing: list[WantedFile], at_hand: ContentIndex) -> None:
+        """Write and compile the wanted files in the incoming directory."""
+        incoming, activity = self._paths.incoming, self._activity
         incoming.mkdir(parents=True)
         for directory in sorted({each.path.rpartition("/")[0] for each in wanted}):
             (incoming / directory).mkdir(parents=True, exist_ok=True)
@@ -160,18 +169,18 @@ class Deploy:
         sources = at_once + [each.path for each in (*missing, *copied) if each.path.endswith(".py")]
         with Compiler(incoming, sources, self._debug, self._program) as compiler:
 
-            def is_there(each: Wanted) -> None:
+            def complete(each: WantedFile) -> None:
                 (incoming / each.path).chmod(0o755 if each.executable else 0o644)
                 if each.path.endswith(".py"):
-                    compiler.next_is_there()
+                    compiler.add_next()
 
             for _ in at_once:
-                compiler.next_is_there()
+                compiler.add_next()
             activity.begin("receive", sum(each.size for each in missing))
-            contents = Contents(self._wire, activity)
+            contents = ContentReader(self._wire, activity)
             for each in missing:
                 contents.write(each, incoming / each.path)
-                is_there(each)
+                complete(each)
             if missing:
                 contents.end()
             activity.begin("copy", len(copied))
@@ -179,13 +188,16 @@ class Deploy:
                 received = first.get(each.sha256)
                 source = at_hand.copy(each) if received is None else str(incoming / received.path)
                 _copy(source, each, incoming / each.path, activity)
-                is_there(each)
+                complete(each)
                 activity.step()
             compiler.finish(activity)
 
-    def _link(self, wanted: list[Wanted], at_hand: ContentIndex) -> dict[str, bool]:
-        """Link the files that are the same in a release; whether they are compiled, by name."""
-        incoming, forms, linked = str(self._places.incoming), CompiledForms(), {}
+    def _link(self, wanted: list[WantedFile], at_hand: ContentIndex) -> dict[str, bool]:
+        """Link the files that another release already has.
+
+        :return: for each linked path, whether it has a compiled file
+        """
+        incoming, forms, linked = str(self._paths.incoming), CompiledForms(), {}
         self._activity.begin("link", len(wanted))
         for each in wanted:
             same = at_hand.same_file(each)
@@ -197,14 +209,14 @@ class Deploy:
             self._activity.step()
         return linked
 
-    def _release(self) -> Said:
-        releases, places = self._releases, self._places
-        releases.flush(places.own)  # the contents, which takes its time; the rest is little
-        write_whole(places.incoming / DEPLOY_JSON, json.dumps(self._about, indent=2))
+    def _release(self) -> Message:
+        releases, paths = self._releases, self._paths
+        releases.flush(paths.own)  # the contents, which takes long; the rest is small
+        write_whole(paths.incoming / DEPLOY_JSON, json.dumps(self._about, indent=2))
         previous, taken = releases.current(), None
         if releases.is_other_tools():
             taken = releases.next_number()
-            releases.take_over(taken)
+            releases.adopt_directory(taken)
         number = releases.next_number()
         record: Record = {
             "files": {each.path: each.sha256 for each in self._wanted},
@@ -215,16 +227,16 @@ class Deploy:
             "from": previous if taken is None else taken,
         }
         code = releases.code()
-        self._wire.say(phase="switch")
+        self._wire.send(phase="switch")
         releases.write_record(number, record)
-        releases.flush(places.own)
-        places.incoming.rename(releases.directory(number))
+        releases.flush(paths.own)
+        paths.incoming.rename(releases.directory(number))
         if code is not None:
-            carried = releases.carry(code, releases.directory(number).resolve(), None)
+            carried = releases.carry_over(code, releases.directory(number).resolve(), None)
             record["carried"] = {"from": record["from"], "files": carried}
             releases.write_record(number, record)
         self._switch(number, taken)
-        with suppress(OSError):  # what cannot be removed now, the next deploy removes
+        with suppress(OSError):  # the next deploy removes the rest
             releases.prune()
         return {"release": number, "previous": record["from"], "taken": taken, "unchanged": False}
 
@@ -232,22 +244,22 @@ class Deploy:
         self._releases.switch(number, self._commands, taken)
         self._releases.set_debug(self._debug)
 
-    def _overwrite(self, code: Path, wanted: list[Wanted]) -> Said:
-        """In place: file by file, each of them whole; nothing is deleted."""
-        self._wire.say(phase="switch")
+    def _overwrite(self, code: Path, wanted: list[WantedFile]) -> Message:
+        """Replace files of the current release one by one, each atomically. Delete nothing."""
+        self._wire.send(phase="switch")
         current = self._releases.current()
         if current is not None and wanted:
-            self._releases.record_start(current, ran=False, ended=False)  # it becomes another program
-        self._releases.flush(self._places.own)
+            self._releases.record_start(current, ran=False, ended=False)  # it is another program now
+        self._releases.flush(self._paths.own)
         compiled = CompiledForms()
         for each in wanted:
             target = code / each.path
             target.parent.mkdir(parents=True, exist_ok=True)
             for form in compiled.of(str(target)):
                 remove(Path(form))
-            (self._places.incoming / each.path).replace(target)
-            compiled.link(str(self._places.incoming / each.path), str(target))
-        self._releases.remove(self._places.incoming)
+            (self._paths.incoming / each.path).replace(target)
+            compiled.link(str(self._paths.incoming / each.path), str(target))
+        self._releases.remove(self._paths.incoming)
         compile_below(code, self._debug, self._activity)
         write_whole(code / DEPLOY_JSON, json.dumps(self._about, indent=2))
         if current is not None:
@@ -256,18 +268,21 @@ class Deploy:
             record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
             self._releases.write_record(current, record)
         for name in (COMMAND, DEBUG_COMMAND):
-            write_whole(self._places.home / name, self._commands[name] or "")
-        self._releases.flush(self._places.home)
+            write_whole(self._paths.home / name, self._commands[name] or "")
+        self._releases.flush(self._paths.home)
         self._releases.set_debug(self._debug)
         return {"release": current, "previous": current, "taken": None, "unchanged": not wanted}
 
 
-def _refuse_clashes(wanted: list[Wanted], code: Path) -> None:
-    """:raises Refusal: when a file cannot take its place in the directory `code` without anything being deleted"""
+def _refuse_clashes(wanted: list[WantedFile], code: Path) -> None:
+    """Check that each file can be written to the directory `code` without deleting anything.
+
+    :raises Refusal: if a file would replace a directory, or the other way round
+    """
     for each in wanted:
         *above, _ = each.path.split("/")
-        places = [code.joinpath(*above[: depth + 1]) for depth in range(len(above))]
-        clash = next((place for place in places if os.path.lexists(place) and not place.is_dir()), None)
+        paths = [code.joinpath(*above[: depth + 1]) for depth in range(len(above))]
+        clash = next((place for place in paths if os.path.lexists(place) and not place.is_dir()), None)
         if clash is not None or (code / each.path).is_dir():
             kind = "directory" if clash is None else "file"
             raise Refusal(
@@ -277,13 +292,13 @@ def _refuse_clashes(wanted: list[Wanted], code: Path) -> None:
             )
 
 
-def plan(releases: Releases, files: Iterable[Any]) -> Said:
-    """What a deploy of these files would do; nothing is written."""
-    wanted = wanted_of(files)
+def plan(releases: Releases, files: Iterable[Any]) -> Message:
+    """Return what a deploy of these files would do, without writing anything."""
+    wanted = parse_manifest(files)
     at_hand = ContentIndex(releases, wanted, releases.activity)
     code = releases.code()
     there = set() if code is None else {name for name, _ in files_below(code)}
-    listed = None if code is None else releases.listed(code)
+    listed = None if code is None else releases.manifest_paths(code)
     new = {each.path for each in wanted} | {DEPLOY_JSON}
     is_code = (lambda name: name.endswith(".py")) if listed is None else listed.__contains__
     missing = at_hand.missing(wanted)
@@ -296,11 +311,11 @@ def plan(releases: Releases, files: Iterable[Any]) -> Said:
     }
 
 
-def _copy(source: str | None, wanted: Wanted, file: Path, activity: Activity) -> None:
-    """A copy of a file that may be the program's own, and changed at any moment: what was copied is what counts."""
+def _copy(source: str | None, wanted: WantedFile, file: Path, activity: Activity) -> None:
+    """Copy a file and check the hash of the copy, since the program may change the source at any moment."""
     if source is not None:
         with Path(source).open("rb") as reading, file.open("wb") as writing:
             while block := reading.read(BLOCK):
                 writing.write(block)
     if source is None or sha256_of(str(file), activity) != wanted.sha256:
-        raise Refusal("changed", f"{wanted.path} was changed by the robot program in this moment", "Deploy again.")
+        raise Refusal("changed", f"{wanted.path} was changed by the robot program during the deploy", "Deploy again.")

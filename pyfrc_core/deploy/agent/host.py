@@ -1,0 +1,192 @@
+"""The robot that runs this agent: the processes of its program, and stopping and starting it.
+
+`RoboRio` and `virtual.VirtualRobotClient` have the same attributes and methods; a `Host` is either.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Union
+
+from .console import PORTS
+from .inventory import find_other_languages
+from .robot_paths import CODE, HOME, Refusal, RobotPaths
+from .virtual import VirtualRobotClient
+
+_KILL_SCRIPT = "/usr/local/frc/bin/frcKillRobot.sh"
+# They set PATH for NI's programs and FRC_ConsoleTee.
+_PROFILES = ("/etc/profile.d/frc-path.sh", "/etc/profile.d/natinst-path.sh")
+_SHELLS = ("/bin/bash", "/bin/sh")  # the script needs bash, and may lack a first line that names it
+_CODE_PREFIXES = (f"{CODE}/".encode(), f"{HOME}/.pyfrc/releases/".encode())
+_NATIVE_PROGRAM = f"{HOME}/frcUserProgram".encode()  # written in C++
+#: The port of NetworkTables 4. WPILib opens it when the robot class is constructed, before `robotInit`.
+_NETWORK_TABLES = 5810
+_NOT_EXECUTED = (126, 127)  # a shell's exit codes
+_POWER_CYCLE = "Switch the robot off and on again: it starts the new program then."
+_SCRIPT_SECONDS = 15.0
+_END_SECONDS = 2.0  # for the old program to end, after the script and after each signal
+_POLL_SECONDS = 0.05
+
+
+class RoboRio:
+    """A roboRIO.
+
+    :param paths: its files
+    """
+
+    console_ports = PORTS
+
+    def __init__(self, paths: RobotPaths) -> None:
+        self.paths = paths
+
+    def has_kill_script(self) -> bool:
+        """Return whether the program can be stopped and started."""
+        return self.paths.of(_KILL_SCRIPT).exists()
+
+    def other_languages(self) -> list[str]:
+        """Return the files and directories of programs in Java and C++ that can be removed."""
+        return find_other_languages(self.paths)
+
+    def processes(self) -> set[int]:
+        """Return the process ids of the robot program, which may be written in another language."""
+        found = set()
+        for entry in os.scandir("/proc"):
+            if entry.name.isdigit() and int(entry.name) != os.getpid():
+                try:
+                    if entry.stat().st_uid != os.geteuid():
+                        continue
+                    words = Path(entry.path, "cmdline").read_bytes().split(b"\0")
+                except OSError:
+                    continue
+                # The first word excludes programs that only read a file there, such as tail or an editor.
+                name = words[0].rpartition(b"/")[2]
+                is_python = name.startswith(b"python") and any(word.startswith(_CODE_PREFIXES) for word in words)
+                is_java = name == b"java" and any(_is_jar(word) for word in words)
+                if is_python or is_java or words[0] == _NATIVE_PROGRAM:
+                    found.add(int(entry.name))
+        return found
+
+    def is_running(self, process: int) -> bool:
+        """Return whether a process of the program still runs; much cheaper than `processes`."""
+        try:
+            return bool(Path(f"/proc/{process}/cmdline").read_bytes())  # empty: a zombie
+        except OSError:
+            return False
+
+    def serves_network_tables(self, process: int) -> bool | None:
+        """Return whether a process listens at the port of NetworkTables."""
+        sockets = {
+            f"socket:[{row.split()[9]}]"
+            for table in ("tcp", "tcp6")
+            for row in Path(f"/proc/{process}/net/{table}").read_text().splitlines()[1:]
+            if row.split()[1].endswith(f":{_NETWORK_TABLES:04X}") and row.split()[3] == "0A"
+        }
+        for each in Path(f"/proc/{process}/fd").iterdir() if sockets else ():
+            with suppress(FileNotFoundError):  # closed meanwhile
+                if str(each.readlink()) in sockets:
+                    return True
+        return False
+
+    def stop(self, start: bool, meanwhile: Callable[[], None] = lambda: None) -> bool:
+        """Stop the program, and start it again if wanted. Return when all old processes have ended.
+
+        The exit code of the kill script is ignored, since it may fail if no program runs.
+
+        :param meanwhile: called repeatedly until the old processes have ended
+        :return: whether the program survived the kill script and was ended by a signal
+        :raises Refusal: if the script is missing or cannot be executed, or the program does not end
+        """
+        before = self.processes()
+        printed = self._run_kill_script(["-t", "-r"] if start else ["-t"], meanwhile)
+        survivors = self._wait_for_end(before, meanwhile)
+        survived = bool(survivors)
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            for process in survivors:
+                with suppress(ProcessLookupError):
+                    os.kill(process, number)
+            survivors = survivors and self._wait_for_end(before, meanwhile)
+        if survivors:
+            raise Refusal(
+                "restart",
+                f"{_KILL_SCRIPT} has not stopped the old program: {printed or 'it printed nothing'}",
+                _POWER_CYCLE,
+            )
+        return survived
+
+    def _run_kill_script(self, options: list[str], meanwhile: Callable[[], None]) -> str:
+        """Run the kill script, and return its output."""
+        script = self.paths.of(_KILL_SCRIPT)
+        if not script.exists():
+            raise Refusal(
+                "restart",
+                f"there is no {_KILL_SCRIPT} on the robot, so its program cannot be restarted",
+                "Switch the robot off and on again; if that does not help, image it.",
+            )
+        shell = next((each for each in _SHELLS if os.access(each, os.X_OK)), _SHELLS[-1])
+        profiles = [str(self.paths.of(path)) for path in _PROFILES]
+        sourcing = '[ ! -r "$1" ] || . "$1"; shift; ' * len(profiles)
+        deadline = time.monotonic() + _SCRIPT_SECONDS
+        # A file instead of a pipe: background processes of the script keep its output open after its end.
+        with tempfile.TemporaryFile() as output:
+            script_run = subprocess.Popen(
+                [shell, "-c", sourcing + 'exec "$@"', shell, *profiles, str(script), *options],
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+            )
+            while script_run.poll() is None and time.monotonic() < deadline:
+                meanwhile()
+                with suppress(subprocess.TimeoutExpired):
+                    script_run.wait(_POLL_SECONDS)
+            if script_run.poll() is None:
+                script_run.kill()
+                script_run.wait()
+                return f"it did not end within {_SCRIPT_SECONDS:g} s"
+            output.seek(0)
+            printed = output.read(4096).decode(errors="replace").strip()
+        if script_run.returncode in _NOT_EXECUTED:
+            reason = printed.rpartition("\n")[2]  # bash prints it twice
+            raise Refusal("restart", f"{_KILL_SCRIPT} cannot be executed: {reason}", _POWER_CYCLE)
+        return printed
+
+    def _wait_for_end(self, before: set[int], meanwhile: Callable[[], None]) -> set[int]:
+        """Wait for processes to end. Return those that are still there after the time limit."""
+        deadline = time.monotonic() + _END_SECONDS
+        while (left := before & self.processes()) and time.monotonic() < deadline:
+            meanwhile()
+            time.sleep(_POLL_SECONDS / 2)
+        return left
+
+
+Host = Union[RoboRio, VirtualRobotClient]  # noqa: UP007 - the agent runs on Python 3.9, too
+
+
+def _is_jar(word: bytes) -> bool:
+    return word.startswith(f"{HOME}/".encode()) and word.endswith(b".jar")
+
+
+def age_of(processes: Iterable[int]) -> float | None:
+    """Return the age of the oldest of these processes in seconds; None without processes or ``/proc``."""
+    ages = []
+    for process in processes:
+        with suppress(OSError, ValueError, IndexError):
+            began = int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[19])
+            uptime = float(Path("/proc/uptime").read_text().split()[0])
+            ages.append(max(0.0, uptime - began / os.sysconf("SC_CLK_TCK")))
+    return max(ages, default=None)
+
+
+def cpu_seconds(process: int) -> float:
+    """Return the processor time of a process in seconds.
+
+    :raises OSError: if it has ended, or there is no ``/proc``
+    """
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

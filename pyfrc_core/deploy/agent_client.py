@@ -1,0 +1,391 @@
+"""Client for the deploy agent on the robot."""
+
+from __future__ import annotations
+
+import getpass
+import json
+import re
+import socket
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+from . import recovery_hints
+from .agent import start_monitor, wire
+from .agent_stream import PYTHON, AgentStream, Channel, TimeLimits
+from .errors import ConnectionFailedError, DeployError, LockedError
+from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
+from .responses import Fields, ResponseError
+
+if TYPE_CHECKING:
+    from .discovery import Address
+    from .manifest import Entry, Manifest
+    from .recovery_hints import RecoveryHint
+
+__all__ = ["AgentClient", "DeployRequest", "Deployed", "Plan", "RobotFacts", "RolledBack", "StartState", "Watched"]
+
+#: Placeholder for a start command written by this deploy.
+_ANY = "any"
+#: Characters of a program's output that a watch keeps.
+_OUTPUT_KEPT = 1 << 16
+
+OnProgress = Callable[[str, int, int], None]
+T = TypeVar("T")
+
+# The only program in the command line. It reads a length and that many bytes: the agent's modules.
+_BOOTSTRAP = """
+import json,sys,types,zlib
+r=open(0,"rb",0)
+def g(n):
+ b=b""
+ while len(b)<n:
+  c=r.read(n-len(b))
+  if not c:sys.exit("the agent has not arrived")
+  b+=c
+ return b
+for n,s in json.loads(zlib.decompress(g(int(g(8))))):
+ m=sys.modules[n]=types.ModuleType(n)
+ m.__package__="pyfrc_core.deploy.agent"
+ exec(compile(s,n,"exec"),m.__dict__)
+m.main(r)
+"""
+COMMAND = f"{PYTHON} -X utf8 -u -c '{_BOOTSTRAP}'"
+#: In the order of their imports. The bootstrap calls `main` of the last one.
+_MODULES = (
+    "__init__",
+    "system",
+    "wire",
+    "disk",
+    "imports",
+    "robot_paths",
+    "virtual",
+    "inventory",
+    "activity",
+    "releases",
+    "compiling",
+    "content_index",
+    "transaction",
+    "console",
+    "start_monitor",
+    "host",
+    "program",
+    "serve",
+)
+_DOCSTRING = re.compile(r'^( *)""".*?"""$', re.MULTILINE | re.DOTALL)
+_COMMENT = re.compile(r"(?:^ *|  )#[: ].*", re.MULTILINE)
+_INDENTATION = re.compile(r"^ +", re.MULTILINE)
+
+
+class CommandRunner(Protocol):
+    """The part of `Connection` that `AgentClient` needs."""
+
+    address: Address
+
+    def open(self, command: str) -> Channel: ...
+
+
+@cache
+def agent_package() -> bytes:
+    """Return the agent's modules in the format that the bootstrap reads."""
+    package = wire.__name__.rpartition(".")[0]
+    directory = Path(wire.__file__).parent
+    names = {each: package if each == "__init__" else f"{package}.{each}" for each in _MODULES}
+    modules = [[name, _minified((directory / f"{each}.py").read_text("utf-8"))] for each, name in names.items()]
+    packed = zlib.compress(json.dumps(modules).encode(), 9)
+    return b"%08d" % len(packed) + packed
+
+
+def _minified(source: str) -> str:
+    """Return a module's source without docstrings and comments, and with one space for each level of indentation.
+
+    This saves time on a slow link. Lines keep their numbers for tracebacks. Regular expressions are used because
+    `ast.unparse` takes 0.1 s for the agent. They rely on a property of the agent's modules: only a docstring begins a
+    line with three quotes.
+    """
+    source = _DOCSTRING.sub(lambda found: f'{found[1]}""' + "\n" * found[0].count("\n"), source)
+    source = _COMMENT.sub("", source)
+    return _INDENTATION.sub(lambda found: " " * (len(found[0]) // 4), source)
+
+
+class AgentClient:
+    """Sends requests to the agent on a robot. `close` ends the agent.
+
+    Each method raises `ConnectionFailedError` if the connection is lost, `RefusedError` if the robot refuses the
+    request, and another `DeployError` if the request fails.
+    """
+
+    def __init__(self, stream: AgentStream) -> None:
+        self._stream = stream
+        self._planned: Manifest | None = None
+        #: Whether the old program survived the kill script at the last restart, and was ended by a signal.
+        self.program_survived = False
+        self._current: int | None = None
+        self._previous: int | None = None
+        #: The robot's start command, if any; `_ANY` after this client has written it.
+        self._command: str | None = None
+        #: Whether the robot has reported its progress. Until then, sent data may still be in network buffers.
+        self._robot_reports_progress = False
+        #: Explains the robot's state if the current change is interrupted.
+        self.recovery_hint: RecoveryHint | None = None
+        #: The robot's facts when the agent was started.
+        self.facts: RobotFacts
+
+    @classmethod
+    def start(
+        cls, connection: CommandRunner, *, hello: Mapping[str, Any] | None = None, limits: TimeLimits | None = None
+    ) -> AgentClient:
+        """Start the agent on the robot, and read the robot's facts.
+
+        :param hello: fields for the first message: ``modules`` to look for in the robot's Python; in tests, ``root``,
+            the directory with the robot's files
+        """
+        client = cls(AgentStream(connection.open(COMMAND), str(connection.address), limits or TimeLimits()))
+        try:
+            client._stream.start(agent_package() + wire.message_frame({"who": _user_and_host(), **(hello or {})}))
+            client.facts = client._stream.read_response(RobotFacts.of, silence=client._stream.limits.start)
+            client._current, client._command = client.facts.current, client.facts.command
+        except BaseException:
+            client.close()
+            raise
+        return client
+
+    def close(self) -> None:
+        """Close the connection to the agent, which then ends."""
+        self._stream.close()
+
+    def info(self) -> RobotFacts:
+        """Return the robot's current facts."""
+        return self._request(RobotFacts.of, "info")
+
+    def plan(self, manifest: Manifest, on_progress: OnProgress | None = None) -> Plan:
+        """Return what a deploy of these files would do. Nothing is written on the robot."""
+        with self._reporting(on_progress):
+            plan = self._request(Plan.of, "plan", files=_as_lists(manifest))
+        self._planned = manifest
+        return plan
+
+    def deploy(self, manifest: Manifest, request: DeployRequest, on_progress: OnProgress | None = None) -> Deployed:
+        """Make these files the robot's current release, or leave the robot unchanged. The program is not restarted.
+
+        :param on_progress: called with the robot's phase (``receive``, ``compile``, ``switch``, ...), the number of
+            completed steps, and the total (0 if unknown). The steps of ``receive`` are bytes. Until the robot's first
+            report, which comes after one second, the phase ``send`` counts the sent bytes.
+        """
+        # The agent keeps the manifest of the last plan.
+        files = {} if manifest is self._planned else {"files": _as_lists(manifest)}
+
+        def on_message(message: Fields) -> None:
+            phase = message.line("phase")
+            if phase == "switch":
+                self.recovery_hint = recovery_hints.OVERWRITING if request.in_place else recovery_hints.SWITCHING
+            if on_progress is not None:
+                on_progress(phase, 0, 0)
+
+        with self._reporting(on_progress):
+            self._send("deploy", **asdict(request), **files)
+            needed = self._stream.read_message(lambda fields: _needed(fields, manifest))
+            if needed:
+                self._send_contents(needed, on_progress)
+            try:
+                with self._tracking_changes():
+                    deployed = self._stream.read_response(lambda fields: _deployed(fields, request), on_message)
+            except ConnectionFailedError:
+                if self.recovery_hint is None:  # the report of the switch may be lost with the connection
+                    self.recovery_hint = (
+                        recovery_hints.OVERWRITING if request.in_place else recovery_hints.MAYBE_SWITCHED
+                    )
+                raise
+        self._current, self._previous, self._command = deployed.release, deployed.previous, _ANY
+        if request.in_place or deployed.release is None:
+            self.recovery_hint = None
+        else:
+            self.recovery_hint = recovery_hints.deployed(deployed.release, deployed.previous)
+        return deployed
+
+    def restart(self) -> bool:
+        """Restart the program.
+
+        :return: whether the old program survived the kill script, and was ended by a signal
+        """
+        self.program_survived = self._request(lambda fields: fields.flag("survived"), "restart")
+        self.recovery_hint = recovery_hints.started(self._current, self._previous)
+        return self.program_survived
+
+    def watch(
+        self,
+        seconds: float,
+        on_output: Callable[[str], None] | None = None,
+        on_state: Callable[[StartState], None] | None = None,
+        unheard: float | None = None,
+    ) -> Watched:
+        """Watch the program after its restart, until it runs, it has ended, or the time limit is reached.
+
+        :param seconds:   the time limit
+        :param on_output: called with the program's output
+        :param on_state:  called about once a second with the program's state
+        :param unheard:   seconds after which a program with a silent console is judged by its process alone
+        """
+        output = ""
+
+        def on_message(message: Fields) -> None:
+            nonlocal output
+            if "watching" in message:
+                state = StartState.of(message.object("watching"))
+                self.recovery_hint = recovery_hints.started(self._current, self._previous, state)
+                if on_state is not None:
+                    on_state(state)
+                return
+            printed = message.text("output")
+            output = (output + printed)[-_OUTPUT_KEPT:]
+            if on_output is not None:
+                on_output(printed)
+
+        self._send("watch", seconds=seconds, unheard=seconds if unheard is None else unheard)
+        verdict, state = self._stream.read_response(
+            lambda fields: (fields.one_of("verdict", start_monitor.VERDICTS), StartState.of(fields)),
+            on_message,
+            silence=self._stream.limits.start,
+            within=seconds + 2 * self._stream.limits.start,
+        )
+        self.recovery_hint = None
+        return Watched(verdict, output, state)
+
+    def rollback(self, release: int | None = None, on_progress: OnProgress | None = None) -> RolledBack:
+        """Make an earlier release current again. The program is not restarted.
+
+        :param release: its number; default: the release that a rollback selects
+        """
+        with self._reporting(on_progress):
+            back = self._change(RolledBack.of, recovery_hints.ROLLING_BACK, "rollback", release=release)
+        # None: a rollback from there would return to the release that was rolled back.
+        self._current, self._previous, self._command = back.release.number, None, _ANY
+        self.recovery_hint = recovery_hints.rolled_back(back.release.number)
+        return back
+
+    def undeploy(self, on_progress: OnProgress | None = None) -> bool:
+        """Stop the program and remove it with all releases. Return whether there was one."""
+        with self._reporting(on_progress):
+            removed = self._change(lambda fields: fields.flag("removed"), recovery_hints.UNDEPLOYING, "undeploy")
+        self.recovery_hint = None
+        return removed
+
+    def _change(self, parse: Callable[[Fields], T], hint: RecoveryHint, op: str, **request: Any) -> T:
+        before, self.recovery_hint = self.recovery_hint, hint
+        try:
+            with self._tracking_changes():
+                return self._request(parse, op, **request)
+        except LockedError:
+            self.recovery_hint = before  # if the releases have changed, another computer has changed them
+            raise
+
+    @contextmanager
+    def _tracking_changes(self) -> Iterator[None]:
+        """After an error during a change, ask the robot whether anything was changed, and update the hint."""
+        try:
+            yield
+        except ConnectionFailedError:
+            raise
+        except DeployError:
+            if self.recovery_hint not in (None, recovery_hints.OVERWRITING):
+                with suppress(DeployError):
+                    now = self.info()
+                    command = _ANY if now.command and self._command == _ANY else now.command
+                    if (now.current, command) == (self._current, self._command):
+                        self.recovery_hint = None
+                    elif now.current != self._current and now.current is not None:
+                        self.recovery_hint = recovery_hints.deployed(now.current, self._current)
+            raise
+
+    def _request(self, parse: Callable[[Fields], T], op: str, **request: Any) -> T:
+        self._send(op, **request)
+        return self._stream.read_response(parse)
+
+    def _send(self, op: str, **request: Any) -> None:
+        self._stream.send_request({"op": op, **request})
+
+    def _send_contents(self, entries: list[Entry], on_progress: OnProgress | None) -> None:
+        compressor = zlib.compressobj(6)
+        done, total = 0, sum(entry.size for entry in entries)
+        waiting = b""
+        for chunk in _chunks(entries):
+            done += len(chunk)
+            waiting += compressor.compress(chunk)
+            if len(waiting) >= wire.CHUNK_BYTES:
+                if self._stream.has_message():
+                    return  # the robot refuses the rest; its response has the reason
+                self._stream.send(wire.frame(wire.CONTENT, waiting))
+                waiting = b""
+                if on_progress is not None and not self._robot_reports_progress:
+                    on_progress("send", done, total)
+        self._stream.send(wire.frame(wire.CONTENT, waiting + compressor.flush()))
+
+    @contextmanager
+    def _reporting(self, on_progress: OnProgress | None) -> Iterator[None]:
+        """Pass the progress in keep-alive messages to `on_progress`."""
+
+        def show(progress: object) -> None:
+            # The content is only displayed, so a message with invalid content still counts as a keep-alive message.
+            with suppress(ResponseError):
+                fields = Fields(progress)
+                if on_progress is not None:
+                    on_progress(fields.line("phase"), fields.count("count"), fields.count("of"))
+
+        self._robot_reports_progress = False
+        self._stream.on_keep_alive = show
+        try:
+            yield
+        finally:
+            self._stream.on_keep_alive = None
+
+
+def _deployed(fields: Fields, request: DeployRequest) -> Deployed:
+    deployed = Deployed.of(fields)
+    if deployed.release is None and not request.in_place:
+        raise ResponseError("'release' is null")
+    return deployed
+
+
+def _needed(fields: Fields, manifest: Manifest) -> list[Entry]:
+    """Return the files whose contents the robot requests.
+
+    :raises ResponseError: if it requests a file that was not offered, or one file twice
+    """
+    by_path = {entry.path: entry for entry in manifest.entries}
+    paths = fields.texts("need")
+    if not by_path.keys() >= set(paths) or len(set(paths)) < len(paths):
+        raise ResponseError("'need' has files that were not offered, or one of them twice")
+    return [by_path[path] for path in paths]
+
+
+def _as_lists(manifest: Manifest) -> list[list[Any]]:
+    return [[each.path, each.size, each.sha256, each.executable] for each in manifest.entries]
+
+
+def _chunks(entries: list[Entry]) -> Iterator[bytes]:
+    """Yield the files' contents, each with exactly its size in the manifest.
+
+    The robot detects a file that has changed by its hash.
+    """
+    for entry in entries:
+        left = entry.size
+        try:
+            with entry.file.open("rb") as stream:
+                while left and (chunk := stream.read(min(left, wire.CHUNK_BYTES))):
+                    yield chunk
+                    left -= len(chunk)
+        except OSError:
+            pass
+        while left:
+            yield bytes(min(left, wire.CHUNK_BYTES))
+            left -= min(left, wire.CHUNK_BYTES)
+
+
+def _user_and_host() -> str:
+    try:
+        return f"{getpass.getuser()}@{socket.gethostname()}"
+    except (OSError, KeyError, ImportError):
+        return socket.gethostname()

@@ -1,0 +1,170 @@
+"""Choosing the robot, finding it, connecting to it, and starting the agent on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from ..errors import UsageError
+from ..project import Project
+from .agent_client import AgentClient
+from .connection import Connection, connect, load_in_background
+from .credentials import NONE_OFFERED, Credentials
+from .discovery import Address, FoundRobot, addresses_of, find_robot, parse_address
+from .errors import NoPythonError
+from .host_keys import HostKeys, RobotKeys
+from .progress import DeployProgress, Questions
+from .recovery_hints import explain_interruption
+from .team import RobotTarget, find_target, team_of_project
+from .without_python import RobotWithoutPython
+
+
+@dataclass(frozen=True)
+class RobotChoice:
+    """The robot options of a command.
+
+    :param robot: the robot's address, as ``HOST`` or ``HOST:PORT``
+    :param team: a team number
+    :param resolve: whether host names may be resolved
+    :param accepted_key: the fingerprint of a changed host key that the user accepts
+    :param robot_name: a name to store with the robot's key
+    :param credentials: the user's own keys, for a robot that requires one
+    """
+
+    robot: str | None = None
+    team: int | None = None
+    resolve: bool = True
+    accepted_key: str | None = None
+    robot_name: str | None = None
+    credentials: Credentials = NONE_OFFERED
+
+    @property
+    def names_robot(self) -> bool:
+        """Return whether the options select a robot without a project."""
+        return self.robot is not None or self.team is not None
+
+
+def choose_target(project: Project | None, choice: RobotChoice, ask: Questions | None) -> RobotTarget:
+    """Return the robot to connect to. Ask the user if neither the options nor the project name one.
+
+    :param project: None outside of a project, if the options name a robot
+    :param ask: None if the user cannot be asked
+    :raises UsageError: if no robot is named and the user cannot be asked, or a team number is invalid
+    """
+    target = find_target(project, robot=choice.robot, team=choice.team, ask=ask.text if ask else None)
+    if target.robot is not None and parse_address(target.robot).is_name and not choice.resolve:
+        raise UsageError(
+            f"{target.robot} is a host name, which --no-resolve does not resolve",
+            remedy="Leave out --no-resolve, or give the robot's address with --robot, as in 10.12.34.2",
+        )
+    return target
+
+
+def find(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> FoundRobot:
+    """Find the robot, and return it with an open socket.
+
+    :raises RobotNotFoundError: with all failed attempts
+    :raises OnTheFieldError: if the Driver Station is connected to a competition field
+    """
+    load_in_background()
+    with progress.phase("find") as phase:
+        if target.robot is not None:
+            address = parse_address(target.robot)
+            found = find_robot([(address, f"by {target.source}")], str(address), take_its_robot=False)
+        else:
+            assert target.team is not None
+            whose = f"team {target.team} (by {target.source})"
+            found = find_robot(addresses_of(target.team, choice.resolve), whose)
+        phase.detail = f"{found.address} ({found.kind})"
+    return found
+
+
+def load_robot_keys(project: Project | None, target: RobotTarget, found: FoundRobot) -> RobotKeys:
+    """Return the known host keys of the robot: of the project, or of this user outside of a project."""
+    if project is None:
+        return HostKeys.of_this_user().of_robot(found.address, target.team)
+    keys = HostKeys(project.pyproject.parent)
+    return keys.of_robot(found.address, target.team, team_of_project(project) if target.team is None else None)
+
+
+@contextmanager
+def connected(
+    project: Project | None, target: RobotTarget, found: FoundRobot, choice: RobotChoice, progress: DeployProgress
+) -> Iterator[Connection]:
+    """Log in to the robot that was found, and disconnect after the ``with`` block.
+
+    Its host key is compared with the project's known keys or, outside of a project, with this user's.
+
+    :raises HostKeyError: if the key is not known
+    :raises ConnectionFailedError: if the login fails
+    """
+    keys = load_robot_keys(project, target, found)
+    with progress.phase("connect") as phase:
+        connection = connect(
+            found.address,
+            keys,
+            connected=found.connected,
+            accepted_key=choice.accepted_key,
+            robot_name=choice.robot_name,
+            credentials=choice.credentials,
+        )
+        recognized = connection.recognized
+        phase.detail = "its key is known"
+        if recognized.new_for is not None:
+            phase.detail = f"a new key, now pinned for {recognized.new_for}"
+        if recognized.name:
+            phase.detail += f" ({recognized.name})"
+    if recognized.new_for is not None:
+        progress.note(f"  its key: {connection.key.fingerprint} ({connection.key.kind})")
+    with connection:
+        yield connection
+
+
+@contextmanager
+def running_agent(
+    connection: Connection, progress: DeployProgress, modules: Sequence[str] = ()
+) -> Iterator[AgentClient]:
+    """Start the agent on the robot, and end it after the ``with`` block.
+
+    :param modules: modules to look for in the robot's Python
+    :raises RefusedError: if there is no Python on the robot
+    """
+    with progress.phase("look") as phase:
+        try:
+            robot = AgentClient.start(connection, hello={"modules": modules} if modules else None)
+        except NoPythonError as error:
+            raise RobotWithoutPython(connection).refusal(error) from error
+        facts = robot.facts
+        phase.detail = f"wpilib {facts.wpilib or 'missing'}, image {facts.image or 'unknown'}"
+    try:
+        with explain_interruption(robot):
+            yield robot
+    finally:
+        robot.close()
+
+
+@contextmanager
+def connected_agent(
+    project: Project | None, target: RobotTarget, choice: RobotChoice, progress: DeployProgress
+) -> Iterator[tuple[Connection, AgentClient]]:
+    """Find the robot, connect to it and start the agent."""
+    found = find(target, choice, progress)
+    with (
+        connected(project, target, found, choice, progress) as connection,
+        running_agent(connection, progress) as robot,
+    ):
+        yield connection, robot
+
+
+def console_address(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> Address:
+    """Return the address of a robot's console.
+
+    An address from the command line is not checked, since the robot may be booting.
+    """
+    if target.robot is not None:
+        return parse_address(target.robot)
+    found = find(target, choice, progress)
+    host = str(found.connected.getpeername()[0])
+    found.connected.close()
+    return Address(host)
