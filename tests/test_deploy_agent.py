@@ -1,4 +1,4 @@
-"""The agent as a robot runs it: sent to a Python that knows nothing of it, in frames that anything may happen to."""
+"""The agent, sent to a plain Python as on a robot, and its frames."""
 
 from __future__ import annotations
 
@@ -160,19 +160,19 @@ def test_noise_changes_nothing_on_the_robot(noise: bytes, agents: Agents) -> Non
 
 
 @pytest.mark.parametrize(
-    ("request_", "told"),
+    ("request_", "reported"),
     [
         ({"op": "format"}, "format"),
         ({"op": "deploy", "main": "robot.py", "files": [["robot.py", "much", "00", False]]}, "much"),
         ({"op": "watch"}, "seconds"),
     ],
 )
-def test_what_it_does_not_understand_is_told(
-    robot: LocalRobot, agents: Agents, request_: dict[str, object], told: str
+def test_an_invalid_request_is_reported(
+    robot: LocalRobot, agents: Agents, request_: dict[str, object], reported: str
 ) -> None:
     session = robot.start(agents)
     robot.channel.sendall(wire.message_frame(request_))
-    with pytest.raises(DeployError, match=rf"the agent on the robot has failed: .*{told}.*\n.*left half written"):
+    with pytest.raises(DeployError, match=rf"the agent on the robot has failed: .*{reported}.*\n.*is complete"):
         session._stream.read_response(lambda fields: None)
     assert session.info().current is None
     session.close()

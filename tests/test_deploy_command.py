@@ -1,4 +1,4 @@
-"""`pyfrc deploy` and its kin as a team uses them, on a look-alike of a roboRIO with a real SSH server."""
+"""`pyfrc deploy` and related commands, on a look-alike of a roboRIO with a real SSH server."""
 
 from __future__ import annotations
 
@@ -220,11 +220,11 @@ def test_for_tools_every_line_is_json(robot: Roborio, make_project) -> None:
     project = make_project({**program(), "tests/test_it.py": "def test_it(): print('words')\n"})
     result = project.run("deploy", "--robot", robot.where, "--json")
     assert result.code == 0, result.output
-    told = events(result)
-    assert [each["phase"] for each in told if each["event"] == "phase"][:2] == ["tests", "files"]
-    assert told[-1]["event"] == "result"
-    assert told[-1]["release"] == 1
-    assert told[-1]["host"] == robot.host
+    reported = events(result)
+    assert [each["phase"] for each in reported if each["event"] == "phase"][:2] == ["tests", "files"]
+    assert reported[-1]["event"] == "result"
+    assert reported[-1]["release"] == 1
+    assert reported[-1]["host"] == robot.host
     assert "1 passed" in result.stderr
     failed = project.run("deploy", "--skip-tests", "--robot", "127.0.0.1:1", "--json")
     error = events(failed)[-1]
@@ -509,9 +509,9 @@ def test_a_changed_host_key_is_refused_until_it_is_accepted(robot: Roborio, make
     assert info.code == 0, info.output
     assert "its key is known (practice)" in info.stdout
     assert "name       practice" in info.stdout
-    told = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
-    assert told["robot_name"] == "practice"
-    assert told["host_key"].startswith("SHA256:")
+    facts = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
+    assert facts["robot_name"] == "practice"
+    assert facts["host_key"].startswith("SHA256:")
 
 
 def test_a_directory_that_the_robot_s_key_cannot_be_written_to_is_not_called_a_bad_link(
@@ -558,11 +558,11 @@ def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) ->
                 assert process.poll() is None
                 threading.Event().wait(0.01)
             process.send_signal(signal.SIGINT)
-            told, said = process.communicate()
+            output, errors = process.communicate()
     assert process.returncode == 2
-    assert said.strip() == "interrupted"
+    assert errors.strip() == "interrupted"
     if as_json:
-        last = json.loads(told.splitlines()[-1])
+        last = json.loads(output.splitlines()[-1])
         assert (last["event"], last["message"], last["exit_code"]) == ("error", "interrupted", 2)
     assert "number 1" in code_on(robot)
     assert not (robot.home / "py/noise.txt").exists()

@@ -1,4 +1,4 @@
-"""Servers that begin as an SSH server does and are none, or go away: told in a sentence, at once."""
+"""Servers that only begin like an SSH server, or disconnect: one sentence, immediately."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from pyfrc_core.deploy.host_keys import KNOWN_HOSTS, HostKey, HostKeys
 
 @contextmanager
 def server(says: bytes) -> Iterator[Address]:
-    """Says this to whoever connects, and hangs up."""
+    """Sends data to each client, and disconnects."""
     with socket.create_server(("127.0.0.1", 0)) as listener:
 
         def serve() -> None:
@@ -46,7 +46,7 @@ def server(says: bytes) -> Iterator[Address]:
         b"220 mail\r\n" * 200,
     ],
 )
-def test_what_is_no_ssh_server_is_told(says: bytes, tmp_path: Path) -> None:
+def test_another_server_than_an_ssh_server_is_reported(says: bytes, tmp_path: Path) -> None:
     load_in_background()
     with server(says) as address, pytest.raises(ConnectionFailedError) as caught:
         connect(address, HostKeys(tmp_path).of_robot(address))
@@ -56,7 +56,7 @@ def test_what_is_no_ssh_server_is_told(says: bytes, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("says", [b"SSH-2.0-robot\r\n", b"SSH-2.0-robot\r\n" + b"\0" * 64])
-def test_an_ssh_server_that_goes_no_further(says: bytes, tmp_path: Path) -> None:
+def test_an_ssh_server_that_only_sends_its_greeting_is_reported(says: bytes, tmp_path: Path) -> None:
     with server(says) as address, pytest.raises(ConnectionFailedError, match="violated the SSH protocol") as caught:
         connect(address, HostKeys(tmp_path).of_robot(address))
     assert "Error" not in str(caught.value)

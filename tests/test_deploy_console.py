@@ -1,4 +1,4 @@
-"""What the robot program prints, here: with `pyfrc console`, and after a deploy."""
+"""The robot program's output, with `pyfrc console` and after a deploy."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def running(project, *args: str) -> Iterator[subprocess.Popen[str]]:
         cwd=project.path,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,  # where it is told how the connection is
+        stderr=subprocess.STDOUT,  # has the reports about the connection
         text=True,
     ) as it:
         guard = threading.Timer(60, it.kill)

@@ -1,4 +1,4 @@
-"""Programs that crash in a loop, on a look-alike that starts them again at once, as a roboRIO does."""
+"""Programs that crash in a loop, on a look-alike that restarts them immediately, as a roboRIO does."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A deploy that ends between its change on the robot and the program's start: what is so then is told. And the lock."""
+"""Deploys that are interrupted between the switch and the program's start: the error explains the state. The lock."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def in_switch(phase: str, done: int, total: int) -> None:
         interrupt()
 
 
-#: What has been done, what is told, and the command that helps.
+#: The actions before the interruption, the state in the message, and the suggested command.
 CUT_SHORT: dict[str, tuple[Callable[[AgentClient, Manifest], object], str, str]] = {
     "switching": (
         lambda agent, project: agent.deploy(project, REQUEST, in_switch),
@@ -143,7 +143,7 @@ def test_where_nothing_is_half_done_ctrl_c_is_just_that(
 
 
 def test_the_remedies_help(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
-    """A release that is current already can be gone back to, which starts it."""
+    """A rollback to the current release starts it."""
     robot.deploy(agents, project)
     agent = robot.start(agents)
     with contextlib.closing(agent):

@@ -1,4 +1,4 @@
-"""Whatever cuts a deploy, the robot starts the old program or the new one, whole; the next deploy needs no help."""
+"""After any interruption, the robot starts the complete old or new program, and the next deploy works."""
 
 from __future__ import annotations
 

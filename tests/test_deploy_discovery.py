@@ -1,4 +1,4 @@
-"""Finding the robot among addresses that answer, do not, or answer something else."""
+"""Finding the robot among addresses with and without servers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BANNER = b"SSH-2.0-look-alike\r\n"
 
 
 class Servers:
-    """Servers on this computer, each of which sends one thing to whoever connects."""
+    """Servers on this computer, which send fixed data to each client."""
 
     def __init__(self, stack: ExitStack) -> None:
         self._stack = stack
@@ -133,7 +133,7 @@ def test_on_a_competition_field_it_is_refused(how: dict[str, bool], servers: Ser
 
 
 @pytest.mark.parametrize("says", [b"", b"nonsense\n", b"[]\n", b'{"robotIP": "x", "FMS Connected": 1}\n', b"\xff\n"])
-def test_a_driver_station_that_says_nothing_of_use_hinders_nothing(says: bytes, servers: Servers) -> None:
+def test_useless_data_of_a_driver_station_is_ignored(says: bytes, servers: Servers) -> None:
     robot = servers.start(BANNER)
     found = find(servers, robot, station=servers.start(says))
     found.connected.close()

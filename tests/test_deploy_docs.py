@@ -1,4 +1,4 @@
-"""What docs/deploy.md shows works, on a look-alike; what it lists is what there is."""
+"""docs/deploy.md: its commands work, and its lists are complete."""
 
 from __future__ import annotations
 

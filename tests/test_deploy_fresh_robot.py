@@ -1,4 +1,4 @@
-"""Robots that are not ready for a deploy: `pyfrc deploy` and `pyfrc doctor` say the same about them, and what to do."""
+"""Robots that are not ready for a deploy: `pyfrc deploy` and `pyfrc doctor` report the same problems and remedies."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def look_at(robot: LocalRobot) -> RobotFacts:
 
 
 def doctor(project, robot: Roborio) -> list[CheckResult]:
-    """What `pyfrc doctor` says about the robot, after the line that it was found."""
+    """Return the output of `pyfrc doctor` about the robot, after the line that it was found."""
     found, *others = RobotSearch(find_project(project.path), robot.where).findings()
     assert found.status == "ok"
     return others

@@ -1,4 +1,4 @@
-"""Host keys: pinned for a team's addresses together, or for one address; another one is refused until accepted."""
+"""Host keys: pinned for all addresses of a team or for one address; other keys are refused until accepted."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def test_another_team_s_robot_named_by_robot_in_a_team_s_project(
 
 
 def test_another_team_s_address_named_by_robot_in_a_team_s_project(tmp_path: Path) -> None:
-    """The address says which team is meant."""
+    """The address belongs to a team."""
     (tmp_path / "robot.py").touch()
     (tmp_path / "pyproject.toml").write_text(f"[tool.pyfrc]\nteam = {TEAM}\n")
     theirs = Address("10.99.99.2")

@@ -1,4 +1,4 @@
-"""A robot that returns nonsense: each time one sentence, within limits of time and memory."""
+"""A robot that sends invalid data: one sentence each time, within limits of time and memory."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ class FakeRobot:
 
 
 def protocol_error(robot: FakeRobot, do: Callable[[AgentClient], object] = lambda robot: None, **limits: float) -> str:
-    """What is said of it, in one sentence and a remedy."""
+    """Return the error message: one sentence and a remedy."""
     with pytest.raises(DeployError) as caught:
         do(AgentClient.start(robot, limits=TimeLimits(**limits)))
     error = caught.value
@@ -219,7 +219,7 @@ def test_many_errors_printed() -> None:
     assert message.startswith("the agent on the robot has ended: ")
 
 
-# -- the fields of each answer -----------------------------------------------------------------------------------------
+# -- the fields of each response ---------------------------------------------------------------------------------------
 
 WRONG: list[Any] = [1.5, float("nan"), -1, 1 << 70, 10**4000, [], {}, True, "text", [1], [[]], {"a": 1}]
 #: Files on the robot have these: they may hold anything, and are shown as it is possible.
@@ -351,7 +351,7 @@ def test_an_answer_that_comes_twice(project: Manifest) -> None:
         (lambda robot: robot.plan(Manifest(())), {"added": [], "changed": [], "removed": [], "files": -1, "bytes": 0}),
     ],
 )
-def test_other_answers_with_a_wrong_field(op: Callable[[AgentClient], object], answer: object) -> None:
+def test_other_responses_with_an_invalid_field(op: Callable[[AgentClient], object], answer: object) -> None:
     message = protocol_error(FakeRobot(HELLO, wire.message_frame({"done": answer})), op)
     assert message.startswith("the robot sent data that is not from pyfrc's agent: ")
 
@@ -368,7 +368,7 @@ def test_output_that_is_no_text(output: object) -> None:
     assert "'output'" in message
 
 
-# -- for ever ----------------------------------------------------------------------------------------------------------
+# -- without end -------------------------------------------------------------------------------------------------------
 
 
 def for_ever(*frames: dict[str, Any]) -> Iterator[bytes]:

@@ -1,4 +1,4 @@
-"""What a program imports, read from its source, and what the robot's Python can find; without a robot."""
+"""A program's imports, read from its source, and the modules of the robot's Python. Without a robot."""
 
 from __future__ import annotations
 
@@ -238,7 +238,7 @@ def test_a_file_that_the_program_does_not_use_may_be_anything(
 
 
 def test_the_robots_own_python_decides(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
-    """The robot is asked with the first frame; it says which modules it cannot find."""
+    """The first message has the modules; the response has those that the robot cannot find."""
     from pyfrc_core.deploy.agent_client import AgentClient
 
     robot._agents, robot._options = agents, {}

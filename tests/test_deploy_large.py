@@ -1,4 +1,4 @@
-"""Projects of thousands of files: signs of life from the agent, work that is linear, memory that is limited."""
+"""Projects of thousands of files: keep-alive messages, linear work, limited memory."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ REQUEST = DeployRequest("robot.py", {})
 
 
 class Signs:
-    """An activity whose clock stands still, and what it has sent."""
+    """An activity with a stopped clock, and its messages."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -41,7 +41,7 @@ class Signs:
         self.on_sign()
 
 
-# -- signs of life -----------------------------------------------------------------------------------------------------
+# -- keep-alive messages -----------------------------------------------------------------------------------------------
 
 
 def test_a_sign_a_second_says_how_far_the_work_is() -> None:
@@ -123,7 +123,7 @@ def large_project(directory: Path, modules: int, **more: str | bytes) -> Manifes
     return project_of(directory, {"robot.py": ROBOT_PY, **files, **more})
 
 
-#: What is done, and the work for which the agent gives signs of life then.
+#: Actions, and the phases in the agent's keep-alive messages.
 WORK: dict[str, tuple[Callable[[AgentClient, Manifest, Callable[[str, int, int], None]], object], set[str]]] = {
     "deploy": (
         lambda agent, project, on: agent.deploy(project, REQUEST, on),
@@ -255,7 +255,7 @@ def test_what_is_there_is_compiled_while_the_rest_is_received(tmp_path: Path) ->
 def test_a_compiler_that_is_not_needed_any_more_is_ended(tmp_path: Path) -> None:
     children = Path(f"/proc/self/task/{threading.get_native_id()}/children")
     before = children.read_text()
-    os.mkfifo(tmp_path / "a.py")  # it would wait for ever
+    os.mkfifo(tmp_path / "a.py")  # reading it would block
     with Compiler(tmp_path, ["a.py"], debug=False) as compiler:
         compiler.next_is_there()
         assert children.read_text() != before

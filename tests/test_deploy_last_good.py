@@ -1,4 +1,4 @@
-"""The releases that were seen to run: kept, gone back to, and shown."""
+"""Releases that were confirmed to run: they are kept, selected by a rollback, and shown."""
 
 from __future__ import annotations
 

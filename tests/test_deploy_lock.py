@@ -1,4 +1,4 @@
-"""The lock on the robot: an undeploy removes its file, and nobody is let in by that."""
+"""The lock on the robot: an undeploy removes its file without releasing the lock."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which files of a project are uploaded, which are left out, and which cannot be."""
+"""The files of a project that are uploaded, excluded or refused."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def test_what_is_no_file_is_refused_by_name(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By a patch: whoever runs these tests may be allowed to read everything."""
+    """Patched, since the user who runs these tests may have permission to read every file."""
     make(tmp_path, "robot.py", "secret.txt")
     read_bytes = Path.read_bytes
 

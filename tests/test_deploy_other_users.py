@@ -1,4 +1,4 @@
-"""Files of the robot's other users among the program's: what they hinder is told, and they hinder no later deploy."""
+"""Files of the robot's other users among the program's files: errors explain them, and later deploys work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who helps in the pit has no project of the robot's team: an address is enough to look, to listen, and to go back."""
+"""Commands outside of a project: an address is enough to inspect a robot, show its console, and roll back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a program needs and the robot's Python lacks: said before anything is changed on the robot."""
+"""Modules and packages that the robot's Python lacks: reported before anything is changed on the robot."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SITE = "usr/local/lib/python3.14/site-packages"
 
 @pytest.fixture
 def facts(robot: LocalRobot, agents: Agents) -> RobotFacts:
-    """What a robot says of itself that has just what a program needs."""
+    """Return the facts of a robot that has exactly what a program needs."""
     session = robot.start(agents)
     session.close()
     return dataclasses.replace(session.facts, python="3.14.0", machine="armv7l", packages={"wpilib": OURS})

@@ -1,4 +1,4 @@
-"""What a deploy tells reaches whoever listens, as far as that can be; it never ends the deploy."""
+"""Progress output to closed or limited streams never ends a deploy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ print("done", file=sys.stderr)
 """
 
 
-def tell(as_json: bool, encoding: str = "utf-8", **streams: int) -> subprocess.CompletedProcess[bytes]:
+def print_progress(as_json: bool, encoding: str = "utf-8", **streams: int) -> subprocess.CompletedProcess[bytes]:
     return subprocess.run(
         [sys.executable, "-c", TELLING.format(as_json=as_json)],
         stderr=subprocess.PIPE,
@@ -37,15 +37,15 @@ def test_a_listener_that_goes_away_does_not_end_the_deploy(as_json: bool) -> Non
     with subprocess.Popen([sys.executable, "-c", ""], stdin=subprocess.PIPE) as listener:
         listener.wait()
         assert listener.stdin is not None
-        told = tell(as_json, stdout=listener.stdin.fileno())
-    assert (told.returncode, told.stderr) == (0, b"done\n")
+        done = print_progress(as_json, stdout=listener.stdin.fileno())
+    assert (done.returncode, done.stderr) == (0, b"done\n")
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
 def test_letters_that_the_output_does_not_have(encoding: str) -> None:
-    told = tell(False, encoding, stdout=subprocess.PIPE)
-    assert (told.returncode, told.stderr) == (0, b"done\n")
-    assert told.stdout.endswith(b"Deployed.\n")
-    assert b"\\udc80" in told.stdout
-    as_json = tell(True, encoding, stdout=subprocess.PIPE)
+    done = print_progress(False, encoding, stdout=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (0, b"done\n")
+    assert done.stdout.endswith(b"Deployed.\n")
+    assert b"\\udc80" in done.stdout
+    as_json = print_progress(True, encoding, stdout=subprocess.PIPE)
     assert json.loads(as_json.stdout.splitlines()[0])["text"] == "Größe \u30ed \udc80"

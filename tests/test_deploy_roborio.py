@@ -1,4 +1,4 @@
-"""Deploys to a roboRIO look-alike, over a real SSH server: the program there starts, whatever happens to the deploy."""
+"""Deploys to a roboRIO look-alike over a real SSH server: its program starts after any interruption."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands that messages suggest are about the robot that the user's own command names."""
+"""Commands in messages are about the same robot as the user's command."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a deploy says of the program that it has started, and with which exit code."""
+"""Messages and exit codes of a deploy about the start of the program."""
 
 from __future__ import annotations
 
@@ -224,7 +224,7 @@ def test_a_failure_right_before_the_change(robot: LocalRobot, agents: Agents, pr
 def test_old_releases_that_cannot_be_removed_hinder_no_deploy(
     robot: LocalRobot, project: Manifest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from pyfrc_core.deploy.agent import deploying, releases, wire
+    from pyfrc_core.deploy.agent import releases, transaction, wire
     from pyfrc_core.deploy.agent.activity import Activity
     from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 
@@ -235,7 +235,7 @@ def test_old_releases_that_cannot_be_removed_hinder_no_deploy(
     nothing = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"  # SHA-256
     sent = wire.frame(wire.CONTENT, zlib.compress(b""))
     request = {"main": "robot.py", "files": [["robot.py", 0, nothing, False]]}
-    deployed = deploying.Deploy(
+    deployed = transaction.Deploy(
         releases.Releases(RobotPaths(str(robot.root)), Activity(lambda **said: None)),
         wire.Wire(io.BytesIO(sent), io.BytesIO()),
         request,
@@ -357,7 +357,7 @@ def test_a_program_is_as_old_as_its_oldest_process() -> None:
     assert child_age <= own_age <= age
 
 
-@pytest.mark.parametrize("told", [{"cpu": "much"}, {"age": [1]}])
-def test_a_state_that_is_nonsense_is_refused(told: dict[str, object]) -> None:
+@pytest.mark.parametrize("fields", [{"cpu": "much"}, {"age": [1]}])
+def test_an_invalid_state_is_refused(fields: dict[str, object]) -> None:
     with pytest.raises(ResponseError):
-        StartState.of(Fields({"seconds": 1.0, "age": 1.0, "heard": True, "seen": True, **told}))
+        StartState.of(Fields({"seconds": 1.0, "age": 1.0, "heard": True, "seen": True, **fields}))

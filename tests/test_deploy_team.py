@@ -1,4 +1,4 @@
-"""Whose robot it is: every place that may say so, in their order, and what is said of bad values."""
+"""The team number and the robot's address: all sources, their order, and errors in values."""
 
 from __future__ import annotations
 
@@ -83,12 +83,12 @@ def test_an_editors_word_for_no_team_is_none(none: int, target_of) -> None:
 
 def test_the_user_is_asked_until_the_answer_is_one_and_it_is_kept(make_project) -> None:
     project = make_project({"robot.py": "", PREFERENCES: '{"currentLanguage": "python"}'})
-    answers = iter(["", "12a", "0", str(MAX_TEAM + 1), " 1234 "])
+    replies = iter(["", "12a", "0", str(MAX_TEAM + 1), " 1234 "])
     questions = []
 
     def ask(question: str) -> str:
         questions.append(question)
-        return next(answers)
+        return next(replies)
 
     assert find_target(find_project(project.path), ask=ask).team == 1234
     assert len(questions) == 5

@@ -1,4 +1,4 @@
-"""What a robot sends cannot control the terminal: not by its output, its records, its errors, nor in its console."""
+"""A robot's data cannot control the terminal: output, records, errors, console."""
 
 from __future__ import annotations
 

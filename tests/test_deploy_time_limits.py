@@ -1,4 +1,4 @@
-"""The limits of time for what the robot sends: until a frame begins, for a frame, and for an answer as a whole."""
+"""Time limits for the robot's messages: until a frame begins, for a frame, and for a response."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ ALIVE = wire.message_frame({"alive": True})
 DONE = wire.message_frame({"done": {"release": 7}})
 
 
-def release(told: Fields) -> int:
-    """What is expected here of an answer."""
-    return told.count("release")
+def release(fields: Fields) -> int:
+    """Return the field that these tests expect in a response."""
+    return fields.count("release")
 
 
 class Clock:
@@ -111,7 +111,7 @@ def test_a_slow_frame_within_its_limit() -> None:
             "it works, but exceeds the time limit",
         ),
     ],
-    ids=["silent", "silent after a sign of life", "dripping", "half a frame", "alive for ever", "phases for ever"],
+    ids=["silent", "silent after a keep-alive", "dripping", "half a frame", "endless keep-alives", "endless phases"],
 )
 def test_each_limit_holds(pieces: list[tuple[float, bytes]], seconds: float, why: str) -> None:
     clock = Clock()

@@ -1,4 +1,4 @@
-"""What a deploy leaves on the robot's disk: the real agent, on a directory of this machine."""
+"""The robot's disk after a deploy: the real agent in a directory of this machine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Deploys to a look-alike that is as unkind as a roboRIO: kills take their time or fail, the console is silent."""
+"""Deploys to a look-alike whose kill script is slow or fails, or whose console is silent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The judgement about a program that was started, from processes and output at given times: no clock, no process."""
+"""The verdict about a started program, from processes and output at given times, without a clock or processes."""
 
 from __future__ import annotations
 
@@ -217,10 +217,10 @@ def test_what_a_crashed_process_said_is_not_said_by_the_next_one() -> None:
     assert monitor.lived == pytest.approx(5.0 - 0.9)
 
 
-@pytest.mark.parametrize(("said", "seconds"), [("", 10.0), (TRACEBACK, 2.0)], ids=["silent", "traceback"])
-def test_a_program_that_never_appears(said: str, seconds: float) -> None:
-    assert feed((0.5, set(), said), end=seconds - 0.1)[1] is None
-    monitor, verdict = feed((0.5, set(), said), end=seconds + 0.1)
+@pytest.mark.parametrize(("output", "seconds"), [("", 10.0), (TRACEBACK, 2.0)], ids=["silent", "traceback"])
+def test_a_program_that_never_appears(output: str, seconds: float) -> None:
+    assert feed((0.5, set(), output), end=seconds - 0.1)[1] is None
+    monitor, verdict = feed((0.5, set(), output), end=seconds + 0.1)
     assert verdict == ENDED
     assert not monitor.seen
 

@@ -1,4 +1,4 @@
-"""`pyfrc doctor`: what it finds, on computers and in projects with something amiss, and what it says to do."""
+"""`pyfrc doctor`: problems of computers and projects, and their remedies."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def problems(findings: Iterator[CheckResult]) -> list[CheckResult]:
     return [each for each in found if each.status == "problem"]
 
 
-def told(result: Any) -> dict[str, list[dict[str, str]]]:
+def results_of(result: Any) -> dict[str, list[dict[str, str]]]:
     """The findings of a run with --json, by their topics."""
     answer = json.loads(result.stdout)
     assert answer["problems"] == sum(each["status"] == "problem" for each in answer["findings"])
@@ -204,7 +204,7 @@ def test_a_library_that_cannot_be_imported_is_named_and_the_next_is_tried(code: 
 
 def test_without_a_display_there_is_no_window(make_project) -> None:
     bare = {"DISPLAY": "", "WAYLAND_DISPLAY": ""}
-    (finding,) = told(make_project({}).run("doctor", "--no-robot", "--json", env=bare))["window"]
+    (finding,) = results_of(make_project({}).run("doctor", "--no-robot", "--json", env=bare))["window"]
     if sys.platform == "linux":
         assert finding["status"] == "hint"
         assert "--ui none" in finding["remedy"]
@@ -225,14 +225,14 @@ def test_a_new_project_is_well_and_one_line_is_told_of_each_thing(make_project) 
 
 
 def test_without_a_project_the_rest_is_looked_at(make_project) -> None:
-    found = told(make_project({}).run("doctor", "--json"))
+    found = results_of(make_project({}).run("doctor", "--json"))
     assert found["project"][0]["status"] == "hint"
     assert found["wpilib"][0]["status"] == "ok"
     assert "not searched" in found["robot"][0]["text"]
 
 
 def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
-    found = told(make_project({}).run("doctor", "--no-robot", "--json", "--project", "nowhere"))
+    found = results_of(make_project({}).run("doctor", "--no-robot", "--json", "--project", "nowhere"))
     assert found["project"][0]["status"] == "problem"
 
 
@@ -261,7 +261,7 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
     ],
 )
 def test_what_is_wrong_in_a_project(files: dict[str, str], topic: str, said: str, remedy: str, make_project) -> None:
-    found = told(make_project({"robot.py": ROBOT} | files).run("doctor", "--no-robot", "--json"))
+    found = results_of(make_project({"robot.py": ROBOT} | files).run("doctor", "--no-robot", "--json"))
     wrong = [each for each in found[topic] if each["status"] == "problem"]
     assert wrong, found
     assert said in wrong[0]["text"]
@@ -270,7 +270,7 @@ def test_what_is_wrong_in_a_project(files: dict[str, str], topic: str, said: str
 
 def test_what_a_project_could_have_besides(make_project) -> None:
     files = {"robot.py": ROBOT, "pyproject.toml": "[tool.robotpy]\nrobotpy_version = '2026.1.1'\nrobotpy_extras = []\n"}
-    found = told(make_project(files).run("doctor", "--no-robot", "--json"))
+    found = results_of(make_project(files).run("doctor", "--no-robot", "--json"))
     assert found["project"][1]["remedy"] == "Rename it to components."
     hints = {
         topic: each["remedy"] for topic, findings in found.items() for each in findings if each["status"] == "hint"
@@ -285,7 +285,7 @@ def test_what_a_project_could_have_besides(make_project) -> None:
 
 @contextmanager
 def server(says: bytes) -> Iterator[str]:
-    """Somebody who answers at an address, and says this."""
+    """A server that sends fixed data."""
     with socket.create_server(("127.0.0.1", 0)) as listening:
 
         def answer() -> None:
@@ -314,20 +314,20 @@ def test_something_else_that_answers() -> None:
 
 
 def test_a_robot_that_is_off(make_project) -> None:
-    """A problem where it was named: somebody wants it now; else a hint."""
+    """A robot that is not found is a problem if the user has specified it, else a hint."""
     with socket.create_server(("127.0.0.1", 0)) as closed:
         address = f"127.0.0.1:{closed.getsockname()[1]}"
     preferences = {".wpilib/wpilib_preferences.json": json.dumps({"robotHostname": address})}
     project = make_project({"robot.py": ROBOT} | preferences)
-    (*_, finding) = told(project.run("doctor", "--json"))["robot"]
+    (*_, finding) = results_of(project.run("doctor", "--json"))["robot"]
     assert (finding["status"], finding["text"]) == ("hint", f"{address}: no robot found")
-    (*_, finding) = told(project.run("doctor", "--json", "--robot", address))["robot"]
+    (*_, finding) = results_of(project.run("doctor", "--json", "--robot", address))["robot"]
     assert finding["status"] == "problem"
 
 
 def test_a_team_number_that_is_none(make_project) -> None:
     project = make_project({"robot.py": ROBOT, ".wpilib/wpilib_preferences.json": '{"teamNumber": "red"}'})
-    (finding,) = told(project.run("doctor", "--json"))["robot"]
+    (finding,) = results_of(project.run("doctor", "--json"))["robot"]
     assert finding["status"] == "problem"
     assert "teamNumber" in finding["text"]
 

@@ -10,7 +10,7 @@ import pytest
 from packaging.requirements import Requirement
 
 from pyfrc_core._version import __version__
-from pyfrc_core.deploy.agent import places
+from pyfrc_core.deploy.agent import robot_paths
 from pyfrc_core.runtime.clock import KICKOFF
 from pyfrc_core.season import CURRENT, FIELDS, SEASONS
 
@@ -65,4 +65,4 @@ def test_the_robotpy_command_finds_our_commands() -> None:
 
 
 def test_the_agent_on_the_robot_knows_the_same_directories() -> None:
-    assert (CURRENT.controller.home, CURRENT.controller.program) == (places.HOME, places.CODE)
+    assert (CURRENT.controller.home, CURRENT.controller.program) == (robot_paths.HOME, robot_paths.CODE)

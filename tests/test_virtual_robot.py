@@ -1,4 +1,4 @@
-"""`pyfrc virtual-robot`, and the commands of a deploy with it: no root, no SSH server, no network."""
+"""`pyfrc virtual-robot` and deploys to it: without root, SSH server or network."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Started:
             return [line for line in self.printed if text in line][times - 1]
 
     def pid(self, times: int = 1) -> int:
-        """The process of the program that says it is version 1."""
+        """Return the process of the program that prints that it is version 1."""
         return int(self.said("version 1 of", times).split()[-1])
 
 

@@ -241,7 +241,7 @@ class _Race:
     _over: threading.Event = field(default_factory=threading.Event)
     #: The addresses with their descriptions, in the order of the candidates.
     _entered: dict[Address, str] = field(default_factory=dict)
-    _station_answered: bool = False
+    _station_responded: bool = False
 
     def enter(self, address: Address, kind: str) -> None:
         if address in self._entered:
@@ -256,7 +256,7 @@ class _Race:
         found: FoundRobot | None = None
         end = time.monotonic() + RESOLVE_SECONDS + CONNECT_SECONDS
         # The result of the Driver Station is needed even if a robot responds first.
-        while self._running and (found is None or not self._station_answered):
+        while self._running and (found is None or not self._station_responded):
             try:
                 result = self._results.get(timeout=max(end - time.monotonic(), 0))
             except queue.Empty:
@@ -279,10 +279,10 @@ class _Race:
 
     def reasons(self) -> list[FailedAttempt]:
         """Return the failed attempts in the order of the candidates."""
-        answered = {tried.address for tried in self.tried}
-        late = f"no answer within {RESOLVE_SECONDS + CONNECT_SECONDS:g} s"
+        failed = {tried.address for tried in self.tried}
+        late = f"no response within {RESOLVE_SECONDS + CONNECT_SECONDS:g} s"
         silent = [
-            FailedAttempt(address, kind, late) for address, kind in self._entered.items() if address not in answered
+            FailedAttempt(address, kind, late) for address, kind in self._entered.items() if address not in failed
         ]
         order = list(self._entered)
         return sorted([*self.tried, *silent], key=lambda tried: order.index(tried.address))
@@ -337,13 +337,13 @@ class _Race:
                 following = [partial(self.enter, address, "the Driver Station's robot")]
         except (OSError, ValueError, AttributeError, RecursionError):
             pass  # usually, no Driver Station runs on this computer
-        self._station_answered = True
+        self._station_responded = True
         return following
 
 
 def _why(error: OSError, host: str) -> str:
     if isinstance(error, TimeoutError):
-        return f"no answer within {CONNECT_SECONDS:g} s"
+        return f"no response within {CONNECT_SECONDS:g} s"
     if isinstance(error, ConnectionRefusedError) and _is_this_computer(host):
         return "refused: no virtual robot runs there"
     if isinstance(error, ConnectionRefusedError):

@@ -81,10 +81,10 @@ def save_team(file: Path, team: int) -> None:
 def _asked(ask: Callable[[str], str]) -> int:
     question = "What is your team number?"
     while True:
-        answer = ask(question).strip()
-        if re.fullmatch(r"[0-9]{1,5}", answer) and 1 <= int(answer) <= MAX_TEAM:
-            return int(answer)
-        question = f"{answer!r} is not a team number: {_RANGE}. What is your team number?"
+        text = ask(question).strip()
+        if re.fullmatch(r"[0-9]{1,5}", text) and 1 <= int(text) <= MAX_TEAM:
+            return int(text)
+        question = f"{text!r} is not a team number: {_RANGE}. What is your team number?"
 
 
 def _targets_in_files(project: Project) -> Iterator[RobotTarget]:

@@ -1,4 +1,4 @@
-"""Robots for one test, under the name `robot`: each module imports the one that it talks to."""
+"""Fixtures for robots, all called `robot`: each test module imports one."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ class Program:
             self.start_at = time.monotonic()
 
     def forget(self) -> None:
-        """Leave it alone: it runs on, and nobody looks after it."""
+        """Let the program run without supervision."""
         self.start_at = None
         self.process = None
 
@@ -133,7 +133,7 @@ def main() -> None:
             selector.register(program.output, selectors.EVENT_READ, "output")
         for key, _ in selector.select(0.1):
             if key.data == "owner":
-                return  # whoever started us is gone
+                return  # the parent process has ended
             if key.data == "control":
                 for words in os.read(control, 4096).split(b"\n"):
                     if b"stop" in words:

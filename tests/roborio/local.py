@@ -1,4 +1,4 @@
-"""The real agent on a directory of this machine, over a socket pair that can be cut: many deploys without SSH."""
+"""The real agent in a directory of this machine, over a socket pair that can be closed: many deploys without SSH."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ class LocalChannel:
     def recv_exit_status(self) -> int:
         """The agent's, where it is a process of ours."""
         if self._process is None or self._alive < 0:
-            return -1  # as paramiko says when the link is gone
+            return -1  # as paramiko returns after a lost connection
         return self._process.wait()
 
     def peak_memory(self) -> int:
@@ -108,12 +108,12 @@ class LocalChannel:
         if self._alive < 0:
             return
         self._socket.close()
-        told = b""
+        count = b""
         while piece := os.read(self._alive, 100):
-            told += piece
+            count += piece
         os.close(self._alive)
         self._alive = -1
-        self.steps = int(told) if told else None
+        self.steps = int(count) if count else None
         if self._process is not None:
             self._process.wait()
             if self._process.stderr is not None:

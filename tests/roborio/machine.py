@@ -343,7 +343,7 @@ def _addresses() -> list[str]:
 
 
 def _free_address(addresses: list[str], ports: list[int]) -> tuple[str, int]:
-    """The first of these that nobody uses."""
+    """Return the first of these that is not in use."""
     for port in ports:
         for address in addresses:
             try:

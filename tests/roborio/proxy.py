@@ -1,4 +1,4 @@
-"""A TCP proxy between us and the look-alike: it delays, limits, counts, and cuts."""
+"""A TCP proxy to the look-alike: it delays, limits, counts and cuts connections."""
 
 from __future__ import annotations
 
@@ -59,10 +59,10 @@ class Proxy:
         #: Bytes that went to the robot, and came from it.
         self.bytes_to_robot = 0
         self.bytes_from_robot = 0
-        #: How often the robot answered what had come since its last answer.
+        #: How often the robot responded to new data.
         self.round_trips = 0
         self.connections = 0
-        #: Whether the proxy has cut, as it was told to.
+        #: Whether the proxy has cut the connection as requested.
         self.has_cut = False
         self._last_to_robot = False
         self._ways: list[Way] = []

@@ -1,4 +1,4 @@
-"""A plain SSH connection to a look-alike, for tests of what goes over it."""
+"""A plain SSH connection to a look-alike, for tests of its traffic."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class SshConnection:
-    """Logged in, until the end of the ``with`` block; nobody asks for host keys here."""
+    """A connection until the end of the ``with`` block. Host keys are not checked."""
 
     def __init__(self, host: str, port: int, user: str = "lvuser") -> None:
         import paramiko

@@ -1,6 +1,6 @@
 """Forks agents that have everything imported already: a hundred of them a second. Run by `local`.
 
-Each can be told to end, by SIGKILL, before its n-th step on the disk; and to lose then what was not on the disk yet, as
+Each can end itself, by SIGKILL, before its n-th step on the disk; and to lose then what was not on the disk yet, as
 in a power cut: every file written since the last flush is empty.
 """
 
@@ -99,7 +99,7 @@ class Calls:
 
 
 def agent(connection: int, alive: int, options: dict[str, Any]) -> None:
-    """Be an agent; its steps, or its calls, are told at its end."""
+    """Run an agent, and write the number of its steps or calls at its end."""
     os.dup2(connection, 0)
     os.dup2(connection, 1)
     os.close(connection)

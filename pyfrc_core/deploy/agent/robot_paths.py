@@ -109,4 +109,4 @@ def _holder(text: str) -> str:
     try:
         return str(json.loads(text)["who"])
     except (ValueError, KeyError, TypeError):
-        return "somebody else"
+        return "another computer"

@@ -60,7 +60,7 @@ class Agent:
         self._releases = Releases(host.paths, self._activity)
         self._program = Program(host)
         self._hello = hello
-        self._who = str(hello.get("who") or "somebody")
+        self._who = str(hello.get("who") or "another computer")
         #: The deploy lock, held from a change of the program to the end of the watch.
         self._lock: ExitStack | None = None
         #: The release that was started and not watched yet.
