@@ -140,7 +140,7 @@ def test_a_new_user_comes_to_a_running_program_with_one_command_and_one_question
         assert "SHA256:" not in again.stdout
 
 
-def test_a_deploy_tells_a_line_a_phase_and_the_program_runs(robot: Roborio, make_project) -> None:
+def test_a_deploy_prints_one_line_per_phase_and_the_program_runs(robot: Roborio, make_project) -> None:
     project = make_project(program())
     result = deploy(project, robot)
     assert result.code == 0, result.output
@@ -154,7 +154,7 @@ def test_a_deploy_tells_a_line_a_phase_and_the_program_runs(robot: Roborio, make
     assert (robot.disk / "etc/natinst/share/ni-rt.ini").read_text().count("\n;StartupDLLs") == 1
 
 
-def test_what_was_deployed_from_a_checkout_says_which_commit(robot: Roborio, make_project) -> None:
+def test_a_deploy_from_a_checkout_records_the_commit(robot: Roborio, make_project) -> None:
     require("which commit was deployed", missing_programs("git"))
     project = make_project(program())
     git = ["git", "-C", str(project.path), "-c", "user.name=x", "-c", "user.email=x@example.org"]
@@ -270,7 +270,7 @@ def test_a_first_program_that_dies_has_nothing_to_go_back_to(robot: Roborio, mak
     assert "There is no earlier program to go back to" in result.stderr
 
 
-def test_a_release_that_had_to_make_room_is_not_gone_back_to(robot: Roborio, make_project) -> None:
+def test_a_rollback_to_a_removed_release_is_refused(robot: Roborio, make_project) -> None:
     project = make_project(program(1))
     assert deploy(project, robot).code == 0
     project.write(program(2, DIES))
@@ -298,7 +298,7 @@ def test_rolling_back_goes_to_the_release_before_or_the_one_named(robot: Roborio
     assert "there is no release 77" in result.stderr
 
 
-def test_what_another_tool_has_left_is_kept_and_can_be_gone_back_to(robot: Roborio, make_project) -> None:
+def test_the_program_of_another_tool_is_kept_for_a_rollback(robot: Roborio, make_project) -> None:
     robot.put("home/lvuser/py/robot.py", ROBOT.format(number=77))
     robot.put("home/lvuser/py/deploy.json", '{"deploy-user": "kim", "deploy-host": "pit", "deploy-date": "yesterday"}')
     robot.put("home/lvuser/robotCommand", START_COMMAND + "\n")
@@ -334,7 +334,7 @@ def test_undeploying_has_to_be_meant(robot: Roborio, make_project) -> None:
 # -- what is looked at before ------------------------------------------------------------------------------------------
 
 
-def test_a_failing_test_hinders_the_deploy_unless_the_user_says_so(robot: Roborio, make_project) -> None:
+def test_a_failing_test_prevents_the_deploy_unless_the_user_confirms(robot: Roborio, make_project) -> None:
     project = make_project({**program(), "tests/test_it.py": "def test_it(): raise ValueError('crooked')\n"})
     result = project.run("deploy", "--robot", robot.where)
     assert result.code == 1
@@ -358,7 +358,7 @@ def test_a_program_that_cannot_be_imported_is_not_deployed(robot: Roborio, make_
     assert not (robot.home / "py").exists()
 
 
-def test_a_project_without_tests_is_told_of_the_ready_made_ones(robot: Roborio, make_project) -> None:
+def test_without_tests_the_ready_made_ones_are_suggested(robot: Roborio, make_project) -> None:
     project = make_project(program())
     result = project.run("deploy", "--robot", robot.where)
     assert result.code == 0, result.output
@@ -399,7 +399,7 @@ OURS = version("wpilib")
     ],
     ids=lambda value: "-".join(value) if isinstance(value, dict) else None,
 )
-def test_what_is_wrong_with_a_robot_is_told_with_what_to_do(how, what, remedy, new_robot, make_project) -> None:
+def test_problems_of_a_robot_are_reported_with_remedies(how, what, remedy, new_robot, make_project) -> None:
     robot = new_robot(**how)
     project = make_project({**program(), "noise.txt": os.urandom(500_000).hex() if "disk_size" in how else ""})
     result = deploy(project, robot, "--large")
@@ -415,7 +415,7 @@ def test_the_second_model_s_image_is_accepted() -> None:
 
 
 @pytest.mark.parametrize("how", [{"wpilib": "2026.1.1"}, {"image": "FRC_roboRIO_2024_v2.1"}], ids=["wpilib", "image"])
-def test_versions_are_not_checked_when_the_user_says_so(how, new_robot, make_project) -> None:
+def test_versions_are_not_checked_with_the_option(how, new_robot, make_project) -> None:
     result = deploy(make_project(program()), new_robot(**how), "-n")
     assert result.code == 0, result.output
 
@@ -428,7 +428,7 @@ def user_keys(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_a_key_is_taken_from_the_agent_when_the_user_says_so(new_robot, make_project, user_keys: Path) -> None:
+def test_the_ssh_agents_keys_are_offered_with_the_option(new_robot, make_project, user_keys: Path) -> None:
     robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
     project = make_project(program())
     agent_socket = user_keys / "agent"
@@ -455,7 +455,7 @@ def test_a_key_is_taken_from_the_agent_when_the_user_says_so(new_robot, make_pro
         agent.stdout.close()
 
 
-def test_a_key_is_taken_from_a_file_when_the_user_says_so(new_robot, make_project, user_keys: Path) -> None:
+def test_the_key_in_a_file_is_offered_with_the_option(new_robot, make_project, user_keys: Path) -> None:
     robot = new_robot(authorized_key=(user_keys / "right.pub").read_text().strip())
     project = make_project(program())
     subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "secret", "-f", str(user_keys / "locked")], check=True)
@@ -524,7 +524,7 @@ def test_a_directory_that_the_robot_s_key_cannot_be_written_to_is_not_called_a_b
     assert "link" not in result.stderr
 
 
-def test_a_lost_link_is_told_and_the_next_deploy_needs_no_help(robot: Roborio, make_project) -> None:
+def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio, make_project) -> None:
     noise = os.urandom(100_000).hex()
     project = make_project({**program(), "noise.txt": noise})
     with Proxy((robot.host, robot.port), cut_to_robot=60_000) as proxy:
@@ -591,7 +591,7 @@ class Holding(DeployProgress):
         return []
 
 
-def test_two_deploys_at_once_one_wins_and_the_other_says_so(robot: Roborio, make_project) -> None:
+def test_of_two_simultaneous_deploys_one_is_refused(robot: Roborio, make_project) -> None:
     project = make_project({**program(1), "noise.txt": os.urandom(120_000).hex()})
     holding = Holding(lambda: deploy(project, robot))
     options = DeployOptions(choice=RobotChoice(robot=robot.where), skip_tests=True)
@@ -634,7 +634,7 @@ with socket.create_server(("127.0.0.1", 1742)) as listener:
 # -- without a robot ---------------------------------------------------------------------------------------------------
 
 
-def test_without_a_robot_it_is_told_what_was_tried(make_project) -> None:
+def test_without_a_robot_the_failed_attempts_are_listed(make_project) -> None:
     result = make_project(program()).run("deploy", "--skip-tests", "--robot", "127.0.0.1:1")
     assert result.code == 1
     assert "127.0.0.1:1  by the command  refused" in result.stderr
@@ -642,7 +642,7 @@ def test_without_a_robot_it_is_told_what_was_tried(make_project) -> None:
     assert "Is that the right address? Start a virtual robot in another terminal: pyfrc virtual-robot" in result.stderr
 
 
-def test_without_a_project_it_is_told_how_to_begin(make_project) -> None:
+def test_without_a_project_the_error_suggests_the_next_command(make_project) -> None:
     result = make_project({}).run("deploy", "--robot", "127.0.0.1:1")
     assert result.code == 2
     assert "pyfrc init" in result.stderr

@@ -62,7 +62,7 @@ def test_an_ssh_server_that_only_sends_its_greeting_is_reported(says: bytes, tmp
     assert "Error" not in str(caught.value)
 
 
-def test_nobody_at_the_address_is_told(tmp_path: Path) -> None:
+def test_an_address_without_a_robot_is_reported(tmp_path: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         address = Address("127.0.0.1", listener.getsockname()[1])
     with pytest.raises(ConnectionFailedError, match="refused"):

@@ -92,7 +92,7 @@ CUT_SHORT: dict[str, tuple[Callable[[AgentClient, Manifest], object], str, str]]
 
 
 @pytest.mark.parametrize("moment", CUT_SHORT)
-def test_ctrl_c_tells_what_is_so_on_the_robot(
+def test_ctrl_c_explains_the_robots_state(
     moment: str, robot: LocalRobot, agents: Agents, project: Manifest, tmp_path: Path
 ) -> None:
     robot.deploy(agents, project)
@@ -184,7 +184,7 @@ def test_the_lock_is_held_until_the_program_was_started_and_watched(
     assert not is_held(robot), "it goes with the connection"
 
 
-def test_nobody_else_restarts_in_between(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
+def test_another_computer_cannot_restart_in_between(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
     first, second = robot.start(agents), robot.start(agents)
     with contextlib.closing(first), contextlib.closing(second):
         first.deploy(project, REQUEST)
@@ -235,7 +235,9 @@ class Cutting(DeployProgress):
         yield phase
 
 
-def test_a_deploy_that_is_cut_before_the_start_tells_what_is_so(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_deploy_that_is_interrupted_before_the_start_explains_the_state(
+    make_project, monkeypatch: pytest.MonkeyPatch
+) -> None:
     require_roborio()
     monkeypatch.setenv("SSH_AUTH_SOCK", "")
     project = find_project(make_project({"robot.py": ROBOT_PY}).path)

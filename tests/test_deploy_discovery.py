@@ -70,7 +70,7 @@ def station_says(servers: Servers, robot: int = 0, on_field: bool = False, **mor
     return servers.start(json.dumps({"robotIP": robot, "FMS Connected": on_field, **more}).encode() + b"\n")
 
 
-def test_the_one_that_answers_as_ssh_does_is_taken(servers: Servers) -> None:
+def test_the_address_with_an_ssh_server_wins(servers: Servers) -> None:
     robot = servers.start(BANNER)
     found = find(servers, servers.nobody(), servers.start(b"220 mail\r\n"), robot, servers.start(b""))
     with found.connected:
@@ -90,7 +90,7 @@ def test_the_others_are_closed(servers: Servers) -> None:
     found.connected.close()
 
 
-def test_nothing_found_is_told_as_a_table(servers: Servers) -> None:
+def test_failed_attempts_are_shown_as_a_table(servers: Servers) -> None:
     nobody, mail, mute = servers.nobody(), servers.start(b"220 mail\r\n"), servers.start(b"")
     nowhere = Address("no-such-robot.invalid")
     with pytest.raises(RobotNotFoundError) as caught:

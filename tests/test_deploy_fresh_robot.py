@@ -84,7 +84,7 @@ def test_a_robot_with_python_alone_has_nothing_of_other_languages(robot: LocalRo
     assert look_at(robot).other_languages == ()
 
 
-def test_a_deploy_says_how_to_remove_java_until_it_is_removed(make_project) -> None:
+def test_a_deploy_suggests_removing_java_until_it_is_removed(make_project) -> None:
     require_roborio()
     project = make_project({"robot.py": ROBOT_PY})
     with Roborio(wpilib=OURS) as robot:
@@ -153,7 +153,7 @@ def test_a_robot_without_python(image: str, first: str, make_project) -> None:
     ],
     ids=lambda wrong: "-".join(map(str, *wrong.items())),
 )
-def test_the_doctor_says_what_a_deploy_would_refuse(wrong: dict[str, Any]) -> None:
+def test_the_doctor_reports_what_a_deploy_would_refuse(wrong: dict[str, Any]) -> None:
     facts = replace(READY, **wrong)
     with pytest.raises(RefusedError) as refused:
         refuse_unfit_robot(facts, "10.12.34.2", check_versions=True)
@@ -170,7 +170,7 @@ def test_a_robot_that_is_ready() -> None:
     assert finding.status == "ok"
 
 
-def test_the_doctor_says_all_that_is_wrong_at_once() -> None:
+def test_the_doctor_reports_all_problems_at_once() -> None:
     facts = replace(READY, wpilib=None, python="3.9.1", image="FRC_roboRIO_2025_v2.0")
     assert [each.status for each in check_robot_facts(facts, None)] == ["problem"] * 3
 

@@ -336,7 +336,7 @@ def test_a_file_that_windows_editors_have_saved(encoding: str, tmp_path: Path) -
         "[10.12.34.2]:ssh ssh-ed25519 b25l",
     ],
 )
-def test_a_line_that_is_no_key_is_told_by_its_number(bad: str, tmp_path: Path) -> None:
+def test_an_invalid_line_is_reported_with_its_number(bad: str, tmp_path: Path) -> None:
     file = tmp_path / KNOWN_HOSTS
     file.parent.mkdir()
     file.write_text(f"# mine\n\n{bad}\n", "utf-8")

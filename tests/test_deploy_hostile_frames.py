@@ -199,7 +199,7 @@ def test_what_is_wrong_with_a_frame(frame: str, what: str) -> None:
     assert message == f"the robot sent data that is not from pyfrc's agent: {what}"
 
 
-def test_the_longest_real_answer_is_read(project: Manifest) -> None:
+def test_the_longest_real_response_is_read(project: Manifest) -> None:
     """The changes of a project with 50,000 files, with as many commas in their names."""
     paths = [f"deploy/trajectories, and choreo/{number:05}.traj" for number in range(50_000)]
     plan = {"added": paths, "changed": [], "removed": [], "files": 50_000, "bytes": 1}
@@ -255,7 +255,7 @@ def of_json(value: object) -> bytes:
 
 @pytest.fixture(autouse=True)
 def _long_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(agent_stream, "MOST_FRAMES", 100)
+    monkeypatch.setattr(agent_stream, "MAX_FRAMES", 100)
 
 
 def test_facts_with_a_wrong_field() -> None:
@@ -279,7 +279,7 @@ def project(tmp_path: Path) -> Manifest:
     return project_of(tmp_path / "project", {"robot.py": "x = 1\n", "a.py": ""})
 
 
-def test_an_answer_to_a_deploy_with_a_wrong_field(project: Manifest) -> None:
+def test_a_response_to_a_deploy_with_an_invalid_field(project: Manifest) -> None:
     for what, deployed in variants(DEPLOYED):
         if what in ("no release", "no previous", "no taken"):
             continue
@@ -320,7 +320,7 @@ def test_a_phase_that_is_not_known_is_one_of_a_later_agent(project: Manifest) ->
     assert phases == ["\\x1b[2Jpolish"]
 
 
-def test_an_answer_that_comes_twice(project: Manifest) -> None:
+def test_a_duplicate_response(project: Manifest) -> None:
     reply = b"".join(map(wire.message_frame, ({"need": []}, {"done": DEPLOYED}, {"done": DEPLOYED})))
 
     def do(robot: AgentClient) -> None:

@@ -20,7 +20,7 @@ from pyfrc_core.deploy.agent.compiling import Compiler
 from pyfrc_core.deploy.agent.robot_paths import Refusal
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.progress import wording_of_work
+from pyfrc_core.deploy.progress import describe_work
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="an agent runs on Linux")
 
@@ -44,7 +44,7 @@ class Signs:
 # -- keep-alive messages -----------------------------------------------------------------------------------------------
 
 
-def test_a_sign_a_second_says_how_far_the_work_is() -> None:
+def test_one_keep_alive_message_per_second_has_the_progress() -> None:
     signs = Signs()
     signs.activity.begin("check", 100)
     for _ in range(100):
@@ -140,7 +140,7 @@ WORK: dict[str, tuple[Callable[[AgentClient, Manifest, Callable[[str, int, int],
 
 
 @pytest.mark.parametrize("what", WORK)
-def test_signs_of_life_during_all_work(what: str, robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+def test_keep_alive_messages_during_all_work(what: str, robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
     do, expected = WORK[what]
     for content in ("1", "22", "333"):
         robot.deploy(agents, large_project(tmp_path / "project", 10, **{"a.txt": content}))
@@ -151,7 +151,7 @@ def test_signs_of_life_during_all_work(what: str, robot: LocalRobot, agents: Age
     do(agent, project, lambda *sign: seen.append(sign))
     agent.close()
     assert {phase for phase, _, _ in seen} >= expected
-    assert all(wording_of_work(*sign) != "working" for sign in seen if sign[0] not in ("send", "receive"))
+    assert all(describe_work(*sign) != "working" for sign in seen if sign[0] not in ("send", "receive"))
     checked = [(done, of) for phase, done, of in seen if phase == "check"]
     assert not checked or max(checked)[0] >= 11
     if "receive" in expected:
@@ -159,10 +159,10 @@ def test_signs_of_life_during_all_work(what: str, robot: LocalRobot, agents: Age
 
 
 def test_work_as_the_terminal_shows_it() -> None:
-    assert wording_of_work("check", 2300, 5000) == "checking 2,300 of 5,000 files"
-    assert wording_of_work("carry", 5003, 0) == "searching 5,003 files for files that the program wrote"
-    assert wording_of_work("sync", 0, 0) == "waiting for the robot's disk"
-    assert wording_of_work("a word of a newer agent", 1, 2) == "working"
+    assert describe_work("check", 2300, 5000) == "checking 2,300 of 5,000 files"
+    assert describe_work("carry", 5003, 0) == "searching 5,003 files for files that the program wrote"
+    assert describe_work("sync", 0, 0) == "waiting for the robot's disk"
+    assert describe_work("a word of a newer agent", 1, 2) == "working"
 
 
 # -- linear work -------------------------------------------------------------------------------------------------------
@@ -243,8 +243,8 @@ def test_what_is_there_is_compiled_while_the_rest_is_received(tmp_path: Path) ->
     os.mkfifo(second)
     signs = Signs()
     with Compiler(tmp_path, ["a.py", "b.py"], debug=False) as compiler:
-        compiler.next_is_there()
-        compiler.next_is_there()
+        compiler.add_next()
+        compiler.add_next()
         with second.open("w") as stream:  # open when the compiler reads it
             assert is_compiled(first)
             stream.write("y = 2\n")
@@ -257,7 +257,7 @@ def test_a_compiler_that_is_not_needed_any_more_is_ended(tmp_path: Path) -> None
     before = children.read_text()
     os.mkfifo(tmp_path / "a.py")  # reading it would block
     with Compiler(tmp_path, ["a.py"], debug=False) as compiler:
-        compiler.next_is_there()
+        compiler.add_next()
         assert children.read_text() != before
     assert children.read_text() == before
 
@@ -281,7 +281,7 @@ def test_a_compiler_that_the_system_kills_lets_no_invalid_program_through(
         (tmp_path / name).write_text("x = 1\n" if name != "robot.py" else "x = = 1\n")
     with Compiler(tmp_path, names, False, ["robot.py"]) as compiler:
         for _ in names:
-            compiler.next_is_there()
+            compiler.add_next()
         with pytest.raises(Refusal, match=r"robot\.py:1"):
             compiler.finish(Signs().activity)
     assert [is_compiled(tmp_path / name) for name in names] == [True, not again, False]
@@ -301,8 +301,8 @@ def test_a_source_that_is_not_valid_is_known_whatever_is_killed_behind_it(
     (tmp_path / "robot.py").write_text("x = = 1\n")
     (tmp_path / "b.py").write_text("x = 1\n")
     with Compiler(tmp_path, ["robot.py", "b.py"], False, ["robot.py"]) as compiler:
-        compiler.next_is_there()
-        compiler.next_is_there()
+        compiler.add_next()
+        compiler.add_next()
         with pytest.raises(Refusal, match=r"robot\.py:1"):
             compiler.finish(Signs().activity)
 
@@ -315,7 +315,7 @@ from pyfrc_core.deploy.agent.compiling import Compiler
 names = ["large.py", "small.py"]
 with Compiler(Path(sys.argv[1]), names, False) as compiler:
     for _ in names:
-        compiler.next_is_there()
+        compiler.add_next()
     compiler.finish(Activity(lambda alive: None))
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """

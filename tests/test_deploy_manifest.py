@@ -28,7 +28,7 @@ def paths(root: Path, *exclude: str) -> list[str]:
     return [entry.path for entry in build_manifest(root, exclude).entries]
 
 
-def test_a_programs_files_are_told_by_size_and_content(tmp_path: Path) -> None:
+def test_large_projects_are_deployed_by_size_and_content(tmp_path: Path) -> None:
     make(tmp_path, "robot.py", content=b"print()\n")
     make(tmp_path, "components/arm.py", content=b"")
     (tmp_path / "robot.py").chmod(0o755)

@@ -55,7 +55,7 @@ def test_a_directory_that_cannot_be_moved_is_refused_before_anything_is_changed(
     assert deploy(roborio, tmp_path, 1).taken == 1
 
 
-def test_files_that_may_not_be_read_or_removed_hinder_no_deploy(roborio: Roborio, tmp_path: Path) -> None:
+def test_files_without_permission_do_not_prevent_a_deploy(roborio: Roborio, tmp_path: Path) -> None:
     deploy(roborio, tmp_path, 1)
     roborio.run("mkdir", "/home/lvuser/py/photos")
     roborio.put("home/lvuser/py/photos/robot.jpg", "a picture", owner=ADMIN)
@@ -72,7 +72,7 @@ def test_a_flag_for_debugging_that_another_user_has_set(roborio: Roborio, tmp_pa
     roborio.said("Robot program startup complete")
 
 
-def test_somebody_who_looks_at_a_file_is_no_robot_program(roborio: Roborio, tmp_path: Path) -> None:
+def test_a_process_that_reads_a_file_is_not_a_robot_program(roborio: Roborio, tmp_path: Path) -> None:
     deploy(roborio, tmp_path, 1, start=True)
     with SshConnection(roborio.host, roborio.port, "lvuser") as connection:
         looking = connection.open("exec tail -n +1 -f /home/lvuser/py/robot.py")

@@ -94,7 +94,9 @@ def test_the_administrator_deploys_for_the_program_s_user(roborio: Roborio, tmp_
 
 
 @pytest.mark.parametrize("debug", [False, True])
-def test_a_program_that_dies_at_once_is_told_with_its_traceback(roborio: Roborio, tmp_path: Path, debug: bool) -> None:
+def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
+    roborio: Roborio, tmp_path: Path, debug: bool
+) -> None:
     with agent(roborio) as robot:
         robot.deploy(program(tmp_path, "good"), DeployRequest("robot.py", {}))
         assert started(robot).alive

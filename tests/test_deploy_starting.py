@@ -98,7 +98,7 @@ def test_a_crash_is_shown_with_its_traceback_and_goes_back(talk: UserInterface, 
     assert "| RuntimeError: no such gyro" in shown.getvalue()
 
 
-def test_a_slow_start_is_neither_a_success_nor_gone_back_from(talk: UserInterface, shown: io.StringIO) -> None:
+def test_a_slow_start_is_not_a_success_and_causes_no_rollback(talk: UserInterface, shown: io.StringIO) -> None:
     robot = Watching(SLOW)
     with pytest.raises(NotSeenToRunError) as caught:
         start(robot, talk, 1, auto_rollback=True)
@@ -112,7 +112,7 @@ def test_a_slow_start_is_neither_a_success_nor_gone_back_from(talk: UserInterfac
     assert robot.went_back_to == []
 
 
-def test_with_a_silent_console_it_is_said_what_was_judged(talk: UserInterface, shown: io.StringIO) -> None:
+def test_with_a_silent_console_a_note_explains_the_verdict(talk: UserInterface, shown: io.StringIO) -> None:
     start(Watching(SILENT), talk, 1)
     assert "its process has run for 20 s " in shown.getvalue()
     assert "judged by its process alone" in shown.getvalue()
@@ -125,7 +125,7 @@ def test_a_first_process_that_ended_is_reported(talk: UserInterface, shown: io.S
     assert "its first process ended after 0.3 s, and the robot restarted it" in shown.getvalue()
 
 
-def test_a_long_start_gives_signs_of_life(talk: UserInterface, shown: io.StringIO) -> None:
+def test_a_long_start_prints_notes(talk: UserInterface, shown: io.StringIO) -> None:
     robot = Watching(RUNS)
     robot.states = [StartState(seconds=float(each), age=float(each), heard=each > 15, seen=True) for each in range(45)]
     start(robot, talk, 1)
@@ -157,7 +157,7 @@ def test_a_crash_is_a_crash_however_going_back_ends(
     assert caught.value.message.startswith(f"the new program ended after 4.1 s{says}")
 
 
-def test_ctrl_c_during_the_watch_says_for_how_long_the_program_has_run() -> None:
+def test_ctrl_c_during_the_watch_reports_how_long_the_program_has_run() -> None:
     robot = Watching()
     robot.recovery_hint = recovery_hints.started(2, 1, StartState(seconds=13.0, age=12.0, seen=True))
     says = r"release 2 was started, but not confirmed to run; its process has run for 12 s"
@@ -221,7 +221,7 @@ def test_a_failure_right_before_the_change(robot: LocalRobot, agents: Agents, pr
     assert not (robot.home / "py").exists()
 
 
-def test_old_releases_that_cannot_be_removed_hinder_no_deploy(
+def test_old_releases_that_cannot_be_removed_do_not_prevent_a_deploy(
     robot: LocalRobot, project: Manifest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pyfrc_core.deploy.agent import releases, transaction, wire

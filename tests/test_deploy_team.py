@@ -81,7 +81,7 @@ def test_an_editors_word_for_no_team_is_none(none: int, target_of) -> None:
     assert target_of(files).team == 5
 
 
-def test_the_user_is_asked_until_the_answer_is_one_and_it_is_kept(make_project) -> None:
+def test_the_user_is_asked_until_the_reply_is_valid_and_it_is_stored(make_project) -> None:
     project = make_project({"robot.py": "", PREFERENCES: '{"currentLanguage": "python"}'})
     replies = iter(["", "12a", "0", str(MAX_TEAM + 1), " 1234 "])
     questions = []
@@ -97,7 +97,7 @@ def test_the_user_is_asked_until_the_answer_is_one_and_it_is_kept(make_project) 
     assert find_target(find_project(project.path), ask=never).team == 1234
 
 
-def test_with_nobody_to_ask_it_is_said_where_to_write_it(target_of) -> None:
+def test_without_a_terminal_the_error_names_the_setting(target_of) -> None:
     with pytest.raises(UsageError, match=r"--team NUMBER.*\[tool\.pyfrc\].*--robot HOST"):
         target_of({})
 
@@ -118,7 +118,9 @@ def test_with_nobody_to_ask_it_is_said_where_to_write_it(target_of) -> None:
         (".deploy_cfg", "hostname = 1\n", ".deploy_cfg", "not a valid INI file"),
     ],
 )
-def test_a_bad_value_is_told_with_its_file_and_key(name: str, text: str, where: str, what: str, target_of) -> None:
+def test_an_invalid_value_is_reported_with_its_file_and_key(
+    name: str, text: str, where: str, what: str, target_of
+) -> None:
     with pytest.raises(SettingsError) as caught:
         target_of({name: text}, ask=never)
     assert str(caught.value).startswith(where)

@@ -77,12 +77,12 @@ def dripping(frame: bytes, seconds: float) -> list[tuple[float, bytes]]:
     return [(seconds, frame[place : place + 1]) for place in range(len(frame))]
 
 
-def test_signs_of_life_are_waited_for_and_passed_over() -> None:
+def test_keep_alive_messages_extend_the_wait_and_are_skipped() -> None:
     stream = stream_of(*[(50.0, ALIVE)] * 10, (50.0, DONE))
     assert stream.read_response(release) == 7
 
 
-def test_news_is_passed_on_and_signs_of_life_are_not() -> None:
+def test_messages_are_passed_on_and_keep_alive_messages_are_not() -> None:
     news: list[str] = []
 
     def heard(said: Fields) -> None:
@@ -120,7 +120,7 @@ def test_each_limit_holds(pieces: list[tuple[float, bytes]], seconds: float, why
     assert clock.now == pytest.approx(1000 + seconds, abs=5)
 
 
-def test_signs_of_life_while_contents_are_sent_are_passed_over_and_the_rest_is_kept() -> None:
+def test_keep_alive_messages_while_contents_are_sent_are_skipped_and_the_rest_is_kept() -> None:
     clock = Clock()
     for ready, news in ((ALIVE + ALIVE, False), (ALIVE + DONE, True)):
         stream = AgentStream(SlowChannel(clock, [(0, DONE)], ready), "10.12.34.2", LIMITS, clock)

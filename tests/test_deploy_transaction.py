@@ -147,7 +147,7 @@ def test_rollback(robot: LocalRobot, project: Project, agents: Agents) -> None:
     session.close()
 
 
-def test_rollback_tells_what_the_program_has_changed(robot: LocalRobot, project: Project, agents: Agents) -> None:
+def test_rollback_lists_files_that_the_program_has_changed(robot: LocalRobot, project: Project, agents: Agents) -> None:
     robot.deploy(agents, project.manifest)
     (robot.home / "py/deploy/path.json").write_text("[9, 9]")
     robot.deploy(agents, project.write("robot.py", "# 2\n").manifest)
@@ -387,7 +387,7 @@ def test_in_place_into_another_tools_directory(robot: LocalRobot, project: Proje
     assert (robot.home / "py/sub/helper.py").exists()
 
 
-def test_plan_tells_and_writes_nothing(robot: LocalRobot, project: Project, agents: Agents) -> None:
+def test_plan_writes_nothing(robot: LocalRobot, project: Project, agents: Agents) -> None:
     session = robot.start(agents)
     before = contents(robot.root)
     plan = session.plan(project.manifest)
@@ -451,7 +451,7 @@ def test_a_module_with_a_name_too_long_for_its_compiled_form(
     assert any((robot.home / "py/__pycache__").glob("robot.*.pyc"))
 
 
-def test_another_tools_program_that_was_started_for_debugging_is_so_again(
+def test_another_tools_program_is_started_for_debugging_again(
     robot: LocalRobot, project: Project, agents: Agents
 ) -> None:
     project_of(robot.home / "py", {"robot.py": "# other\n"})

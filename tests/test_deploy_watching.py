@@ -80,7 +80,7 @@ def judge(program: Program, *, turn: float = 0.1, script: float = 0.05, gap: flo
     monitor = StartMonitor({OLD})
     script_over = False
     for now, processes, text in looks(program, turn, script, gap):
-        monitor.see(now, processes, text)
+        monitor.observe(now, processes, text)
         if now >= script and not script_over:
             monitor.restarted(now)
             script_over = True
@@ -136,11 +136,11 @@ def test_a_traceback_that_the_process_survives_is_not_its_end(catches: float, st
 def feed(*looks: tuple[float, set[int], str], end: float, old: int = OLD) -> tuple[StartMonitor, str | None]:
     """A monitor that has seen all of this, restarted at 0, and its verdict at `end`."""
     monitor = StartMonitor({old})
-    monitor.see(-1.0, {old})
-    monitor.see(-0.5, set())
+    monitor.observe(-1.0, {old})
+    monitor.observe(-0.5, set())
     monitor.restarted(0.0)
     for now, processes, text in looks:
-        monitor.see(now, processes, text)
+        monitor.observe(now, processes, text)
     return monitor, monitor.verdict(end, LIMIT, SILENT_LIMIT)
 
 
@@ -153,7 +153,7 @@ def test_how_long_a_program_that_has_started_has_to_live_on() -> None:
     assert monitor.verdict(4.0, LIMIT, SILENT_LIMIT) == RUNNING
     monitor, _ = feed((1.0, {101}, BEGINNING), (3.0, {101}, COMPLETE + TRACEBACK), end=4.0)
     assert monitor.trial_left(4.0) == 2.0, "longer after a traceback"
-    monitor.see(5.0, {101}, OVER)
+    monitor.observe(5.0, {101}, OVER)
     assert monitor.trial_left(9.0) is None, "its end is known"
 
 
@@ -188,31 +188,31 @@ def test_a_program_that_is_started_twice_by_a_restart_has_not_crashed() -> None:
     assert feed((0.1, {101}, BEGINNING), (0.7, {101}, TRACEBACK), (0.8, {102}, ""), end=5.0)[1] == ENDED
 
 
-def test_what_the_old_program_said_is_not_said_by_the_new_one() -> None:
+def test_output_of_the_old_program_does_not_count_for_the_new_one() -> None:
     monitor = StartMonitor({OLD})
-    monitor.see(0.0, {OLD}, BEGINNING + COMPLETE)
-    monitor.see(0.1, {OLD}, TRACEBACK + OVER)
-    monitor.see(0.2, {101}, COMPLETE + TRACEBACK + OVER)
-    monitor.see(0.3, {101}, OVER)
+    monitor.observe(0.0, {OLD}, BEGINNING + COMPLETE)
+    monitor.observe(0.1, {OLD}, TRACEBACK + OVER)
+    monitor.observe(0.2, {101}, COMPLETE + TRACEBACK + OVER)
+    monitor.observe(0.3, {101}, OVER)
     monitor.restarted(0.3)
-    monitor.see(5.0, {101})
+    monitor.observe(5.0, {101})
     assert monitor.verdict(5.0, LIMIT, SILENT_LIMIT) is None
-    monitor.see(6.0, {101}, BEGINNING)
-    monitor.see(7.0, {101}, COMPLETE)
+    monitor.observe(6.0, {101}, BEGINNING)
+    monitor.observe(7.0, {101}, COMPLETE)
     assert monitor.verdict(10.0, LIMIT, SILENT_LIMIT) == RUNNING
 
 
-def test_what_a_crashed_process_said_is_not_said_by_the_next_one() -> None:
+def test_output_of_a_crashed_process_does_not_count_for_the_next_one() -> None:
     """All within the two seconds of the kill script."""
     monitor = StartMonitor({OLD})
-    monitor.see(0.0, {OLD})
-    monitor.see(0.1, {101}, BEGINNING)
-    monitor.see(0.5, {101}, COMPLETE)
-    monitor.see(0.9, {102}, TRACEBACK + OVER)
+    monitor.observe(0.0, {OLD})
+    monitor.observe(0.1, {101}, BEGINNING)
+    monitor.observe(0.5, {101}, COMPLETE)
+    monitor.observe(0.9, {102}, TRACEBACK + OVER)
     monitor.restarted(2.0)
-    monitor.see(4.0, {102})
+    monitor.observe(4.0, {102})
     assert monitor.verdict(4.0, LIMIT, SILENT_LIMIT) is None
-    monitor.see(5.0, {103})
+    monitor.observe(5.0, {103})
     assert monitor.verdict(6.0, LIMIT, SILENT_LIMIT) == ENDED
     assert monitor.lived == pytest.approx(5.0 - 0.9)
 
@@ -229,7 +229,7 @@ def test_without_patience_there_is_a_verdict_at_once() -> None:
     monitor = StartMonitor(())
     monitor.restarted(0.0)
     assert monitor.verdict(0.0, 0.0, 0.0) == ENDED
-    monitor.see(0.0, {1}, "words\n")
+    monitor.observe(0.0, {1}, "words\n")
     assert monitor.verdict(0.0, 0.0, 0.0) == STARTING
 
 
@@ -288,6 +288,6 @@ def test_a_program_that_reports_no_start_is_judged_by_its_process(dies: float | 
     while verdict is None:
         now += 0.1
         process = 1 if dies is None or now < dies else int(now / dies) + 1
-        monitor.see(now, {process}, "a line\n")
+        monitor.observe(now, {process}, "a line\n")
         verdict = monitor.verdict(now, LIMIT, SILENT_LIMIT)
     assert (verdict, round(now)) == (UNHEARD, SILENT_LIMIT) if dies is None else (ENDED, 6)

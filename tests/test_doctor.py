@@ -213,7 +213,7 @@ def test_without_a_display_there_is_no_window(make_project) -> None:
 # --- the project
 
 
-def test_a_new_project_is_well_and_one_line_is_told_of_each_thing(make_project) -> None:
+def test_a_new_project_has_no_problems_and_one_line_per_check(make_project) -> None:
     project = make_project({})
     assert project.run("init", ".").code == 0
     result = project.run("doctor", "--no-robot")
@@ -307,7 +307,7 @@ def test_a_robot_that_does_not_let_us_in() -> None:
     assert why.text.startswith(f"{address}: could not log in to the robot")
 
 
-def test_something_else_that_answers() -> None:
+def test_a_server_that_is_not_a_robot() -> None:
     with server(b"HTTP/1.1 400\r\n") as address:
         (finding,) = RobotSearch(None, robot=address).findings()
     assert finding.status == "problem"
@@ -332,5 +332,5 @@ def test_a_team_number_that_is_none(make_project) -> None:
     assert "teamNumber" in finding["text"]
 
 
-def test_only_one_thing_is_said_of_the_robot(make_project) -> None:
+def test_only_one_result_about_the_robot(make_project) -> None:
     assert make_project({}).run("doctor", "--no-robot", "--team", "1").code == 2

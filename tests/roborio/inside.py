@@ -20,7 +20,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))  # run without site-packages
 
-from pyfrc_core.virtual_robot.console import framed
+from pyfrc_core.virtual_robot.console import text_frame
 
 ROOT = sys.argv[1]
 HAS_DRIVER_STATION = sys.argv[2] == "driver-station"  # connected all the time
@@ -169,7 +169,7 @@ def main() -> None:
                     number += 1
                     for listener in list(listeners):
                         try:
-                            listener.sendall(framed(line, number))
+                            listener.sendall(text_frame(line, number))
                         except OSError:
                             listeners.remove(listener)
         with contextlib.suppress(ChildProcessError):

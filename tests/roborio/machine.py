@@ -107,7 +107,7 @@ class Roborio:
         self._root.mkdir()
         self.host, self.port = _free_address([host] if host else _addresses(), [port] if port else [22, 2222])
         self._inside: subprocess.Popen[str] | None = None
-        self._init = 0
+        self._init: int | None = None
         self._said = ""
         self._news = threading.Condition()
         #: Whether what the robot program prints is printed here.
@@ -185,12 +185,15 @@ class Roborio:
     def power_off(self) -> None:
         """Pull its power: everything in it ends at once, its disk stays. None of it is left when this returns."""
         if self._inside is not None:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(self._init, signal.SIGKILL)  # the first process of a namespace takes all others along
+            if self._init is None:  # it has not started
+                self._inside.kill()
+            else:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(self._init, signal.SIGKILL)  # the end of a namespace's first process ends all others
             self._inside.wait()
             assert self._inside.stdin is not None
             self._inside.stdin.close()
-            self._inside = None
+            self._inside = self._init = None
 
     def run(self, *command: str, user: str = "admin") -> subprocess.CompletedProcess[str]:
         """Run a command on it, past the SSH server."""
