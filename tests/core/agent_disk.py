@@ -10,11 +10,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pyfrc_core.deploy.agent.places import Places
+from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent.serve import Agent
-from pyfrc_core.deploy.agent.wire import CONTENT, Wire, frame, read_frame, said_frame, said_in
+from pyfrc_core.deploy.agent.wire import CONTENT, Wire, frame, message_frame, parse_message, read_frame
 
-Said = dict[str, Any]
+Message = dict[str, Any]
 
 HOME = "home/lvuser"
 
@@ -33,38 +34,38 @@ def contents(*texts: str) -> bytes:
 
 
 class AgentDisk:
-    """A robot's disk, and what an agent on it says."""
+    """A robot's disk, and an agent on it."""
 
     def __init__(self, root: Path) -> None:
         self.root = root
         self.home = root / HOME
         self.home.mkdir(parents=True)
         (root / "tmp").mkdir()
-        self.places = Places(str(root))
+        self.places = RobotPaths(str(root))
 
-    def ask(self, *requests: Said | bytes, hello: Said | None = None) -> list[Said]:
-        """Let an agent answer these requests, up to the end of the stream; return what it says after its facts.
+    def ask(self, *requests: Message | bytes, hello: Message | None = None) -> list[Message]:
+        """Send requests to an agent, and return its messages after the facts.
 
-        Signs of life are left out: on a busy machine there are some.
+        Keep-alive messages, which a busy machine causes, are left out.
         """
         source, target = os.pipe()
-        os.write(target, b"".join(each if isinstance(each, bytes) else said_frame(each) for each in requests))
+        os.write(target, b"".join(each if isinstance(each, bytes) else message_frame(each) for each in requests))
         os.close(target)
-        answers = io.BytesIO()
+        responses = io.BytesIO()
         with os.fdopen(source, "rb", buffering=0) as stream:
-            agent = Agent(Wire(stream, answers), self.places, hello or {"who": "Ada"})
+            agent = Agent(Wire(stream, responses), RoboRio(self.places), hello or {"who": "Ada"})
             try:
                 agent.serve()
             finally:
                 if agent._lock is not None:  # which ends with the agent's process
                     agent._lock.close()
-        answers.seek(0)
-        said = []
-        while answers.tell() < len(answers.getvalue()):
-            said.append(said_in(*read_frame(answers.read)))
-        return [each for each in said if "alive" not in each][1:]
+        responses.seek(0)
+        messages = []
+        while responses.tell() < len(responses.getvalue()):
+            messages.append(parse_message(*read_frame(responses.read)))
+        return [each for each in messages if "alive" not in each][1:]
 
-    def deploy(self, files: Mapping[str, str], *sent: str, main: str = "robot.py", **more: Any) -> list[Said]:
+    def deploy(self, files: Mapping[str, str], *sent: str, main: str = "robot.py", **more: Any) -> list[Message]:
         """Deploy these files, and send the contents that are expected to be asked for."""
         request = {"op": "deploy", "files": manifest(files), "main": main, "deploy_json": {"by": "Ada"}, **more}
         return self.ask(request, *([contents(*sent)] if sent else []))

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from pyfrc_core.deploy.agent import deploying, disk, places, releases, serve, system
-from pyfrc_core.deploy.agent.places import Lock, Refusal
+from pyfrc_core.deploy.agent import disk, releases, robot_paths, serve, system, transaction
+from pyfrc_core.deploy.agent.host import RoboRio
 from pyfrc_core.deploy.agent.releases import Releases, start_commands
+from pyfrc_core.deploy.agent.robot_paths import Lock, Refusal
 
 from .agent_disk import AgentDisk, contents, manifest
 
@@ -180,7 +181,7 @@ def refused(answers: list[dict[str, object]]) -> tuple[object, object]:
 )
 def test_paths_outside_the_program_are_refused(path: str, robot: AgentDisk) -> None:
     kind, message = refused(robot.deploy({**ONE, path: ""}))
-    assert (kind, message) == ("path", f"{path!r} is no path within the program's directory")
+    assert (kind, message) == ("path", f"{path!r} is not a path within the program's directory")
     assert not robot.places.releases.exists()
 
 
@@ -200,12 +201,12 @@ def test_contents_that_are_not_as_announced(robot: AgentDisk) -> None:
         "changed",
         "robot.py was changed while it was sent",
     )
-    assert refused(robot.deploy(TWO, text[:-1])) == ("protocol", "fewer contents have come than were asked for")
-    assert refused(robot.deploy(TWO, text, "more")) == ("protocol", "more contents have come than were asked for")
+    assert refused(robot.deploy(TWO, text[:-1])) == ("protocol", "received fewer contents than requested")
+    assert refused(robot.deploy(TWO, text, "more")) == ("protocol", "received more contents than requested")
     broken = {"op": "deploy", "files": manifest(TWO), "main": "robot.py"}
     kind, message = refused(robot.ask(broken, contents("")[:5] + b"\xff" * (len(contents("")) - 5)))
     assert kind == "protocol"
-    assert str(message).startswith("the contents cannot be unpacked")
+    assert str(message).startswith("the contents cannot be decompressed")
     assert robot.startable() == "py/robot.py: # one"
     assert not robot.places.incoming.exists()
     assert Releases(robot.places, None).numbers() == [1]  # type: ignore[arg-type]
@@ -223,16 +224,16 @@ def test_a_source_that_cannot_be_compiled(robot: AgentDisk) -> None:
 def test_a_full_disk(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
     # A source needs its own size, and twice that for its compiled form; whole blocks, and 512 bytes for each file.
     needed = 256 * 1024 + 512 * 3 + 4096 * 3 * 2 + 4096
-    monkeypatch.setattr(deploying, "free_bytes", lambda directory: needed - 1)
+    monkeypatch.setattr(transaction, "free_bytes", lambda directory: needed - 1)
     *_, last = robot.deploy(ONE)
     assert (last["error"], last["needed"], last["free"]) == ("space", needed, needed - 1)
     assert last["message"] == f"the robot's disk is full: {needed:,} bytes are needed, {needed - 1:,} are free"
-    monkeypatch.setattr(deploying, "free_bytes", lambda directory: needed)
+    monkeypatch.setattr(transaction, "free_bytes", lambda directory: needed)
     *_, done = robot.deploy(ONE, *ONE.values())
     assert done["done"]["release"] == 1
     # What is linked needs no room.
     needed = 256 * 1024 + 512 * 3 + 4096 * 3
-    monkeypatch.setattr(deploying, "free_bytes", lambda directory: needed)
+    monkeypatch.setattr(transaction, "free_bytes", lambda directory: needed)
     *_, done = robot.deploy(TWO, TWO["robot.py"])
     assert done["done"]["release"] == 2
 
@@ -240,7 +241,7 @@ def test_a_full_disk(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_old_releases_make_room(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
     deployed_twice(robot)
     free = iter([0, 1 << 30])
-    monkeypatch.setattr(deploying, "free_bytes", lambda directory: next(free))
+    monkeypatch.setattr(transaction, "free_bytes", lambda directory: next(free))
     need, _, done = robot.deploy(ONE, ONE["robot.py"])
     assert need["need"] == ["robot.py"]  # whose release has gone
     assert done["done"]["release"] == 3
@@ -276,11 +277,11 @@ def test_a_computer_that_is_no_roborio(robot: AgentDisk) -> None:
     robot.home.rmdir()
     kind, message = refused(robot.deploy(ONE))
     assert kind == "roborio"
-    assert message == f"there is no {robot.home} here: this is no roboRIO"
+    assert message == f"there is no {robot.home} here: this is not a roboRIO"
 
 
 def test_one_deploy_at_a_time(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(places, "_GRACE", 0.05)
+    monkeypatch.setattr(robot_paths, "_GRACE", 0.05)
     with Lock(robot.places, "Grace"):
         *_, last = robot.deploy(ONE)
         assert (last["error"], last["holder"]) == ("locked", "Grace")
@@ -289,7 +290,9 @@ def test_one_deploy_at_a_time(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch)
     *_, done = robot.deploy(ONE, *ONE.values())
     assert done["done"]["release"] == 1
     robot.places.lock.write_text("no json")
-    assert places._holder("no json") == places._holder("[]") == places._holder("{}") == "somebody else"
+    assert (
+        robot_paths._holder("no json") == robot_paths._holder("[]") == robot_paths._holder("{}") == "another computer"
+    )
 
 
 # -- what a deploy would do, and what there is -----------------------------------------------------------------------
@@ -388,7 +391,7 @@ def test_what_cannot_be_gone_back_to(robot: AgentDisk) -> None:
     )
     (robot.home / ".pyfrc/releases/1/arm.py").unlink()
     (answer,) = robot.ask({"op": "rollback"})
-    assert answer["message"] == "release 1 is not whole any more: arm.py is missing"
+    assert answer["message"] == "release 1 is no longer complete: arm.py is missing"
     assert robot.startable() == "py/robot.py: # two"
 
 
@@ -462,13 +465,13 @@ def test_what_the_old_program_writes_after_the_switch_goes_along_when_it_has_end
     (new / "other").write_text("the new one's")
     (new / "other").replace(new / "both.txt")
     records = Releases(robot.places, serve.Activity(lambda **said: None))
-    records.settle(2)
+    records.carry_late_writes(2)
     assert (new / "late.txt").read_text() == "late"
     assert (new / "log.txt").read_text() == "the old one's"
     assert (new / "both.txt").read_text() == "the new one's"
     assert "carried" not in records.record(2)
     (old / "later.txt").write_text("later")
-    records.settle(2)
+    records.carry_late_writes(2)
     assert not (new / "later.txt").exists()
 
 
@@ -540,7 +543,7 @@ def test_a_deploy_that_was_cut_past_its_moment_is_finished(robot: AgentDisk) -> 
     records = Releases(robot.places, serve.Activity(lambda **said: None))
     direct = (robot.read("robotCommand") or "").replace("/home/lvuser/py/", "/home/lvuser/.pyfrc/releases/1/")
     (robot.home / "robotCommand").write_text(direct)
-    assert records._kept() == {"1", "2"}
+    assert records._startable() == {"1", "2"}
     records.recover()
     assert robot.startable() == "py/robot.py: # one"
     assert records.current() == 1
@@ -552,7 +555,7 @@ def test_a_deploy_that_was_cut_past_its_moment_is_finished(robot: AgentDisk) -> 
 
 def test_undeploy_removes_it_all(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
     stopped: list[tuple[str, bool]] = []
-    monkeypatch.setattr(serve, "stop", lambda places, start: stopped.append((robot.startable(), start)))
+    monkeypatch.setattr(RoboRio, "stop", lambda host, start: stopped.append((robot.startable(), start)))
     robot.deploy(ONE, *ONE.values(), debug=True)
     (robot.home / "keep.txt").write_text("")
     assert robot.ask({"op": "undeploy"}) == [{"done": {"removed": True}}]

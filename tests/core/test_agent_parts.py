@@ -1,4 +1,4 @@
-"""The agent's parts: frames, signs of life, the console, what it finds, and how it restarts and watches a program."""
+"""The agent's parts: frames, keep-alive messages, the console, its facts, restarting and watching a program."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ from typing import Any
 
 import pytest
 
-from pyfrc_core.deploy.agent import console, imports, inventory, program, wire
+from pyfrc_core.deploy.agent import console, host, imports, inventory, program, wire
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import CompiledForms, Compiler, compile_below
-from pyfrc_core.deploy.agent.console import Console, console_text, split_frames
-from pyfrc_core.deploy.agent.places import Places, Refusal
+from pyfrc_core.deploy.agent.console import ConsoleClient, console_text, split_frames
+from pyfrc_core.deploy.agent.host import RoboRio
 from pyfrc_core.deploy.agent.program import Program
-from pyfrc_core.deploy.agent.virtual import VirtualRobotClient
-from pyfrc_core.deploy.agent.wire import CONTENT, SAID, EndedError, Wire, WireError, frame, read_frame, said_frame
+from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
+from pyfrc_core.deploy.agent.virtual import VARIABLE, VirtualRobotClient
+from pyfrc_core.deploy.agent.wire import CONTENT, MESSAGE, EndedError, Wire, WireError, frame, message_frame, read_frame
 
 # -- frames ------------------------------------------------------------------------------------------------------------
 
@@ -32,8 +33,8 @@ from pyfrc_core.deploy.agent.wire import CONTENT, SAID, EndedError, Wire, WireEr
 def test_a_frame_is_its_length_its_kind_and_its_body() -> None:
     assert frame(CONTENT, b"abc") == b"\0\0\0\3Cabc"
     assert read_frame(io.BytesIO(b"\0\0\0\3Cabc").read) == (CONTENT, b"abc")
-    assert wire.said_in(*read_frame(io.BytesIO(said_frame({"a": 1})).read)) == {"a": 1}
-    assert read_frame(io.BytesIO(b"\0\0\0\0J").read) == (SAID, b"")
+    assert wire.parse_message(*read_frame(io.BytesIO(message_frame({"a": 1})).read)) == {"a": 1}
+    assert read_frame(io.BytesIO(b"\0\0\0\0J").read) == (MESSAGE, b"")
     assert read_frame(io.BytesIO(b"\0\0\0\3Cabc").read, longest=3) == (CONTENT, b"abc")
 
 
@@ -43,8 +44,8 @@ def test_a_frame_is_its_length_its_kind_and_its_body() -> None:
         (b"", EndedError, "the stream has ended"),
         (b"\0\0\0\3", EndedError, "the stream has ended"),
         (b"\0\0\0\3Cab", EndedError, "the stream has ended in the middle of a frame"),
-        (b"\0\0\0\3Xabc", WireError, "this is no frame: b'"),
-        (b"\0\0\0\4Cabcd", WireError, "this is no frame: b'"),
+        (b"\0\0\0\3Xabc", WireError, "this is not a frame: b'"),
+        (b"\0\0\0\4Cabcd", WireError, "this is not a frame: b'"),
     ],
 )
 def test_what_is_no_frame(sent: bytes, error: type[WireError], message: str) -> None:
@@ -56,16 +57,16 @@ def test_what_is_no_frame(sent: bytes, error: type[WireError], message: str) -> 
 @pytest.mark.parametrize(
     ("kind", "body", "message"),
     [
-        (CONTENT, b"", "contents have come where something was to be said"),
-        (SAID, b"abc", "a frame cannot be read"),
-        (SAID, zlib.compress(b"[]"), "a frame does not hold one JSON object"),
-        (SAID, zlib.compress(b"{"), "a frame cannot be read"),
-        (SAID, zlib.compress(b"{}")[:-1], "a frame is too long, or is cut short"),
+        (CONTENT, b"", "received file contents instead of a message"),
+        (MESSAGE, b"abc", "a frame cannot be read"),
+        (MESSAGE, zlib.compress(b"[]"), "a frame does not hold one JSON object"),
+        (MESSAGE, zlib.compress(b"{"), "a frame cannot be read"),
+        (MESSAGE, zlib.compress(b"{}")[:-1], "a frame is too long, or is cut short"),
     ],
 )
 def test_what_says_nothing(kind: bytes, body: bytes, message: str) -> None:
     with pytest.raises(WireError) as caught:
-        wire.said_in(kind, body)
+        wire.parse_message(kind, body)
     assert str(caught.value).startswith(message)
 
 
@@ -76,29 +77,32 @@ def pipe_with(sent: bytes) -> io.FileIO:
     return io.FileIO(source, "rb")
 
 
-def test_a_wire_hears_and_says() -> None:
-    with pipe_with(frame(CONTENT, b"left over") + said_frame({"op": "x"}) + frame(CONTENT, b"c")) as source:
+def test_a_wire_receives_and_sends() -> None:
+    with pipe_with(frame(CONTENT, b"left over") + message_frame({"op": "x"}) + frame(CONTENT, b"c")) as source:
         target = io.BytesIO()
         ours = Wire(source, target)
-        assert ours.pending()
-        assert ours.hear() == {"op": "x"}  # contents of before are passed over
-        assert ours.content() == b"c"
+        assert ours.has_input()
+        assert ours.receive() == {"op": "x"}  # contents of before are passed over
+        assert ours.receive_contents() == b"c"
         with pytest.raises(EndedError):
-            ours.hear()
-        ours.say(a=1)
-        assert wire.said_in(*read_frame(io.BytesIO(target.getvalue()).read)) == {"a": 1}
-    with pipe_with(said_frame({})) as source, pytest.raises(WireError, match="where contents were to come"):
-        Wire(source, io.BytesIO()).content()
+            ours.receive()
+        ours.send(a=1)
+        assert wire.parse_message(*read_frame(io.BytesIO(target.getvalue()).read)) == {"a": 1}
+    with (
+        pipe_with(message_frame({})) as source,
+        pytest.raises(WireError, match="received a message instead"),
+    ):
+        Wire(source, io.BytesIO()).receive_contents()
 
 
-def test_an_impatient_wire_waits_so_long_only() -> None:
+def test_a_wire_limits_silence() -> None:
     source, target = os.pipe()
     with io.FileIO(source, "rb") as stream, io.FileIO(target, "wb"):
-        impatient = Wire(stream, io.BytesIO(), patience=0.01)
-        assert not impatient.pending()
-        impatient.impatient = True
-        with pytest.raises(WireError, match=r"nothing has come for 0\.01 s"):
-            impatient.hear()
+        limited = Wire(stream, io.BytesIO(), silence_limit=0.01)
+        assert not limited.has_input()
+        limited.limits_silence = True
+        with pytest.raises(WireError, match=r"no data for 0\.01 s"):
+            limited.receive()
 
 
 # -- signs of life -----------------------------------------------------------------------------------------------------
@@ -179,32 +183,31 @@ def test_messages_of_the_console() -> None:
     assert console_text(b"") == ""
 
 
-def test_listening_to_the_console(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_console_client() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener, socket.create_server(("127.0.0.1", 0)) as none:
         closed = none.getsockname()[1]
         none.close()
-        monkeypatch.setattr(console, "PORTS", (closed, listener.getsockname()[1]))
-        ours = Console()
-        assert ours.hear(0.0) == ""  # nothing listens
-        ours.listen()
+        ours = ConsoleClient((closed, listener.getsockname()[1]))
+        assert ours.receive(0.0) == ""  # nothing listens
+        ours.connect()
         robot, _ = listener.accept()
         with robot:
             robot.sendall(text_message("one") + text_message("two")[:-1])
             heard = ""
             while not heard:
-                heard = ours.hear(1.0)
+                heard = ours.receive(1.0)
             assert heard == "one\n"
             assert robot.recv(100) == console.KEEP_ALIVE
             robot.sendall(text_message("two")[-1:])
             while heard == "one\n":
-                heard += ours.hear(1.0)
+                heard += ours.receive(1.0)
             assert heard == "one\ntwo\n"
-            assert ours.hear(0.0) == ""
+            assert ours.receive(0.0) == ""
         while ours._socket is not None:
-            assert ours.hear(1.0) == ""
-        assert ours.hear(0.0) == ""
-        ours.listen()
-        ours.leave()
+            assert ours.receive(1.0) == ""
+        assert ours.receive(0.0) == ""
+        ours.connect()
+        ours.disconnect()
         assert ours._socket is None
 
 
@@ -241,7 +244,7 @@ def test_modules_are_found_without_importing_them(tmp_path: Path, monkeypatch: p
 
 
 def test_what_other_languages_have_left(tmp_path: Path) -> None:
-    places = Places(str(tmp_path))
+    places = RobotPaths(str(tmp_path))
     assert places.of("/home/lvuser") == tmp_path / "home/lvuser"
     assert inventory.find_other_languages(places) == []
     files = ("home/lvuser/b.jar", "home/lvuser/a.jar", "home/lvuser/frcUserProgram", "usr/local/frc/JRE/bin/java")
@@ -261,37 +264,44 @@ def test_what_other_languages_have_left(tmp_path: Path) -> None:
     assert inventory.image_in("") is None
 
 
-def test_a_virtual_robot_as_text() -> None:
+def test_a_virtual_robot_in_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+    assert VirtualRobotClient.from_environment() is None
     virtual = VirtualRobotClient("/robot", 1234, "ab", 5678)
-    assert vars(VirtualRobotClient.from_text(virtual.to_text())) == vars(virtual)
+    monkeypatch.setenv(VARIABLE, virtual.to_text())
+    found = VirtualRobotClient.from_environment()
+    assert found is not None
+    assert vars(found) == vars(virtual)
+    assert (found.paths.root, found.console_ports) == (Path("/robot"), (5678,))
 
 
 def test_own_processes() -> None:
-    assert program.is_running(os.getpid())
-    assert not program.is_running(2**22 + 1)
-    assert os.getpid() not in program.processes()
-    state = program.state_of(os.getpid())
+    robot = RoboRio(RobotPaths())
+    assert robot.is_running(os.getpid())
+    assert not robot.is_running(2**22 + 1)
+    assert os.getpid() not in robot.processes()
+    state = program.process_state(robot, os.getpid())
     assert state["cpu"] > 0
     assert state["network_tables"] is False
-    assert program.state_of(2**22 + 1) == {}
-    age = program.age_of([os.getpid(), 2**22 + 1])
+    assert program.process_state(robot, 2**22 + 1) == {}
+    age = host.age_of([os.getpid(), 2**22 + 1])
     assert age is not None
     assert 0 <= age < 86_400
-    assert program.age_of([]) is None
-    assert program._is_jar(b"/home/lvuser/Robot.jar")
-    assert not program._is_jar(b"/home/other/Robot.jar")
-    assert not program._is_jar(b"/home/lvuser/Robot.jar.txt")
+    assert host.age_of([]) is None
+    assert host._is_jar(b"/home/lvuser/Robot.jar")
+    assert not host._is_jar(b"/home/other/Robot.jar")
+    assert not host._is_jar(b"/home/lvuser/Robot.jar.txt")
 
 
 # -- restarting --------------------------------------------------------------------------------------------------------
 
 
-def robot_with_script(root: Path, script: str) -> Places:
+def robot_with_script(root: Path, script: str) -> RoboRio:
     file = root / "usr/local/frc/bin/frcKillRobot.sh"
     file.parent.mkdir(parents=True)
     file.write_text(f"#!/bin/sh\n{script}\n")
     file.chmod(0o755)
-    return Places(str(root))
+    return RoboRio(RobotPaths(str(root)))
 
 
 class World:
@@ -300,10 +310,10 @@ class World:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, *looks: Iterable[int]) -> None:
         self._looks = [set(look) for look in looks]
         self.signals: list[tuple[int, int]] = []
-        monkeypatch.setattr(program, "processes", self.processes)
-        monkeypatch.setattr(program, "_TIME_TO_END", 0.0)
+        monkeypatch.setattr(RoboRio, "processes", lambda robot: self.processes())
+        monkeypatch.setattr(host, "_END_SECONDS", 0.0)
         self._kill = os.kill
-        monkeypatch.setattr(program.os, "kill", self.kill)
+        monkeypatch.setattr(host.os, "kill", self.kill)
 
     def kill(self, process: int, number: int) -> None:
         if process < 10:
@@ -318,11 +328,11 @@ class World:
 @pytest.mark.parametrize(("start", "options"), [(True, "-t -r"), (False, "-t")])
 def test_the_kill_script_is_run(start: bool, options: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch, [7], [8])
-    places = robot_with_script(tmp_path, f'echo "$@" > {tmp_path}/options')
+    robot = robot_with_script(tmp_path, f'echo "$@" > {tmp_path}/options')
     profile = tmp_path / "etc/profile.d/natinst-path.sh"
     profile.parent.mkdir(parents=True)
     profile.write_text(f"touch {tmp_path}/sourced\n")
-    assert program.stop(places, start=start) is False
+    assert robot.stop(start=start) is False
     assert (tmp_path / "options").read_text() == f"{options}\n"
     assert (tmp_path / "sourced").exists()
     assert world.signals == []
@@ -330,41 +340,40 @@ def test_the_kill_script_is_run(start: bool, options: str, tmp_path: Path, monke
 
 def test_a_program_that_survives_is_ended_by_signals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch, [7, 8], [7, 8, 9], [8], [9])
-    assert program.stop(robot_with_script(tmp_path, ""), start=True) is True
+    assert robot_with_script(tmp_path, "").stop(start=True) is True
     assert sorted(world.signals) == [(7, signal.SIGTERM), (8, signal.SIGKILL), (8, signal.SIGTERM)]
 
 
-def test_what_cannot_be_stopped_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_be_stopped_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     World(monkeypatch, [7])
     with pytest.raises(Refusal, match=r"there is no /usr/local/frc/bin/frcKillRobot\.sh on the robot"):
-        program.stop(Places(str(tmp_path)), start=True)
-    places = robot_with_script(tmp_path, "echo cannot; exit 1")
+        RoboRio(RobotPaths(str(tmp_path))).stop(start=True)
+    robot = robot_with_script(tmp_path, "echo cannot; exit 1")
     with pytest.raises(Refusal, match="has not stopped the old program: cannot"):
-        program.stop(places, start=True)
-    places.of(program.KILL_SCRIPT).write_text("exec /no/such/thing\n")
-    with pytest.raises(Refusal, match="cannot be run"):
-        program.stop(places, start=True)
-    monkeypatch.setattr(program, "_TIME_TO_STOP", 0.05)
-    places.of(program.KILL_SCRIPT).write_text("sleep 60\n")
+        robot.stop(start=True)
+    robot.paths.of(host._KILL_SCRIPT).write_text("exec /no/such/thing\n")
+    with pytest.raises(Refusal, match="cannot be executed"):
+        robot.stop(start=True)
+    monkeypatch.setattr(host, "_SCRIPT_SECONDS", 0.05)
+    robot.paths.of(host._KILL_SCRIPT).write_text("sleep 60\n")
     waits: list[int] = []
-    with pytest.raises(Refusal, match="it does not come to its end"):
-        program.stop(places, start=True, meanwhile=lambda: waits.append(1))
+    with pytest.raises(Refusal, match=r"it did not end within 0\.05 s"):
+        robot.stop(start=True, meanwhile=lambda: waits.append(1))
     assert waits
 
 
 def test_a_restart_is_watched_until_there_is_a_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     World(monkeypatch, [7], [7], [], [8])
-    places = robot_with_script(tmp_path, "")
-    ours = Program(places)
+    ours = Program(robot_with_script(tmp_path, ""))
     heard = iter(["", "WPILib version 2026\n", "********** Robot program startup complete **********\n"])
 
-    def hear(seconds: float) -> str:
+    def receive(seconds: float) -> str:
         time.sleep(seconds / 4)
         return next(heard, "") if ours._monitor is None else ""  # it prints when it is watched
 
-    monkeypatch.setattr(ours._console, "hear", hear)
-    monkeypatch.setattr(program, "is_running", lambda process: True)
-    monkeypatch.setattr(program, "_REPORT", 0.0)
+    monkeypatch.setattr(ours._console, "receive", receive)
+    monkeypatch.setattr(RoboRio, "is_running", lambda robot, process: True)
+    monkeypatch.setattr(program, "_REPORT_SECONDS", 0.0)
     ours.restart()
     source, target = os.pipe()
     answers = io.BytesIO()
@@ -376,17 +385,17 @@ def test_a_restart_is_watched_until_there_is_a_verdict(tmp_path: Path, monkeypat
     answers.seek(0)
     said = []
     while answers.tell() < len(answers.getvalue()):
-        said.append(wire.said_in(*read_frame(answers.read)))
+        said.append(wire.parse_message(*read_frame(answers.read)))
     assert "startup complete" in "".join(each.get("output", "") for each in said)
     assert any("watching" in each for each in said)
 
 
 def test_a_watch_ends_when_the_laptop_wants_something_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     World(monkeypatch, [8])
-    monkeypatch.setattr(program, "is_running", lambda process: True)
-    ours = Program(Places(str(tmp_path)))
-    monkeypatch.setattr(ours._console, "hear", lambda seconds: "")
-    with pipe_with(said_frame({})) as source:
+    monkeypatch.setattr(RoboRio, "is_running", lambda robot, process: True)
+    ours = Program(RoboRio(RobotPaths(str(tmp_path))))
+    monkeypatch.setattr(ours._console, "receive", lambda seconds: "")
+    with pipe_with(message_frame({})) as source:
         assert ours.watch(Wire(source, io.BytesIO()), 60, 60)["verdict"] == "starting"
 
 
@@ -435,7 +444,7 @@ def test_the_programs_own_sources_have_to_be_valid(tmp_path: Path) -> None:
 
     def compile_with(program: list[str]) -> None:
         with Compiler(tmp_path, ["wrong.py"], False, program) as compiler:
-            compiler.next_is_there()
+            compiler.add_next()
             compiler.finish(activity)
 
     compile_with([])
@@ -452,8 +461,8 @@ def test_where_no_process_can_be_forked_the_agent_compiles_itself(
         (tmp_path / name).write_text("x = 1\n")
     activity = Activity(lambda **said: None)
     with Compiler(tmp_path, ["a.py", "b.py"], False) as compiler:
-        compiler.next_is_there()
+        compiler.add_next()
         assert compiled_in(tmp_path) == ["a.opt-1"]
-        compiler.next_is_there()
+        compiler.add_next()
         compiler.finish(activity)
     assert compiled_in(tmp_path) == ["a.opt-1", "b.opt-1"]
