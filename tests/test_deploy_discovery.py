@@ -100,7 +100,7 @@ def test_failed_attempts_are_shown_as_a_table(servers: Servers) -> None:
     for line, address, why in zip(
         lines[1:5],
         (nobody, nowhere, mail, mute),
-        ("refused", "the name is not known here", "no SSH server", "closed the connection"),
+        ("refused", "the name is not known here", "not an SSH server", "closed the connection"),
         strict=True,
     ):
         assert line.split()[0] == str(address)
