@@ -1,4 +1,4 @@
 """The core library of pyfrc: everything that the commands and the documented import names are made of.
 
-PYTEST_DONT_REWRITE: pytest loads a plugin from here, and must not compile the rest of it anew for that.
+PYTEST_DONT_REWRITE: pytest loads a plugin from here, and must not compile the rest again for that.
 """

@@ -104,7 +104,7 @@ def shared_parameters(item: pytest.Item) -> dict[str, int]:
 
 
 def capture_into(config: pytest.Config, files: tuple[int, int]) -> None:
-    """Begin to capture output anew, into files that another process can read. Leave capturing suspended.
+    """Restart the capture of output, into files that another process can read. Leave capturing suspended.
 
     Nothing happens when pytest captures nothing (``-s``).
 

@@ -1,4 +1,4 @@
-"""New interpreters, which import everything anew: where processes cannot be forked, or must not be."""
+"""New interpreters, which import everything again: for processes that cannot or must not be forked."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Robot time: one number that only moves when it is told to, and the queue of what happens when it does.
+"""Robot time: a number that moves only when code moves it, and a queue of actions that are due at certain times.
 
-The trade-off: nothing here ever waits. Whoever wants time to pass says how far (`run_until`), and everything
-that is due on the way happens on the caller's own thread, in one order: a robot that sleeps half a second in its
-`teleopPeriodic` moves the clock by half a second itself, while driver-station packets, notifiers and other threads
-come and go beneath its call. That is what makes a run both fast (no hand-off between threads) and repeatable.
+The trade-off: nothing here waits. The caller of `run_until` says how far time moves, and all actions that are due
+until then are called on the caller's thread, in one order. A robot that sleeps for half a second in its
+`teleopPeriodic` moves the clock by half a second itself; driver-station packets, notifiers and other threads run
+inside that call. So a run is fast (no hand-off between threads) and repeatable.
 
 Times are whole microseconds, as in WPILib's HAL, so that 20 ms packets never drift.
 """
@@ -25,35 +25,34 @@ DEFAULT_TIME_LIMIT = 500.0
 #: The time of day in robot code at robot time 0, in seconds since 1970: the season's kickoff.
 KICKOFF = int(CURRENT.kickoff.timestamp())
 
-# What is due at the same microsecond happens in this order: scripts write, the driver station speaks, then threads and
-# notifiers wake, then the robot's loop runs, then physics moves what it drives, then whoever watches looks at what came
-# of it.
+# Actions that are due at the same microsecond are called in this order: scripts write inputs, the driver station's
+# packet is delivered, threads and notifiers wake up, the robot's loop runs, physics runs, observers look at the result.
 INPUT, PACKET, WAKE_UP, ROBOT_LOOP, PHYSICS, OBSERVE = range(6)
 
 Action = Callable[[], None]
 
 
 class Clock:
-    """The time of one robot run, and what is due in it."""
+    """The robot time of one run, and the actions that are due in it."""
 
     def __init__(self) -> None:
         #: Called before each packet with the robot time in seconds: the place to change inputs.
         self.before_packet: list[Callable[[float], None]] = []
-        #: Delivers a packet; of a run, over its connection, which may be lost.
+        #: Delivers a packet. A run delivers it over its connection, which may be lost.
         self.deliver_packet: Action = deliver_packet
         self._recurring: list[tuple[int, int, Action]] = []
-        #: Its first number follows the time: memory that another process may see.
+        #: The first number is the time in microseconds. It may be memory that another process reads.
         self.moment: MutableSequence[int] | memoryview = array("q", [0])
         self.initialize()
 
     def initialize(self) -> None:
-        """Stop HAL time at 0 and forget what was due, but for packets, every 20 ms, and what `every` was told."""
+        """Stop HAL time at 0 and clear the queue, except for packets (every 20 ms) and the actions of `every`."""
         stop_and_zero()
         self.now_us = 0
         self.limit_us = to_us(DEFAULT_TIME_LIMIT)
         self._queue: list[tuple[int, int, int, Action]] = []
         self._order = 0
-        #: Set when the run is over or has failed: nobody can wait any longer, not even code that catches `TestEnded`.
+        #: Set when the run is over or has failed. No code can wait any longer then, even if it catches `TestEnded`.
         self.halted = False
         self._next_packet = PACKET_US
         self.at(PACKET_US, PACKET, self._packet)
@@ -66,13 +65,13 @@ class Clock:
         return self.now_us / 1_000_000
 
     def at(self, due_us: int, rank: int, action: Action) -> None:
-        """Have `action` called when robot time reaches `due_us` (at once, if that has passed)."""
+        """Call `action` when robot time reaches `due_us`, or as soon as time moves if that has passed."""
         # The running number makes ties come first in, first out, and keeps the heap from comparing actions.
         self._order += 1
         heappush(self._queue, (due_us, rank, self._order, action))
 
     def every(self, period_us: int, rank: int, action: Action) -> None:
-        """Have `action` called each period from now on, first when one period has passed."""
+        """Call `action` every period from now on, first when one period has passed."""
         self._recurring.append((period_us, rank, action))
         self._begin(period_us, rank, action)
 
@@ -88,15 +87,15 @@ class Clock:
         self.at(due, rank, again)
 
     def forget(self) -> None:
-        """Let go of everything that is due, and of whoever wanted it."""
+        """Clear the queue, recurring actions included, so that it holds no reference to the robot."""
         self._recurring.clear()
         self.initialize()
 
     def run_until(self, target_us: int) -> None:
-        """Let time pass until `target_us`, doing everything that falls due on the way, in order.
+        """Move time to `target_us`, and call the actions that are due until then, in order.
 
-        May be called from within an action. Time never goes back: an inner call may leave the clock later than the
-        outer one asked for.
+        An action may call this. Time never goes back: an inner call may move the clock beyond the target of the outer
+        one.
 
         :raises TestRanTooLong: when the time limit comes first
         :raises TestEnded: when the run was halted
@@ -118,7 +117,7 @@ class Clock:
             )
 
     def run_while(self, waiting: Callable[[], bool], deadline_us: int | None = None) -> None:
-        """Do what is due, one thing at a time, until `waiting` answers False or the deadline is reached.
+        """Call the actions that are due, one at a time, until `waiting` returns False or the deadline is reached.
 
         :raises TestRanTooLong: when the time limit comes first
         """

@@ -263,7 +263,7 @@ class DataLogs:
                 chosen.mkdir(parents=True, exist_ok=True)
         else:
             chosen = place.directory
-            with suppress(OSError):  # is told when the file cannot be opened
+            with suppress(OSError):  # reported when the file cannot be opened
                 place.make_room()
         name = filename.removesuffix(".wpilog")
         if place.name is not None and not (name and directory):

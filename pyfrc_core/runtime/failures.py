@@ -23,7 +23,7 @@ def leave_out_pyfrc(error: BaseException, files: RobotFiles) -> None:
     if files.innermost_line(entry) is None:
         return
     if error.args and isinstance(error.args[0], str) and "\n  File " in error.args[0]:
-        # WPILib tells where a device was made before, with the whole stack of it.
+        # WPILib reports where a device was made before, with the whole stack.
         error.args = (_STACK_ENTRY.sub(lambda found: _ours(found, files), error.args[0]).strip(), *error.args[1:])
     while entry is not None:
         while entry.tb_next is not None and is_pyfrc(entry.tb_next.tb_frame.f_code.co_filename):

@@ -1,8 +1,8 @@
-"""Finds robot code that hangs, by its lack of progress: robot time stands still while the processor is busy with it.
+"""Detects robot code that hangs: robot time does not move while the code uses processor time.
 
-Processor time, not wall time, so that a busy machine cannot make a healthy robot fail. Code that is blocked on no
-processor time at all (it reads from a keyboard that nobody is at) is given a generous wall time instead; no robot
-that moves is ever judged by it.
+It measures processor time, not wall time, so that a busy machine cannot make a correct robot fail. Code that blocks
+without using processor time (it reads from the keyboard) has a long limit of wall time instead, which never applies
+while robot time moves.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class _Interruption:
 
     @contextmanager
     def possible(self) -> Iterator[None]:
-        """While this lasts, the calling thread can be interrupted."""
+        """Allow interruptions of the calling thread until the context ends."""
         if _SIGNAL is None or _get_ident() != threading.main_thread().ident:
             yield
             return
@@ -116,8 +116,10 @@ def importing(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
 
 
 def _cpu_of_this_thread() -> Callable[[], float]:
-    """What tells any thread how much processor time the calling one has had; of the whole process, where that is not
-    told apart."""
+    """Return a function that any thread can call for the processor time of the calling thread, in seconds.
+
+    Where the system does not measure it by thread, it is the time of the whole process.
+    """
     if not hasattr(time, "pthread_getcpuclockid"):
         return _cpu
     return partial(time.clock_gettime, time.pthread_getcpuclockid(_get_ident()))
@@ -183,7 +185,7 @@ class HangDetector:
             cpu, wall, warned = _cpu(), _wall(), True
 
     def _culprit(self) -> int:
-        """The thread whose turn it is."""
+        """Return the thread that has the turn."""
         running = self._run.threads.running
         if running is not None and running.ident is not None:
             return running.ident
@@ -203,7 +205,7 @@ class HangDetector:
         return f"{place}{what}.\n{advice}"
 
     def _give_up(self, ident: int) -> None:
-        """The code swallowed the interruption, or never came to see it."""
+        """End the process: the code caught the interruption, or never ran Python code again."""
         if self._log is None:
             return
         self._log.write(self._explain(ident, busy=True))

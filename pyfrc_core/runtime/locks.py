@@ -90,7 +90,7 @@ class CooperativeLock(BuiltinClassReplacement):
 
 
 def make_lock() -> CooperativeLock:
-    """Return a new lock for robot code, whoever calls."""
+    """Return a new lock for robot code, for any caller."""
     lock: CooperativeLock = object.__new__(CooperativeLock)
     lock._lock = real_allocate_lock()
     lock._waiters = []

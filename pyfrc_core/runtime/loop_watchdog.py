@@ -16,7 +16,7 @@ from ..compat.wpilib_threads import end_watchdog_thread
 from . import cooperative
 from .clock import WAKE_UP, Clock, to_us
 
-#: What is late again and again is told once in so much robot time, as WPILib does.
+#: Microseconds of robot time between two reports of a loop that is late again and again, as in WPILib.
 _BETWEEN_REPORTS_US = 1_000_000
 
 _ERROR_CODE = 1
@@ -40,22 +40,22 @@ class Watchdog(_WPILibs):
         self._alarm_us: int | None = None  # the clock's, which may be earlier: feeding does not move it
 
     def reset(self) -> None:
-        """Feed it: its time begins anew. Enables it, too."""
+        """Feed the watchdog: restart its time, and enable it."""
         super().reset()
         self._begin()
 
     def enable(self) -> None:
-        """Have its time begin."""
+        """Start its time."""
         super().enable()
         self._begin()
 
     def disable(self) -> None:
-        """No longer wait to be fed."""
+        """Stop its time: it no longer expires."""
         super().disable()
         self._due_us = None
 
     def setTimeout(self, timeout: float) -> None:
-        """Give it another time-out, in seconds, which begins now."""
+        """Set another time-out, in seconds, and restart its time."""
         super().setTimeout(timeout)
         self._begin()
 
@@ -127,7 +127,7 @@ class LoopOverruns:
         if took_us < to_us(robot.getPeriod()) or began_us - self._told_us < _BETWEEN_REPORTS_US:
             return
         self._told_us = began_us
-        # The HAL keeps to itself what it has been told in just the same words: so it says when.
+        # The HAL drops a message with the same text as the one before, so this one contains the time.
         message = (
             f"Loop time of {robot.getPeriod():.6f}s overrun: "
             f"the turn that began at {began_us / 1e6:.3f} s took {took_us / 1e6:.3f} s"

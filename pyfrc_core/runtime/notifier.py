@@ -14,12 +14,12 @@ from .clock import to_us
 from .cooperative import start_in_robot_time
 from .threads import RobotThread, RobotThreads
 
-# Real HAL handles are small, so that handles from before the run are told from ours.
+# Real HAL handles are small numbers, so ours differ from those made before the run.
 _FIRST_HANDLE = 0x5059_0000
 
 
 class Alarm:
-    """One HAL notifier: the time it is set to, and who waits for it."""
+    """One HAL notifier: the time it is set to, and the threads that wait for it."""
 
     def __init__(self) -> None:
         self.due_us: int | None = None
@@ -70,7 +70,7 @@ class Alarms:
                 return clock.now_us, 0
             due = alarm.due_us
             timeout = None if due is None else due - clock.now_us
-            # Woken early when the alarm is set anew, then this looks again.
+            # Woken early when the alarm is set again; then this checks again.
             self._threads.wait(alarm.waiters, lambda: alarm.stopped or alarm.due_us != due, timeout)  # noqa: B023
         return 0, 0
 
@@ -81,7 +81,7 @@ class Alarms:
 
 
 class _Schedule:
-    """What a notifier's thread knows. Not the `Notifier` itself: as in WPILib, dropping that stops the thread."""
+    """The state of a notifier's thread. Not the `Notifier` itself: as in WPILib, deleting that stops the thread."""
 
     def __init__(self, handler: Callable[[], object]) -> None:
         self.handler = handler
@@ -126,13 +126,13 @@ class Notifier:
         self._start(period, to_us(period))
 
     def stop(self) -> None:
-        """No more calls, until it is started again. A call in progress is not interrupted."""
+        """Stop the calls until it is started again. A call in progress is not interrupted."""
         self._schedule.due_us = None
         self._schedule.period_us = None
 
     @staticmethod
     def setHALThreadPriority(realTime: bool, priority: int) -> bool:
-        """Simulated threads have no priorities: answers True, as WPILib's simulation does."""
+        """Return True, as WPILib's simulation does: simulated threads have no priorities."""
         return True
 
     def __del__(self) -> None:
@@ -155,7 +155,7 @@ class Notifier:
 
 
 def _serve(schedule: _Schedule) -> None:
-    """The notifier's thread."""
+    """Run the notifier's thread."""
     while not schedule.ended:
         threads = Notifier.threads
         if threads is None:

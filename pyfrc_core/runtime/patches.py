@@ -118,7 +118,7 @@ class Patches:
             return threads.sleep_until(threads.clock.now_us + max(1, to_us(seconds)))
 
         def waits_in_threading() -> float:
-            # The deadlines of conditions and queues: kept by whoever waits, so told by thread, not by file.
+            # The waiting thread computes the deadlines of conditions and queues, so they go by thread, not by file.
             threads = cooperative.scope.taking_part()
             return real_monotonic() if threads is None else _Instant(threads.clock.now)
 

@@ -74,7 +74,7 @@ class ActiveRun:
             self.forget()
 
     def forget(self) -> None:
-        """Have the process live in real time again."""
+        """Return the process to real time."""
         self.run = None
         cooperative.scope.threads = Notifier.threads = None
 
@@ -108,7 +108,7 @@ class RobotRun:
         #: Called when the robot has been constructed, and when its `robotInit` is over (see `initializes`).
         self.when_constructed: list[Callable[[], object]] = []
         self.when_initialized: list[Callable[[], object]] = []
-        #: Who records what is done from outside, if somebody does.
+        #: The recorder of external writes, if there is one.
         self.recorder: ExternalWrites | None = None
         #: What moves the robot's sensors, if the project has physics.
         self.physics: object = None
@@ -126,7 +126,7 @@ class RobotRun:
         self._closing = contextlib.ExitStack()
 
     def open(self) -> None:
-        """Take charge of the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
+        """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
         self._closing.enter_context(active_run.set_to(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
         ntcore.NetworkTableInstance.getDefault().startLocal()
@@ -157,7 +157,7 @@ class RobotRun:
 
     @property
     def initializes(self) -> bool:
-        """Whether it can be told when `robotInit` is over: of robots with WPILib's loop, and of `MagicRobot`."""
+        """Whether the end of `robotInit` is known: of robots with WPILib's loop, and of `MagicRobot`."""
         return isinstance(self.robot, wpilib.TimedRobot) or (
             hasattr(self.robot, _SIMULATION_INIT) and not isinstance(self.robot, wpilib.IterativeRobotBase)
         )
@@ -182,7 +182,7 @@ class RobotRun:
 
     @cached_property
     def hal_data(self) -> HalData:
-        """The robot's inputs and outputs; one tree for everybody who has to do with this run."""
+        """The robot's inputs and outputs: one tree for all users of this run."""
         tree = HalData(defaults=False)
         # What was written for a gyro before the robot made it, reaches it then.
         self.clock.before_packet.append(lambda now: tree.sync())
@@ -337,13 +337,13 @@ class RobotRun:
         try:
             self.still_running = self.threads.end()
         except TestFroze:
-            if self.threads.failure is None:  # what failed first is what is to be told
+            if self.threads.failure is None:  # the first failure is the one to report
                 raise
         finally:
             self.in_motion = False
 
     def close(self) -> None:
-        """Give the HAL back."""
+        """Release the HAL."""
         try:
             self.end()
         finally:
@@ -363,7 +363,7 @@ class RobotRun:
 
     @contextlib.contextmanager
     def _failing(self) -> Any:
-        """Raise what went wrong, once, on whoever drives: not the `TestEnded` that unwound the robot for it."""
+        """Raise the failure once, on the driving thread, instead of the `TestEnded` that unwound the robot."""
         __tracebackhide__ = True
         before, self.in_motion = self.in_motion, True
         if self.recorder is not None:

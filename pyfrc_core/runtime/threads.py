@@ -1,16 +1,15 @@
-"""Python threads that live in robot time.
+"""Python threads in robot time.
 
-A robot's threads stay real threads, but only one of them, or the thread that drives the clock, runs at a time: it
-keeps the turn until it waits (sleeps, asks for a lock that is taken, joins another thread, ends), and the clock decides
-who is next. So a run with threads is as repeatable as one without, and a thread that sleeps for a second costs
-no second.
+A robot's threads are real threads, but only one of them, or the thread that drives the clock, runs at a time. A thread
+keeps its turn until it waits (sleeps, acquires a lock that is taken, joins another thread, ends), and the clock chooses
+the next one. So a run with threads is as repeatable as one without, and a sleep of one second takes no second.
 
-Nothing on the index does this: event-loop clocks (trio's, asyncio's) need code written for them, and robot
-code is plain threads.
+No package on the index does this: the clocks of event loops (trio, asyncio) need code that is written for them, and
+robot code uses plain threads.
 
-A thread that waits for the world outside (a socket, a serial port) cannot be waited for in robot time. When the thread
-that has the turn is found to use no processor time, the clock takes the turn back and goes on; the thread rejoins with
-the next thing it does in robot time. What such a thread does is as repeatable as the world it listens to.
+A thread that waits for something outside the process (a socket, a serial port) cannot wait in robot time. If the thread
+that has the turn uses no processor time, the clock takes the turn back and continues; the thread rejoins at its next
+wait in robot time. Such a thread is only as repeatable as what it waits for.
 """
 
 from __future__ import annotations
@@ -32,25 +31,25 @@ real_allocate_lock = allocate_lock
 real_thread_join = threading.Thread.join
 _process_time, _get_ident = time.process_time, threading.get_ident
 
-#: How often a thread is told that the run is over, before it counts as one that will not stop.
+#: How often `TestEnded` is raised in a thread before it counts as one that does not stop.
 _TELL_TO_STOP = 1000
-# A thread that has the turn and lets this much wall time pass, in so many looks, on (nearly) no processor time, is
-# blocked in the outside world. It decides only when to stop waiting for it, not how a test ends.
+# A thread that has the turn and uses (nearly) no processor time for this much wall time, in this many looks, waits for
+# something outside the process. This decides only when to stop waiting for it, not the result of a test.
 _LOOK_SECONDS, _LOOKS, _IDLE_CPU_SECONDS = 0.05, 8, 0.004
 
 
 class RobotThread:
-    """One thread of the robot, and whether it is its turn."""
+    """One thread of the robot, and whether it has the turn."""
 
     def __init__(self, thread: threading.Thread | None) -> None:
         self.thread = thread
         self.ident: int | None = None
         self.finished = False
-        self.detached = False  # it waits in the outside world; the clock goes on without it
+        self.detached = False  # it waits for something outside the process; the clock continues without it
         self.is_the_robot = False  # its end is the robot program's
         self.error: BaseException | None = None
         self.joiners: list[RobotThread] = []
-        self.waits = 0  # counts its waits, so that a wake-up that comes too late finds nobody
+        self.waits = 0  # counts its waits, so that a late wake-up has no effect
         self.go = _taken_lock()  # released when it is its turn
         self.done = _taken_lock()  # released when it hands the turn back
 
@@ -66,7 +65,7 @@ def _taken_lock() -> LockType:
 
 
 def _wants_to_run(record: RobotThread) -> bool:
-    """Whether the thread only waits for a processor, where the system tells: then the machine is busy, no more."""
+    """Whether the thread only waits for a processor of a busy machine. False where the system does not say."""
     native = record.thread.native_id if record.thread is not None else None
     try:
         state = Path(f"/proc/self/task/{native}/stat").read_text("ascii").rpartition(")")[2].split()[0]
@@ -76,7 +75,7 @@ def _wants_to_run(record: RobotThread) -> bool:
 
 
 def _below_threading(traceback: TracebackType | None) -> TracebackType | None:
-    """The traceback from the thread's own function on."""
+    """Return the traceback from the thread's own function on."""
     inner = traceback
     while inner is not None and inner.tb_frame.f_code.co_filename in (__file__, threading.__file__):
         inner = inner.tb_next
@@ -84,7 +83,7 @@ def _below_threading(traceback: TracebackType | None) -> TracebackType | None:
 
 
 class RobotThreads:
-    """All threads of one robot run. The thread that creates this drives the clock."""
+    """The threads of one robot run. The thread that creates this object drives the clock."""
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
@@ -95,35 +94,35 @@ class RobotThreads:
         self._all: list[RobotThread] = []
         self.ending = False
         self._over = False
-        #: What went wrong while robot code on the driver waited; for whoever runs the robot to raise.
+        #: The failure that occurred while robot code on the driver waited. The code that runs the robot raises it.
         self.failure: BaseException | None = None
         #: Called when robot code on the driver's own thread is about to wait.
         self.before_driver_waits: list[Callable[[], object]] = []
         #: Called when the thread of a robot with a loop of its own is about to wait.
         self.before_loop_waits: Callable[[], object] | None = None
-        #: How many waits of robot code the driver is in the middle of, one within the other.
+        #: The number of nested waits of robot code on the driver.
         self.driver_waits = 0
 
     # -- what threads ask for ----------------------------------------------------------------------------------
 
     def current(self) -> RobotThread | None:
-        """The robot thread that calls this, if it is one."""
+        """Return the calling thread's record, or None if it is no robot thread."""
         return self._threads.get(_get_ident())
 
     def takes_part(self) -> bool:
-        """Whether the calling thread lives in robot time (the driver does, while it is in charge)."""
+        """Whether the calling thread is in robot time. The driver is, until the run is over."""
         ident = _get_ident()
         return (ident == self.driver and not self._over) or ident in self._threads
 
     def start(self, thread: threading.Thread | None = None) -> RobotThread:
-        """Prepare a thread whose first turn comes as soon as time moves; its body goes through `run_body`."""
+        """Register a thread whose first turn comes as soon as time moves. It has to call `run_body`."""
         record = RobotThread(thread)
         self._all.append(record)
         self._wake(record, self.clock.now_us)
         return record
 
     def run_body(self, record: RobotThread, body: Callable[[], object]) -> None:
-        """What the new thread itself executes: wait for its turn, do its work, hand the turn back for good."""
+        """Wait for the first turn, call `body`, and hand the turn back for good. Called by the new thread."""
         record.ident = _get_ident()
         self._threads[record.ident] = record
         record.go.acquire()
@@ -139,12 +138,12 @@ class RobotThreads:
         finally:
             self._threads.pop(record.ident, None)
             record.finished = True
-            if record.detached:  # nobody waits for its turn to end
+            if record.detached:  # the driver does not wait for the end of its turn
                 self.clock.at(self.clock.now_us, WAKE_UP, partial(self._bury, record))
             record.done.release()
 
     def sleep_until(self, due_us: int) -> None:
-        """Let the calling thread go on when robot time reaches `due_us`."""
+        """Block the calling thread until robot time reaches `due_us`."""
         __tracebackhide__ = True
         me = self.current()
         if me is None:
@@ -155,9 +154,9 @@ class RobotThreads:
             self._park(me)
 
     def wait(self, waiters: list[RobotThread], ready: Callable[[], bool], timeout_us: int | None) -> bool:
-        """Let the calling thread go on when `ready` answers True, or after `timeout_us`; answers which it was.
+        """Block the calling thread until `ready` returns True, or for `timeout_us`. Return whether it is ready.
 
-        Whoever makes `ready` true calls `notify` with the same `waiters`.
+        Code that makes `ready` true calls `notify` with the same `waiters`.
         """
         __tracebackhide__ = True
         clock = self.clock
@@ -189,16 +188,16 @@ class RobotThreads:
         return True
 
     def notify(self, waiters: list[RobotThread]) -> None:
-        """Have each of the waiting threads look again, now."""
+        """Make each waiting thread check again, at the current time."""
         for record in waiters:
             self._wake(record, self.clock.now_us)
 
     @contextlib.contextmanager
     def _robot_code_waits(self) -> Iterator[None]:
-        """Robot code on the driver's own thread has asked for time to pass.
+        """Surround a wait of robot code on the driver's thread.
 
-        A failure that comes up meanwhile elsewhere (the test's assertion, another thread's exception) is not for this
-        code to catch: it is kept for whoever runs the robot, and this code is unwound.
+        A failure that occurs elsewhere meanwhile (the test's assertion, another thread's exception) must not be caught
+        by this robot code: it is stored for the code that runs the robot, and this code is unwound.
         """
         __tracebackhide__ = True
         if self.ending or self.clock.halted:
@@ -215,7 +214,7 @@ class RobotThreads:
             self.driver_waits -= 1
 
     def fail(self, failure: BaseException) -> None:
-        """Keep what went wrong first, and let nobody wait any longer."""
+        """Store the first failure, and let no code wait any longer."""
         self.failure = self.failure or failure
         self.clock.halted = True
 
@@ -243,7 +242,7 @@ class RobotThreads:
             raise TestEnded
 
     def _give_turn(self, record: RobotThread) -> None:
-        """Let `record` run until it waits again. Called on the driver, from within the clock."""
+        """Let `record` run until it waits again. The clock calls this on the driver."""
         __tracebackhide__ = True
         if record.detached:
             # Only a thread that waits in robot time again is woken: it has just handed back its last turn.
@@ -273,7 +272,7 @@ class RobotThreads:
         __tracebackhide__ = True
         self._all.remove(record)
         if record.thread is not None:
-            real_thread_join(record.thread)  # it only has its last few instructions left; is_alive() must not waver
+            real_thread_join(record.thread)  # it is about to end: is_alive() must be the same in every run
         self.notify(record.joiners)
         if record.error is not None:
             raise record.error
@@ -281,9 +280,9 @@ class RobotThreads:
     # -- the end ------------------------------------------------------------------------------------------------
 
     def end(self) -> list[RobotThread]:
-        """Raise `TestEnded` in whatever each thread waits for; answers the threads that did not stop.
+        """Raise `TestEnded` in each thread's wait. Return the threads that did not stop.
 
-        A daemon thread that waits for the world outside does no harm where it is, and is not one of them.
+        A daemon thread that waits for something outside the process does no harm, and is not among them.
         """
         self.ending = True
         hangs: TestFroze | None = None
@@ -299,7 +298,7 @@ class RobotThreads:
                 except TestFroze as froze:
                     hangs = froze
                 except Exception:
-                    break  # what a thread says while it is being stopped
+                    break  # an error of a thread that is being stopped
         self._over = True
         if hangs is not None:
             raise hangs

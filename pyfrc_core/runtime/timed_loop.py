@@ -66,7 +66,7 @@ class TimedLoop:
         self._turns_on_own_thread = False
         self._alarm_us = _NEVER
         self.stopped = False
-        #: Called after each callback, for whoever wants to know how long it took: it began at `loop_start_us`.
+        #: Called after each callback, to measure how long it took: it began at `loop_start_us`.
         self.after_call: Callable[[Periodic], None] | None = None
         #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
         self.loop_start_us = 0
@@ -94,7 +94,7 @@ class TimedLoop:
         self._callbacks.insert(0, self._callbacks.pop())  # WPILib schedules it before all others
 
     def run_in_place(self) -> None:
-        """From now on the clock calls what is due."""
+        """Let the clock call what is due from now on."""
         self.in_place = True
         self._set_alarm(self._next())
 
@@ -104,7 +104,7 @@ class TimedLoop:
         return self._alarm_us == _NEVER if self.in_place else self._turns_on_own_thread
 
     def _set_alarm(self, callback: Periodic) -> None:
-        """Have the next turn begin when this callback is due, instead of whenever that was before."""
+        """Begin the next turn when this callback is due, instead of at the time that was set before."""
         self._alarm_us = callback.due_us
         self._clock.at(callback.due_us, ROBOT_LOOP, self._on_alarm)
 
@@ -125,7 +125,7 @@ class TimedLoop:
             self._turns_on_own_thread = False
 
     def _turn(self) -> Periodic:
-        """Call everything that is due, one after the other, whatever time each takes; answers what is due next."""
+        """Call the callbacks that are due, one after the other, however long each takes. Return the next one."""
         __tracebackhide__ = True
         clock = self._clock
         woken_us = clock.now_us

@@ -55,11 +55,11 @@ class Trace:
             self._out.write(line + "\n")
 
     def digest(self) -> str:
-        """The hash of everything recorded so far, in hexadecimal."""
+        """Return the hash of everything recorded so far, in hexadecimal."""
         return self._hash.hexdigest()
 
     def finish(self) -> str:
-        """Write the hash as the last line, and answer it."""
+        """Write the hash as the last line, and return it."""
         digest = self.digest()
         if self._out is not None:
             self._out.write(json.dumps({"sha256": digest}) + "\n")
@@ -67,5 +67,5 @@ class Trace:
 
 
 def _differ(old: object, new: object) -> bool:
-    # NaN differs from itself, so it is told apart by how it is written.
+    # NaN differs from itself, so it is compared by its text.
     return old != new and repr(old) != repr(new)

@@ -1,1 +1,1 @@
-"""Input scripts: what a robot is told from outside, packet by packet, as lines that a person can read and diff."""
+"""Input scripts: the inputs of a robot, packet by packet, as lines that a person can read and diff."""

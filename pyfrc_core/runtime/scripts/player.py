@@ -68,7 +68,7 @@ class Player:
             self._run.clock.at(self._next.at_us, INPUT, lambda: self._write_until(self._run.clock.now_us))
 
     def see_that_all_were_there(self) -> None:
-        """Look, at the end, for what was written to devices that the robot has not made: nobody reads that.
+        """Check, at the end, for writes to devices that the robot has not made, which have no effect.
 
         :raises ScriptError: naming the first such line
         """

@@ -1,4 +1,4 @@
-"""Records a run's input script: what differs, after code from outside has had its say, from what the robot left."""
+"""Records a run's input script: the differences between before and after each external write."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .targets import MATCH_TIME, MODE, NETWORK, PACKET, REMAINING, Countdown, pl
 
 _RECORDED_PACKAGES = ("pyfrc", "wpilib")
 
-#: Leaves that are told otherwise, as `mode`.
+#: Leaves that scripts contain in another form, such as `mode`.
 _TOLD_OTHERWISE = {"control.enabled", "control.autonomous", "control.test"}
 
 #: The types that entries of NetworkTables have for people; structs and the like are written by robots.
@@ -46,22 +46,22 @@ class Recorder:
         run.recorder = self
 
     def begin_outside(self, stepping: bool = False) -> None:
-        """Code from outside has its say.
+        """Begin external writes.
 
-        :param stepping: whether before a packet, which brings what it says
+        :param stepping: whether they come before a packet, which delivers them
         """
         if stepping:
             self._stepping_since = self._run.clock.now_us
         self._before = self._look()
 
     def on_packet_out_of_turn(self) -> None:
-        """Code from outside has a packet delivered, with what it has said until now."""
+        """Deliver a packet with the external writes up to now."""
         self.end_outside()
         self._steps.append(Step(self._at_us(), {PACKET: True}))
         self.begin_outside()
 
     def end_outside(self, stepping: bool = False) -> None:
-        """Code from outside has had its say."""
+        """End external writes."""
         at_us = self._at_us()
         if stepping:
             self._stepping_since = None
@@ -126,7 +126,7 @@ class Recorder:
 
 
 class _MatchTime:
-    """Tells the match's time, which whoever runs a match writes before each packet, as one countdown."""
+    """Records the match time as one countdown. The code that runs a match writes it before each packet."""
 
     def __init__(self) -> None:
         self._countdown = Countdown()

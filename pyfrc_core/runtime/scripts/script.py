@@ -54,17 +54,17 @@ class Step:
 
 @dataclass(frozen=True)
 class InputScript:
-    """What a robot is told from outside in one run.
+    """The inputs of a robot in one run.
 
     :param steps: in the order of their times
     :param end_us: when the run ends
     :param start_us: when the robot is started; steps until then are written before
     :param robot: the file of the robot program
-    :param seed: what random generators start from
-    :param packages: the versions of what it was recorded with
-    :param trace: the hash of what the robot did when this was recorded
-    :param story: of a script that fuzzing has kept, what happens in it, for people; whoever replays it then looks
-        for all that fuzzing takes for a failure
+    :param seed: the seed of random generators
+    :param packages: the versions of the packages with which it was recorded
+    :param trace: the hash of the robot's trace at the time of the recording
+    :param story: a description of what happens, in scripts that fuzzing has saved; a replay of these checks for all
+        failures that fuzzing checks for
     :param file: where it was read from, for errors
     """
 

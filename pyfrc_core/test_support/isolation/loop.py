@@ -2,7 +2,7 @@
 
 WPILib's HAL, and robots that keep devices in classes and modules, do not survive a second robot in one process.
 The process that collects the tests has imported everything already, the robot's modules too; forking it takes a few
-milliseconds where starting anew takes half a second. Where fork is not to be had, a new process serves.
+milliseconds where a new interpreter takes half a second. Where processes cannot be forked, it starts new interpreters.
 
 Fixtures wider than one test (of a class, a module, the session) are set up here, before the fork, once, and torn down
 here, as everywhere in pytest.
@@ -33,7 +33,7 @@ from .processes import TestProcess, forked_test, spawned_test
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
 _ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})
 
-_IMPORTS_LATE = "Each robot test imports the robot anew, which is slower: on import, {}. Do that in robotInit."
+_IMPORTS_LATE = "Each robot test imports the robot again, which is slower: on import, {}. Do that in robotInit."
 _STARTS_PYTHON = "Each robot test starts a new Python, which is some 20 times slower: on import, {}."
 
 
@@ -133,7 +133,7 @@ class IsolatedTests:
         if self._plugin.imports_late:
             self._explain(config, _IMPORTS_LATE.format(self._plugin.imports_late))
         else:
-            with contextlib.suppress(Exception):  # told by each test that needs it
+            with contextlib.suppress(Exception):  # each test that needs it reports it
                 self._plugin.robot_class()
         reasons = "; ".join(reasons_not_to_fork())
         if not reasons:
@@ -241,7 +241,7 @@ def _set_up_shared(session: pytest.Session, item: pytest.Item) -> None:
 
 
 def _other_parameters(before: pytest.Item, item: pytest.Item) -> bool:
-    """Whether a fixture that both share is to be made anew for `item`, with another parameter."""
+    """Whether a fixture that both share is made again for `item`, with another parameter."""
     old, new = pytest_private.shared_parameters(before), pytest_private.shared_parameters(item)
     return any(old[name] != new[name] for name in old.keys() & new.keys())
 
