@@ -130,7 +130,7 @@ def test_a_plugin_with_a_protocol_of_its_own_changes_nothing(make_project: MakeP
 def test_a_thread_that_the_robot_starts_on_import_is_named_with_its_line(make_project: MakeProject) -> None:
     project = make_project({"robot.py": "    import vision_library\n" + ROBOT.lstrip("\n"), "tests/test_a.py": TESTS})
     (explained,), outcomes = run(project)
-    assert "imports the robot anew" in explained
+    assert "imports the robot again" in explained
     assert "robot.py:1 starts the thread 'frames', which runs vision_library.grab" in explained
     assert outcomes == {"test_forked": "PASSED", "test_another": "PASSED"}
 
