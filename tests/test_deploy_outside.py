@@ -58,7 +58,7 @@ def test_everything_but_a_deploy_goes_from_anywhere(robot: Roborio, home: Path, 
 
 def test_the_console_goes_from_anywhere(make_project: MakeProject) -> None:
     with running(make_project({}), "console", "--robot", "127.0.0.1") as console:
-        wait_for(console, "refuses the connection 127.0.0.1:1741")
+        wait_for(console, "127.0.0.1:1741 refuses the connection")
     assert console.returncode == 0
 
 

@@ -85,13 +85,13 @@ def problems(facts: RobotFacts, tmp_path: Path) -> Problems:
             {"robot.py": "import drivetrian\n", "drivetrain.py": ""},
             ("drivetrian",),
             "robot.py:1: import drivetrian: neither the project nor the robot has such a module",
-            "Is drivetrain meant?",
+            "Did you mean drivetrain?",
         ),
         (
             {"robot.py": "from subsystems import shoter\n", "subsystems/shooter.py": ""},
             ("subsystems",),
             "robot.py:1: import subsystems.shoter: neither the project nor the robot has such a module",
-            "Is subsystems.shooter meant?",
+            "Did you mean subsystems.shooter?",
         ),
         (
             {"robot.py": "import some_library\n"},

@@ -122,7 +122,7 @@ def test_of_wpilibs_own_packages_the_odd_one_is_named_once() -> None:
     ]
     (finding,) = problems(check_wpilib(Installed([odd, *others])))
     assert finding.remedy == 'pip install "robotpy-wpimath==2026.2.2"'
-    assert finding.text.endswith("not 2026.1.1; needed by wpilib 2026.2.2, too")
+    assert finding.text.endswith("not 2026.1.1; also needed by wpilib 2026.2.2")
 
 
 def test_a_package_that_wants_an_older_wpilib_is_to_be_upgraded() -> None:
@@ -165,7 +165,7 @@ def test_something_else_under_pyfrcs_names(monkeypatch: pytest.MonkeyPatch, tmp_
     findings = list(check_pyfrc(Installed([package("pyfrc", __version__)])))
     assert [each.status for each in findings] == ["problem", "hint"]
     assert str(tmp_path) in findings[0].text
-    assert findings[1].text == "robotpy test is other-tool's and pyfrc provide"
+    assert findings[1].text == "both other-tool and pyfrc provide robotpy test"
 
 
 def test_what_pyfrc_needs_and_has_not() -> None:
