@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from pyfrc_core.deploy.agent.start_monitor import ENDED, RUNNING, STARTED, STARTING, UNHEARD, StartMonitor
@@ -252,6 +252,11 @@ PROGRAMS = st.builds(
 )
 
 
+# A start that is reported soon after the process was first seen, long after the end of the old one.
+@example(
+    Program(starts=0.40234375, console=True, pause=0.0, late=0.0, announced=False),
+    {"turn": 0.21875, "script": 0.0, "gap": 2.0},
+)
 @given(PROGRAMS, st.fixed_dictionaries(HOW))
 def test_a_program_that_lives_on_is_never_called_ended(program: Program, how: dict[str, float]) -> None:
     how["script"] = max(how["script"], how["gap"])  # the script ends after the old program

@@ -113,6 +113,10 @@ class StartMonitor:
         self._others |= fresh.difference([self.process])
         return now > self._old_seen
 
+    def _end_before(self) -> float:
+        """Return when the previous process was last seen, or the current one first, if that is not known."""
+        return self._since if self._ends else self._old_seen
+
     def _begin(self, now: float, process: int) -> None:
         self._forget()
         self.process, self._since, self.seen, self._absent = process, now, True, None
@@ -132,7 +136,7 @@ class StartMonitor:
                 self._forget()
                 self._begun = True
             elif STARTED in line:
-                if self._begun or now - self._since > _LATE_OUTPUT:
+                if self._begun or now - self._end_before() > _LATE_OUTPUT:
                     self._started = self._started or now
             elif _TRACEBACK in line:
                 self._traceback = now
