@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from ..config.robotpy import COMPONENT_MODULES, COMPONENTS, RobotPackages
 from .agent.imports import is_there
 from .local_checks import ask_to_continue
-from .program_imports import FoundImport, ProgramImports
+from .program_imports import ProgramImports
 from .robot_checks import NO_CHECK
 from .robot_setup import INSTALL_FOR_VIRTUAL_ROBOT, INSTALL_PACKAGES, VIRTUAL_IMAGE
 
@@ -113,7 +113,8 @@ class ImportSearch:
                 continue
             if self._found().changes_path and self._found().named_alike(module):
                 continue  # probably in a directory that the program adds to sys.path
-            yield self._explained(found, module, facts, packages)
+            text, remedy = self._explanation(module, facts, packages)
+            yield PackageProblem(found.where, f"import {module}: {text}", remedy, found.wanted.certain)
 
     def _missing(self, module: str, facts: RobotFacts) -> str | None:
         """Return the part of a dotted module name that neither the program nor the robot has, or None."""
@@ -134,11 +135,14 @@ class ImportSearch:
                 continue  # the robot has a package of this name, which takes precedence over the program's directory
             if not top:
                 text = f"from {module} import: there is no package above {found.file}"
-                yield PackageProblem(found.where, text, "Leave out the dots.", found.wanted.certain)
+                remedy = "Leave out the dots."
             else:
-                yield self._not_ours(found, module, facts)
+                text, remedy = self._not_ours(module, facts)
+                text = f"import {module}: {text}"
+            yield PackageProblem(found.where, text, remedy, found.wanted.certain)
 
-    def _explained(self, found: FoundImport, module: str, facts: RobotFacts, packages: RobotPackages) -> PackageProblem:
+    def _explanation(self, module: str, facts: RobotFacts, packages: RobotPackages) -> tuple[str, str]:
+        """Return why the robot does not have a module, and what to do."""
         from importlib.metadata import packages_distributions
 
         from packaging.utils import canonicalize_name
@@ -146,44 +150,33 @@ class ImportSearch:
         top = module.partition(".")[0]
         others = self._found().extensions_of(top)
         if others:
-            text = f"import {module}: {others[0]} is not for the robot's Python ({facts.extension_suffixes[0]})"
-            return PackageProblem(found.where, text, "Take the library built for the roboRIO.", found.wanted.certain)
+            text = f"{others[0]} is not for the robot's Python ({facts.extension_suffixes[0]})"
+            return text, "Take the library built for the roboRIO."
         if top in sys.stdlib_module_names:
-            text = f"import {module}: Python {facts.python} on the robot has no such module"
-            return PackageProblem(
-                found.where,
-                text,
-                "That Python's library does not have it: use another module.",
-                found.wanted.certain,
-            )
+            text = f"Python {facts.python} on the robot has no such module"
+            return text, "That Python's library does not have it: use another module."
         distribution = next(iter(packages_distributions().get(top, ())), COMPONENT_MODULES.get(top))
         if distribution is None:
-            return self._not_ours(found, module, facts)
+            return self._not_ours(module, facts)
         if canonicalize_name(distribution) in facts.packages:
             there = f"{distribution} {facts.packages[canonicalize_name(distribution)]}"
-            text = f"import {module}: {there} on the robot has no such module"
             remedy = f"Install this computer's version: {_install(distribution, facts)}."
-            return PackageProblem(found.where, text, remedy, found.wanted.certain)
-        text = f"import {module}: the robot has no package {distribution}"
-        return PackageProblem(found.where, text, _how_to_get(distribution, packages, facts), found.wanted.certain)
+            return f"{there} on the robot has no such module", remedy
+        return f"the robot has no package {distribution}", _how_to_get(distribution, packages, facts)
 
-    def _not_ours(self, found: FoundImport, module: str, facts: RobotFacts) -> PackageProblem:
-        """Return the problem for a module that is neither in the program nor in a known package."""
+    def _not_ours(self, module: str, facts: RobotFacts) -> tuple[str, str]:
+        """Return the same for a module that is neither in the program nor in a known package."""
         from difflib import get_close_matches
 
         base = self._root.joinpath(*module.split("."))
         if base.with_name(f"{base.name}.py").is_file() or base.is_dir():
-            text = f"import {module}: the project has it, but it is not uploaded"
-            remedy = "Check exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml."
-        else:
-            text = f"import {module}: neither the project nor the robot has such a module"
-            parent = module.rpartition(".")[0]
-            alike = get_close_matches(module, self._own_modules(parent), 1)
-            remedy = f"Did you mean {alike[0]}?" if alike else "Check the name. If it is a package: "
-            if not alike:
-                requires = "" if _is_virtual(facts) else "add it to requires under [tool.robotpy] in pyproject.toml; "
-                remedy += f"{requires}{_install('PACKAGE', facts)}."
-        return PackageProblem(found.where, text, remedy, found.wanted.certain)
+            exclude = "Check exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml."
+            return "the project has it, but it is not uploaded", exclude
+        text = "neither the project nor the robot has such a module"
+        if alike := get_close_matches(module, self._own_modules(module.rpartition(".")[0]), 1):
+            return text, f"Did you mean {alike[0]}?"
+        requires = "" if _is_virtual(facts) else "add it to requires under [tool.robotpy] in pyproject.toml; "
+        return text, f"Check the name. If it is a package: {requires}{_install('PACKAGE', facts)}."
 
     def _own_modules(self, parent: str) -> list[str]:
         names = (path.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for path in self._files)

@@ -14,8 +14,7 @@ import sys
 import threading
 from pathlib import Path
 
-#: The standard port of NetworkTables.
-_TABLES_PORT = 5810
+from ..deploy.agent.host import NETWORK_TABLES_PORT
 
 
 def main() -> None:
@@ -70,13 +69,13 @@ def _run(main: Path) -> bool:
 
 def _tables_port() -> int:
     """Return the standard port if it is free, else another free port."""
-    for port in (_TABLES_PORT, 0):
+    for port in (NETWORK_TABLES_PORT, 0):
         try:
             with socket.create_server(("127.0.0.1", port)) as probe:
                 return int(probe.getsockname()[1])
         except OSError:
             continue
-    return _TABLES_PORT
+    return NETWORK_TABLES_PORT
 
 
 if __name__ == "__main__":

@@ -61,7 +61,7 @@ def test_code_that_computes_while_robot_time_stands_hangs(monkeypatch: pytest.Mo
     def steps() -> Iterator[object]:
         for world.cpu in (5.0, 9.0):
             yield 1
-        world.run.clock.now_us = 20_000  # it moves: the count begins anew
+        world.run.clock.now_us = 20_000  # it moves: the count restarts
         yield 1
         for world.cpu in (18.5, 19.0):
             yield 1

@@ -265,23 +265,23 @@ def test_waiting_for_a_connection_takes_robot_time(run: RobotRun) -> None:
 
 def test_packets_out_of_turn_and_resets(run: RobotRun) -> None:
     table = {(owner.__name__, name): value for owner, name, value in driver_station.patches(lambda: run)}
-    told: list[str] = []
+    calls: list[str] = []
 
     class Recorder:
         def on_packet_out_of_turn(self) -> None:
-            told.append("recorder")
+            calls.append("recorder")
 
         def begin_outside(self) -> None: ...
 
         def end_outside(self) -> None: ...
 
     run.recorder = Recorder()  # type: ignore[assignment]
-    run.connection.when_connected.append(lambda: told.append("packet"))
+    run.connection.when_connected.append(lambda: calls.append("packet"))
     modes.set_mode(enabled=True)
     table["hal.simulation", "notifyDriverStationNewData"]()
-    assert told == ["recorder", "packet"]
+    assert calls == ["recorder", "packet"]
     table["DriverStationSim", "notifyNewData"]()
-    assert told == ["recorder", "packet", "recorder"]
+    assert calls == ["recorder", "packet", "recorder"]
     assert wpilib.DriverStation.isEnabled()
     for reset in (("DriverStationSim", "resetData"), ("hal.simulation", "resetDriverStationData")):
         hs.setDriverStationDsAttached(False)
@@ -297,15 +297,15 @@ def connection() -> DriverStationConnection:
 
 
 def test_a_connection_begins_with_the_first_packet_and_is_lost_without(connection: DriverStationConnection) -> None:
-    told: list[str] = []
-    connection.when_connected.append(lambda: told.append("connected"))
+    calls: list[str] = []
+    connection.when_connected.append(lambda: calls.append("connected"))
     for _ in range(3):
         connection.packet()
-    assert (told, connection.connected) == ([], False)
+    assert (calls, connection.connected) == ([], False)
     modes.reset_driver_station()
     connection.packet()
     connection.packet()
-    assert (told, connection.connected) == (["connected"], True)
+    assert (calls, connection.connected) == (["connected"], True)
     hs.setJoystickAxisCount(0, 5)
     hs.setDriverStationDsAttached(False)
     connection.packet()
@@ -316,7 +316,7 @@ def test_a_connection_begins_with_the_first_packet_and_is_lost_without(connectio
     assert hs.getJoystickCounts(0) == (5, 12, 1)  # what the next packet will bring
     hs.setDriverStationDsAttached(True)
     connection.packet()
-    assert told == ["connected"] * 2
+    assert calls == ["connected"] * 2
 
 
 @pytest.mark.parametrize(("enabled", "checks"), [(True, [6, 10, 14]), (False, [])])

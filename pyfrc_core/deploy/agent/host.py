@@ -27,7 +27,7 @@ _SHELLS = ("/bin/bash", "/bin/sh")  # the script needs bash, and may lack a firs
 _CODE_PREFIXES = (f"{CODE}/".encode(), f"{HOME}/.pyfrc/releases/".encode())
 _NATIVE_PROGRAM = f"{HOME}/frcUserProgram".encode()  # written in C++
 #: The port of NetworkTables 4. WPILib opens it when the robot class is constructed, before `robotInit`.
-_NETWORK_TABLES = 5810
+NETWORK_TABLES_PORT = 5810
 _NOT_EXECUTED = (126, 127)  # a shell's exit codes
 _POWER_CYCLE = "Switch the robot off and on again: it starts the new program then."
 _SCRIPT_SECONDS = 15.0
@@ -86,7 +86,7 @@ class RoboRio:
             f"socket:[{row.split()[9]}]"
             for table in ("tcp", "tcp6")
             for row in Path(f"/proc/{process}/net/{table}").read_text().splitlines()[1:]
-            if row.split()[1].endswith(f":{_NETWORK_TABLES:04X}") and row.split()[3] == "0A"
+            if row.split()[1].endswith(f":{NETWORK_TABLES_PORT:04X}") and row.split()[3] == "0A"
         }
         for each in Path(f"/proc/{process}/fd").iterdir() if sockets else ():
             with suppress(FileNotFoundError):  # closed meanwhile

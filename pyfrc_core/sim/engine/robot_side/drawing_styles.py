@@ -62,7 +62,7 @@ def _dash(value: Any) -> tuple[int, ...]:
 def _font(value: Any) -> dict[str, Any]:
     """Read ``("Arial", 12, "bold")`` or ``"Arial 12 bold"``."""
     family, *others = value.split() if isinstance(value, str) else value
-    words = {str(each).lower() for each in others}
+    words = [str(each).lower() for each in others]
     sizes = [word for word in words if word.lstrip("-").isdigit()]
     styles: dict[str, Any] = {name: True for name in ("bold", "italic", "underline") if name in words}
     return {"family": str(family), **styles, **({"size": abs(int(sizes[0]))} if sizes else {})}
