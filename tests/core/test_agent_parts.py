@@ -135,20 +135,19 @@ def test_a_call_that_takes_long_is_accompanied_by_signs() -> None:
         now[0] += 100.0
         return now[0]
 
-    activity = Activity(lambda **said: signs.append(said["alive"]), clock=clock, pause=0.001)
-    activity.begin("sync")
     release = threading.Event()
 
     def call(value: int) -> int:
-        release.wait(60)
+        assert release.wait(60), "no third message"
         return value + 1
 
-    def say(**said: Any) -> None:
-        signs.append(said["alive"])
+    def send(**sent: Any) -> None:
+        signs.append(sent["alive"])
         if len(signs) == 3:
             release.set()
 
-    activity._say = say
+    activity = Activity(send, clock=clock, pause=0.001)
+    activity.begin("sync")
     assert activity.wait_for(call, 3) == 4
     assert signs[:3] == [{"phase": "sync", "count": 0, "of": 0}] * 3
     with pytest.raises(KeyError):
