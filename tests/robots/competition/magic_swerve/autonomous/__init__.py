@@ -1,0 +1,1 @@
+"""Autonomous modes, which magicbot offers to the drivers in a chooser."""

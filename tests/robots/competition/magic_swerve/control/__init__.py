@@ -1,0 +1,1 @@
+"""State machines that use several mechanisms together."""
