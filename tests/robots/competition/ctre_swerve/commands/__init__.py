@@ -1,0 +1,1 @@
+"""The commands, and the autonomous routines made of them."""
