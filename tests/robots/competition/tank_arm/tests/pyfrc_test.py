@@ -1,0 +1,3 @@
+"""Run the robot through its modes and find out whether its code crashes."""
+
+from pyfrc.tests import *  # noqa: F403
