@@ -26,8 +26,9 @@ from ...processes.worker import work_and_exit
 from .commands import Quit
 
 _LOOK_SECONDS = 0.2
-#: How long a robot's process may take to complete its data logs, in wall seconds.
-_CLOSING_SECONDS = 0.5
+#: How long a robot's process may take to complete its data logs, in wall seconds: some 0.05 on an idle machine, and many
+#: times that on a busy one. Only a robot that is stuck in C++ uses them up.
+CLOSING_SECONDS = 3.0
 
 #: Libraries that are known to start no threads when they are imported.
 _HARMLESS = {
@@ -146,7 +147,7 @@ class _Forks:
 
     def _kill(self) -> None:
         if self._fork is not None:
-            self._fork.terminate(_CLOSING_SECONDS)
+            self._fork.terminate(CLOSING_SECONDS)
             self._gone()
 
     def _gone(self) -> None:

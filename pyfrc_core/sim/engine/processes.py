@@ -20,7 +20,7 @@ from ...processes.fork import FORK_IS_SAFE
 from ...processes.spawn import Interpreter
 from . import host_process
 from .commands import Quit
-from .host import Exited, Hosting, Kill, Launch, Preload
+from .host import CLOSING_SECONDS, Exited, Hosting, Kill, Launch, Preload
 from .messages import Failed, Job, Message
 from .output_pipe import OutputPipe
 
@@ -28,6 +28,8 @@ from .output_pipe import OutputPipe
 _LONGEST_NAME = 100
 #: How long a process is given to end when it was asked to, in seconds.
 _PATIENCE = 1.0
+#: The same for a host, whose robot may have data logs to complete.
+_HOST_PATIENCE = CLOSING_SECONDS + _PATIENCE
 
 
 class RobotProcesses:
@@ -156,7 +158,7 @@ class RobotProcesses:
             with suppress(OSError, subprocess.TimeoutExpired):
                 self._host_connection.send(Quit())
                 if self._forks:
-                    host.wait(_PATIENCE)
+                    host.wait(_HOST_PATIENCE)
             self._host_connection = None
         if not self._forks:  # it is the robot's process, and may complete the robot's data logs
             with suppress(OSError, subprocess.TimeoutExpired):
@@ -164,7 +166,7 @@ class RobotProcesses:
                     host.terminate()
                 elif self._robot is not None:
                     self._robot.send(Quit())
-                host.wait(_PATIENCE)
+                host.wait(_HOST_PATIENCE)
         _end_group(host)
         host.wait()
 
