@@ -65,6 +65,7 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
     type=click.Path(path_type=Path),
     help="Record the robot's inputs in each test, for pyfrc replay.",
 )
+@click.option("--changed", is_flag=True, help="Run only tests that a change since their last pass can have reached.")
 @click.argument("pytest_args", nargs=-1, type=click.UNPROCESSED)
 def command(
     directory: Path | None,
@@ -81,6 +82,7 @@ def command(
     fail_under: float | None,
     trace: Path | None,
     record: Path | None,
+    changed: bool,
     pytest_args: tuple[str, ...],
 ) -> None:
     """Run the robot project's tests, found in its directory tests/ or in ../tests.
@@ -93,6 +95,8 @@ def command(
     """
     if no_isolation and isolation not in (None, "none"):
         raise click.UsageError(f"--no-isolation and --isolation {isolation} are mutually exclusive.")
+    if changed and (coverage or coverage_html or coverage_xml or fail_under is not None):
+        raise click.UsageError("--changed and --coverage are mutually exclusive: tests that are not run cover nothing.")
     project = chosen_project(directory, main, robot_class)
     chosen = verbosity()
     pytest_verbosity = ["-q"] * chosen.quiet + ["-v"] * chosen.verbose
@@ -118,6 +122,9 @@ def command(
             isolation="none" if no_isolation else isolation,
             trace_directory=trace,
             record_directory=record,
+            only_changed=changed,
         )
+        if changed and options.isolation == "none":
+            raise click.UsageError("--changed needs a process for each test: it cannot be used without isolation.")
         status = run_tests(project, options, builtin=builtin, pytest_args=[*pytest_verbosity, *pytest_args])
     sys.exit(status or measured.status)

@@ -18,6 +18,13 @@ def write_whole(file: Path, text: Iterable[str]) -> None:
         raise
 
 
+def keep_out_of_version_control(directory: Path) -> None:
+    """Have Git ignore a directory of pyfrc's in a robot project."""
+    ignored = directory / ".gitignore"
+    if not ignored.exists():
+        write_whole(ignored, ["*\n"])
+
+
 def _write_beside(file: Path, text: Iterable[str]) -> None:
     with NamedTemporaryFile("w", encoding="utf-8", dir=file.parent, prefix=f".{file.name}-", delete=False) as beside:
         try:

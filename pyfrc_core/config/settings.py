@@ -38,6 +38,9 @@ STRICT: Any = {"extra": "forbid", "strict": True}
 
 Seconds = Annotated[float, _Positive]
 
+#: Of random generators, in tests.
+DEFAULT_SEED = 0
+
 
 @dataclass(frozen=True)
 class MatchSettings:

@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..errors import UsageError
-from ..text_files import write_whole
+from ..text_files import keep_out_of_version_control, write_whole
 from .discovery import USB_CABLE, Address, addresses_of, team_of
 from .errors import HostKeyError, KeyFileError
 
@@ -132,9 +132,7 @@ class HostKeys:
         kept = [line for line, known in self._lines() if known not in gone]
         with self._accessing("write"):
             write_whole(self.file, (f"{line}\n" for line in [*kept, *map(_line_of, entries)]))
-            ignore = self.file.with_name(".gitignore")
-            if not ignore.exists():
-                write_whole(ignore, ["*\n"])
+            keep_out_of_version_control(self.file.parent)
 
     @contextmanager
     def _accessing(self, how: str) -> Iterator[None]:

@@ -6,9 +6,11 @@ import subprocess
 import sys
 import tempfile
 import threading
+from datetime import datetime
 from typing import IO, TYPE_CHECKING
 
 from ..errors import PyfrcError, RobotCodeError
+from ..passes.memory import Passes
 from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
 from ..runtime.loading import load_robot
@@ -56,6 +58,14 @@ def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = Fa
             printed.seek(0)
             output.write(printed.read().decode(errors="replace"))
         return passed
+
+
+def passed_already(project: Project, builtin: bool) -> str | None:
+    """Return when the project's tests passed, if nothing that they read has changed since, such as ``16:40``."""
+    since = Passes(project, builtin=builtin).green_since()
+    if since is None:
+        return None
+    return f"{since:%H:%M}" if since.date() == datetime.now().astimezone().date() else f"{since:%Y-%m-%d %H:%M}"
 
 
 class ImportCheck:

@@ -17,7 +17,7 @@ from .discovery import Address
 from .errors import RefusedError
 from .facts import Deployed, DeployRequest, Plan
 from .kill_script import replace_kill_script
-from .local_checks import ImportCheck, ask_to_continue, refuse_other_main_files, run_tests
+from .local_checks import ImportCheck, ask_to_continue, passed_already, refuse_other_main_files, run_tests
 from .manifest import Manifest, ascii_path, build_manifest
 from .other_languages import WHAT, remove_other_languages
 from .progress import UserInterface
@@ -226,6 +226,10 @@ def _check_program(project: Project, options: DeployOptions, talk: UserInterface
         if not options.skip_tests:
             talk.progress.note("this project has no tests; the ready-made ones run with --builtin")
         return ImportCheck(project)
+    if (since := passed_already(project, options.builtin)) is not None:
+        with talk.progress.phase("tests") as phase:
+            phase.detail = f"passed at {since}; nothing has changed since"
+        return None
     with talk.progress.phase("tests", own_output=True) as phase:
         passed = run_tests(project, options.builtin, talk.progress.child_output, talk.progress.quiet)
         phase.detail = "passed" if passed else "failed"

@@ -26,6 +26,7 @@ from wpiutil.log import DataLog, IntegerLogEntry, StringLogEntry
 
 from ..disk_space import check_disk_space
 from ..processes.exit import before_sudden_exit
+from ..text_files import keep_out_of_version_control
 from .clock import KICKOFF, OBSERVE, PACKET_US, Clock, to_us
 from .patch_table import Patch
 
@@ -80,9 +81,7 @@ class LogPlace:
         self.directory.mkdir(parents=True, exist_ok=True)
         for parent in self.directory.parents:
             if parent.name == LOGS.parts[0]:
-                ignored = parent / ".gitignore"
-                if not ignored.exists():
-                    ignored.write_text("*\n", encoding="utf-8")
+                keep_out_of_version_control(parent)
                 break
         # Other processes, of tests that run at the same time, do the same.
         found = []

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias
 
-from ..config.settings import TestSettings
+from ..config.settings import DEFAULT_SEED, TestSettings
 from ..processors import usable_processors
 
 Isolation: TypeAlias = Literal["auto", "fork", "spawn", "none"]
-
-DEFAULT_SEED = 0
 
 #: The package of the ready-made tests; they use this one, which imports none of them.
 READY_MADE_TESTS = "pyfrc_core.tests"
@@ -26,6 +24,7 @@ class TestOptions:
     :param isolation: where each test that uses the robot runs
     :param trace_directory: where to write a trace of the robot in each test
     :param record_directory: where to record the robot's inputs in each test, as scripts for replay
+    :param only_changed: run only tests that a change since their last pass can have reached
     :param hang_seconds: CPU time without progress, in seconds, after which robot code is considered hanging
     """
 
@@ -37,6 +36,7 @@ class TestOptions:
     trace_directory: Path | None = None
     record_directory: Path | None = None
     hang_seconds: float = TestSettings.hang_seconds
+    only_changed: bool = False
 
     @classmethod
     def combined(
@@ -48,6 +48,7 @@ class TestOptions:
         isolation: Isolation | None = None,
         trace_directory: Path | None = None,
         record_directory: Path | None = None,
+        only_changed: bool = False,
     ) -> TestOptions:
         """Return the options of the command line, completed by the project's settings and the defaults."""
         jobs = jobs or settings.jobs
@@ -58,4 +59,5 @@ class TestOptions:
             trace_directory=trace_directory,
             record_directory=record_directory,
             hang_seconds=settings.hang_seconds,
+            only_changed=only_changed,
         )

@@ -17,6 +17,7 @@ from ..runtime.fork_obstacles import reasons_not_to_fork
 from .isolation.loop import IsolatedTests
 from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
+from .remembered_passes import RanPlugin, RememberedPasses
 from .summary import SummaryPlugin, warn_of_misspelled_methods
 
 
@@ -57,6 +58,7 @@ def run_tests(
             directory.mkdir(parents=True, exist_ok=True)
 
     def session(imports_late: str = "") -> int:
+        ran = [RanPlugin(project)] if options.only_changed else []  # observes the import, too
         plugin = PyFrcPlugin(
             None, project.main_file, project.root, project=project, options=options, imports_late=imports_late
         )
@@ -66,7 +68,8 @@ def run_tests(
                 status = preforked.take_over("; ".join(reasons))
                 warn_of_misspelled_methods(project)  # the other process has not imported them
                 return status
-        plugins = [plugin, IsolatedTests(plugin), SummaryPlugin(project), _NoUnusedHypothesis()]
+        passes = RememberedPasses(project, options, pytest_args, builtin)
+        plugins = [plugin, IsolatedTests(plugin), SummaryPlugin(project), _NoUnusedHypothesis(), passes, *ran]
         return int(pytest.main(args, plugins=plugins))
 
     preforked: PreforkedProcess | None = None

@@ -13,6 +13,7 @@ import pytest
 
 from ...compat.pytest_private import run_test_protocol
 from ...processes.worker import Send
+from ..remembered_passes import PASSES, RAN
 
 Message = tuple[str, Any]
 
@@ -41,6 +42,9 @@ class ReportSender:
             self.send("interrupted", None)
         if item.session.shouldstop:
             self.send("stop", item.session.shouldstop)
+        ran: Any = item.config.pluginmanager.getplugin(RAN)
+        if ran is not None:
+            self.send("ran", ran.ran_here())
         self.send("done", None)
 
     def send(self, kind: str, content: Any) -> None:
@@ -93,6 +97,9 @@ def replay(item: pytest.Item, message: Message) -> pytest.TestReport | None:
                 "location": location,
             }
         )
+    elif kind == "ran":
+        passes: Any = item.config.pluginmanager.getplugin(PASSES)
+        passes.record(item, content)
     elif kind == "exit":
         raise pytest.exit.Exception(content[0], content[1])
     elif kind == "interrupted":

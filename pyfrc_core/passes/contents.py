@@ -1,0 +1,126 @@
+"""What a run of a project's tests reads: the project's files, the installed packages, and Python itself."""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+import sysconfig
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from .._version import __version__
+from ..project import Project
+
+#: Directories and files that the robot, its tests or other tools write, and no test reads.
+_DIRECTORIES_WRITTEN = {"__pycache__", "build", "ctre_sim", "dist", "htmlcov"}
+_FILES_WRITTEN = {"coverage.xml", "networktables.json", "networktables.json.bck", "simgui-ds.json", "simgui.json"}
+_SUFFIXES_WRITTEN = (".hoot", ".pyc", ".rrd", ".wpilog")
+_PACKAGES = ("site-packages", "dist-packages")
+
+
+@dataclass(frozen=True)
+class Contents:
+    """The files of a project, each with a hash of its content, by its path relative to the project.
+
+    :param sources: those in Python, tests included
+    :param others:  all others: settings, paths, field layouts
+    """
+
+    sources: dict[str, str]
+    others: dict[str, str]
+
+    def differences(self, other: Contents) -> list[str]:
+        """Return the paths of the files that are not the same in both."""
+        mine, others = {**self.sources, **self.others}, {**other.sources, **other.others}
+        return sorted(path for path in mine.keys() | others.keys() if mine.get(path) != others.get(path))
+
+
+def read_contents(project: Project, written: Iterable[Path] = ()) -> Contents:
+    """Return the project's current contents. Hidden files, environments and what runs write are left out.
+
+    :param written: further directories that runs write
+    """
+    left_out = {path.absolute() for path in written}
+    contents = Contents({}, {})
+    for file in _files_of(project, left_out):
+        kind = contents.sources if file.suffix == ".py" else contents.others
+        kind[Path(os.path.relpath(file, project.root)).as_posix()] = hash_of_file(file)
+    return contents
+
+
+def _files_of(project: Project, left_out: set[Path]) -> Iterator[Path]:
+    beside = project.test_directories[1]
+    yield from _files_below(project.root, left_out)
+    if not beside.is_relative_to(project.root) and beside.is_dir():
+        yield from _files_below(beside, left_out)
+    if project.pyproject.parent != project.root and project.pyproject.is_file():
+        yield project.pyproject
+
+
+def _files_below(directory: Path, left_out: set[Path]) -> Iterator[Path]:
+    for place, directories, files in os.walk(directory):
+        directories[:] = sorted(
+            name
+            for name in directories
+            if not name.startswith(".")
+            and name not in _DIRECTORIES_WRITTEN
+            and not Path(place, name, "pyvenv.cfg").exists()
+            and Path(place, name) not in left_out
+        )
+        for name in files:
+            if not name.startswith(".") and name not in _FILES_WRITTEN and not name.endswith(_SUFFIXES_WRITTEN):
+                yield Path(place, name)
+
+
+def hash_of_file(file: Path) -> str:
+    """Return a hash of the file's content; of a file that cannot be read, one that no content has."""
+    try:
+        return hash_of(file.read_bytes())
+    except OSError:
+        return "unreadable"
+
+
+def hash_of(content: bytes) -> str:
+    """Return a hash of the content."""
+    return sha256(content).hexdigest()[:24]
+
+
+def environment() -> str:
+    """Return a hash of Python, pyfrc's version and the installed packages.
+
+    A package that is installed again counts as changed, also with the same version. The files of editable packages
+    count as `loaded_from_elsewhere`.
+    """
+    facts = [sys.version, platform.machine(), platform.system(), __version__]
+    for place in sys.path:
+        if place.endswith(_PACKAGES):
+            try:
+                with os.scandir(place) as entries:
+                    facts += sorted(
+                        f"{each.name} {each.stat().st_mtime_ns}"
+                        for each in entries
+                        if each.name.endswith((".dist-info", ".egg-info", ".egg-link", ".pth"))
+                    )
+            except OSError:
+                continue
+    return hash_of("\n".join(facts).encode())
+
+
+def loaded_from_elsewhere(project: Project) -> set[str]:
+    """Return the source files that this process has imported from outside the project, Python and its packages."""
+    standard = (sysconfig.get_path("stdlib") + os.sep, sysconfig.get_path("platstdlib") + os.sep)
+    found = set()
+    for name, module in list(sys.modules.items()):
+        file = getattr(module, "__file__", None)
+        if (
+            name == "__main__"
+            or not isinstance(file, str)
+            or any(f"{os.sep}{packages}{os.sep}" in file for packages in _PACKAGES)
+        ):
+            continue
+        if not file.startswith(standard) and not project.files.is_project_file(file) and Path(file).is_absolute():
+            found.add(file)
+    return found

@@ -1,0 +1,109 @@
+"""The plugins that remember which tests have passed, and with ``--changed`` run only what a change can have reached."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+
+from ..passes.contents import loaded_from_elsewhere
+from ..passes.memory import Passes
+from ..passes.ran_functions import Place, RanFunctions
+from ..project import Project
+from ..wording import counted
+from .options import TestOptions
+
+#: The names under which pytest registers the plugins.
+RAN, PASSES = "pyfrc.ran", "pyfrc.passes"
+
+#: What a test's process has run: functions, the project's modules, and files from elsewhere.
+Ran = tuple[frozenset[Place], frozenset[str], frozenset[str]]
+
+#: Arguments of pytest that change neither which tests run nor how they end.
+_HARMLESS = ("-v", "-q", "-s", "-x", "-r", "--tb", "--color", "--durations", "--junit")
+
+
+class RanPlugin:
+    """Observes what this process runs, and what it inherits from the process that it is forked from."""
+
+    __name__ = RAN
+
+    def __init__(self, project: Project) -> None:
+        self._project = project
+        self._functions = RanFunctions(project.files)
+        self._functions.start()
+
+    def ran_here(self) -> Ran:
+        """Return what has run in this process until now."""
+        files = (getattr(module, "__file__", None) for module in list(sys.modules.values()))
+        is_ours = self._project.files.is_project_file
+        modules = frozenset(file for file in files if isinstance(file, str) and is_ours(file))
+        return frozenset(self._functions.places), modules, frozenset(loaded_from_elsewhere(self._project))
+
+
+class RememberedPasses:
+    """Remembers the passes of one run.
+
+    :param args: the arguments that the user has given to pytest
+    :param builtin: whether the ready-made tests run if the project has none
+    """
+
+    __name__ = PASSES
+
+    def __init__(self, project: Project, options: TestOptions, args: Sequence[str], builtin: bool = False) -> None:
+        self._project = project
+        self._only_changed = options.only_changed
+        written = [each for each in (options.trace_directory, options.record_directory) if each is not None]
+        self._passes = Passes(project, options.seed, builtin, written)
+        self._runs_all = all(argument.startswith(_HARMLESS) for argument in args)
+        self._valid = 0
+        self._ran: dict[str, Ran] = {}
+        self._not_passed: set[str] = set()
+        #: Files that have changed during the run.
+        self._changed: list[str] = []
+
+    def record(self, item: pytest.Item, ran: Ran) -> None:
+        """Note what a test's process has run; the pass is kept if the test passes."""
+        self._ran[item.nodeid] = ran
+
+    def pytest_configure(self, config: pytest.Config) -> None:
+        if self._only_changed and getattr(config.option, "dist", "no") != "no":
+            raise pytest.UsageError("--changed and pytest-xdist's -n are mutually exclusive: pyfrc has -j of its own.")
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        if self._only_changed:
+            left = [item for item in items if not self._passes.is_valid(item.nodeid)]
+            self._valid = len(items) - len(left)
+            items[:] = left
+
+    def pytest_deselected(self, items: Sequence[pytest.Item]) -> None:
+        self._runs_all = False
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.outcome != "passed":
+            self._not_passed.add(report.nodeid)
+
+    def pytest_sessionfinish(self, session: pytest.Session, exitstatus: int) -> None:
+        if self._valid and exitstatus == pytest.ExitCode.NO_TESTS_COLLECTED:
+            session.exitstatus = exitstatus = pytest.ExitCode.OK
+        for test in self._not_passed:
+            self._passes.forget(test)
+        for test, ran in self._ran.items():
+            if test not in self._not_passed:
+                self._passes.record(test, *ran)
+        if exitstatus != pytest.ExitCode.OK:
+            self._passes.set_green(None)
+        elif self._runs_all:
+            self._passes.set_green(loaded_from_elsewhere(self._project))
+        self._changed = self._passes.save()
+
+    def pytest_terminal_summary(self, terminalreporter: Any) -> None:
+        if self._valid:
+            passed = f"{counted(self._valid, 'test')} passed before"
+            terminalreporter.write_line(f"{passed}, and nothing that they ran or read has changed since")
+        if self._only_changed and self._changed:
+            why = f"{self._changed[0]} changed during the run"
+            terminalreporter.write_line(f"pyfrc: the passes are not remembered, because {why}", yellow=True)

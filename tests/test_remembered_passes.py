@@ -1,0 +1,258 @@
+"""Nothing is run twice: `pyfrc test --changed`, and deploys after tests that passed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROBOT = """
+    import wpilib
+
+    from parts.arm import Arm
+    from parts.drive import Drive
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.arm, self.drive = Arm(), Drive()
+
+        def autonomousPeriodic(self):
+            self.drive.forward()
+
+        def teleopPeriodic(self):
+            self.arm.lift()
+"""
+ARM = '''
+    """The arm."""
+
+    import wpilib
+
+    POWER = 0.5
+
+    class Arm:
+        def __init__(self):
+            self.motor = wpilib.PWMSparkMax(1)
+
+        def lift(self):
+            # as far as it goes
+            self.motor.set(POWER)
+
+        @property
+        def power(self):
+            return self.motor.get()
+
+        @power.setter
+        def power(self, value):
+            self.motor.set(value)
+
+        def unused(self):
+            return 1
+'''
+DRIVE = """
+    import wpilib
+
+    class Drive:
+        def __init__(self):
+            self.motor = wpilib.PWMSparkMax(0)
+
+        def forward(self):
+            self.motor.set(1)
+"""
+TESTS = """
+    from parts.arm import Arm
+    from parts.numbers import double
+
+    def run(control, autonomous):
+        with control.run_robot():
+            control.step_timing(seconds=0.1, autonomous=autonomous, enabled=True)
+
+    def test_auto(control, robot):
+        run(control, True)
+
+    def test_teleop(control, robot, hal_data):
+        run(control, False)
+        assert hal_data["pwm"][1]["value"] > 0
+
+    def test_power(control, robot):
+        with control.run_robot():
+            robot.arm.power = 0.25
+            assert 0.2 < robot.arm.power < 0.3
+
+    def test_double():
+        assert double(2) == 4
+"""
+NUMBERS = """
+    def double(number):
+        return 2 * number
+"""
+FILES = {
+    "robot.py": ROBOT,
+    "parts/__init__.py": "",
+    "parts/arm.py": ARM,
+    "parts/drive.py": DRIVE,
+    "parts/numbers.py": NUMBERS,
+    "deploy/speeds.json": "[1, 2]",
+    "tests/test_robot.py": TESTS,
+}
+ALL = {"auto", "teleop", "power", "double"}
+
+
+@pytest.fixture
+def project(make_project):
+    """A project whose tests have passed with --changed."""
+    made = make_project(FILES)
+    assert ran(made) == ALL
+    return made
+
+
+def ran(made, *options: str, code: int = 0) -> set[str]:
+    """The tests that a run with --changed has run."""
+    result = made.run("test", "--changed", "-v", *options)
+    assert result.code == code, result.output
+    return set(re.findall(r"::test_(\w+) (?:PASSED|FAILED)", result.output))
+
+
+def edit(made, name: str, old: str, new: str) -> None:
+    file: Path = made.path / name
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new))
+
+
+def test_without_a_change_nothing_runs(project) -> None:
+    result = project.run("test", "--changed")
+    assert result.code == 0
+    assert "4 tests passed before, and nothing that they ran or read has changed since" in result.output
+
+
+def test_a_changed_function_runs_the_tests_that_called_it(project) -> None:
+    for name, old, new, expected in [
+        ("parts/arm.py", "self.motor.set(POWER)", "self.motor.set(POWER / 2)", {"teleop"}),
+        ("parts/arm.py", "return self.motor.get()", "return +self.motor.get()", {"power"}),
+        ("parts/arm.py", "self.motor.set(value)", "self.motor.set(+value)", {"power"}),
+        ("parts/arm.py", "PWMSparkMax(1)", "PWMVictorSPX(1)", {"auto", "teleop", "power"}),
+        ("parts/arm.py", "return 1", "return 2", set()),
+        ("parts/numbers.py", "2 * number", "number * 2", {"double"}),
+        ("robot.py", "self.drive.forward()", "self.drive.forward() or None", {"auto"}),
+        ("tests/test_robot.py", "> 0", ">= 0.1", {"teleop"}),
+    ]:
+        edit(project, name, old, new)
+        assert ran(project) == expected, (name, new)
+
+
+def test_what_runs_at_import_is_reached_by_all(project) -> None:
+    for name, old, new, expected in [
+        ("parts/arm.py", "# as far as it goes", "# up\n\n", set()),
+        ("parts/arm.py", "POWER = 0.5", "POWER = 0.6", ALL),
+        ("parts/arm.py", "def unused(self)", "def unused(self, more=1)", ALL),
+        ("deploy/speeds.json", "1", "3", ALL),
+    ]:
+        edit(project, name, old, new)
+        assert ran(project) == expected, (name, new)
+
+
+def test_what_failed_runs_until_it_passes(project) -> None:
+    edit(project, "parts/arm.py", "self.motor.set(POWER)", "self.motor.set(-POWER)")
+    assert ran(project, code=1) == {"teleop"}
+    assert ran(project, code=1) == {"teleop"}
+    edit(project, "parts/arm.py", "self.motor.set(-POWER)", "self.motor.set(POWER)")
+    assert ran(project) == {"teleop"}, "its pass was forgotten"
+
+
+def test_another_seed_runs_everything(project) -> None:
+    assert ran(project, "--seed", "5") == ALL
+
+
+def test_a_new_test_runs_and_a_new_module_runs_everything(project) -> None:
+    (project.path / "tests/test_more.py").write_text("def test_more():\n    pass\n")
+    assert ran(project) == {"more"}
+    (project.path / "parts/more.py").write_text("")
+    assert ran(project) == ALL | {"more"}
+
+
+def test_a_library_beside_the_project_counts(make_project, tmp_path: Path) -> None:
+    library = tmp_path / "library"
+    library.mkdir()
+    (library / "teamlib.py").write_text("SPEED = 1\n")
+    robot = f"import sys; sys.path.append({str(library)!r})\nimport teamlib\nimport wpilib\n"
+    robot += "class MyRobot(wpilib.TimedRobot):\n    pass\n"
+    made = make_project({"robot.py": robot, "tests/test_a.py": "def test_a(robot):\n    pass\n"})
+    assert ran(made) == {"a"}
+    assert ran(made) == set()
+    (library / "teamlib.py").write_text("SPEED = 2\n")
+    assert ran(made) == {"a"}
+
+
+def test_a_file_that_changes_during_the_run_is_named(make_project) -> None:
+    robot = "import wpilib\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+    test = """
+        from pathlib import Path
+
+        def test_a():
+            Path("notes.txt").write_text(Path("notes.txt").read_text() + "x")
+    """
+    made = make_project({"robot.py": robot, "notes.txt": "x", "tests/test_a.py": test})
+    result = made.run("test", "--changed")
+    assert "the passes are not remembered, because notes.txt changed during the run" in result.output
+    assert ran(made) == {"a"}
+
+
+def test_new_interpreters_are_observed(make_project) -> None:
+    made = make_project(FILES)
+    assert ran(made, "--isolation", "spawn") == ALL
+    edit(made, "parts/drive.py", "set(1)", "set(0.9)")
+    assert ran(made) == {"auto"}
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (["--coverage"], "--changed and --coverage are mutually exclusive"),
+        (["--no-isolation"], "--changed needs a process for each test"),
+        (["--", "-n", "2"], "--changed and pytest-xdist's -n are mutually exclusive"),
+    ],
+)
+def test_what_does_not_go_together(make_project, options: list[str], expected: str) -> None:
+    result = make_project(FILES).run("test", "--changed", *options)
+    assert result.code in (2, 4)
+    assert expected in result.output
+
+
+def test_a_spoiled_memory_is_ignored(project) -> None:
+    for content in ("", "{}", "[1]", '{"format": 1, "reads": [[1]], "tests": {"a": [7]}}'):
+        (project.path / ".pyfrc/passes.json").write_text(content)
+        assert ran(project) == ALL
+
+
+# -- deploys ---------------------------------------------------------------------------------------------------------
+
+PASSED_ALREADY = re.compile(r"^tests +passed at \d\d:\d\d; nothing has changed since ", re.MULTILINE)
+NO_ROBOT = ("deploy", "--robot", "127.0.0.1:1")
+
+
+def test_a_deploy_after_tests_that_passed_does_not_run_them_again(make_project) -> None:
+    made = make_project(FILES)
+    assert made.run("test", "-q").code == 0
+    for _ in range(2):
+        result = made.run(*NO_ROBOT)
+        assert PASSED_ALREADY.search(result.output), result.output
+        assert "4 passed" not in result.output
+    edit(made, "parts/arm.py", "return 1", "return 2")
+    result = made.run(*NO_ROBOT)
+    assert "4 passed" in result.output, "a deploy of something else is tested as a whole"
+    assert PASSED_ALREADY.search(made.run(*NO_ROBOT).output), "its tests count, too"
+
+
+def test_part_of_the_tests_or_a_failure_is_not_enough_for_a_deploy(make_project) -> None:
+    made = make_project(FILES)
+    assert made.run("test", "--", "-k", "auto").code == 0
+    assert made.run("test", "tests/test_robot.py").code == 0
+    assert "4 passed" in made.run(*NO_ROBOT).output
+    made.run("test", "--seed", "3")
+    assert "4 passed" in made.run(*NO_ROBOT).output, "a deploy tests with the usual seed"
+    edit(made, "parts/arm.py", "POWER = 0.5", "POWER = -0.5")
+    assert made.run("test").code == 1
+    refused = made.run(*NO_ROBOT)
+    assert "1 failed, 3 passed" in refused.output
+    assert "the tests failed" in refused.stderr
