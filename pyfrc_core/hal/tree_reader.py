@@ -33,8 +33,9 @@ class TreeReader:
             _RarelyChanged(tree["event"].fingerprint, lambda: [(path, get()) for path, get in event]),
             *(_RarelyChanged(stick.fingerprint, partial(_stick, stick)) for stick in tree["joysticks"]),
         ]
-        self._kinds = [(kind, [slot.get for slot in kind.initialized()]) for kind in KINDS]
-        slots = [slot for kind in KINDS for slot in kind.initialized()]
+        initialized = [(kind, kind.initialized()) for kind in KINDS]
+        self._kinds = [(kind, [slot.get for slot in channels]) for kind, channels in initialized]
+        slots = [slot for _, channels in initialized for slot in channels]
         slots += [*modules.initialized(), tree["accelerometer"]._slot("active")]
         self._devices = CreatedDevices(slots)
         self._state: Any = None

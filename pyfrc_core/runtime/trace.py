@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import hashlib
 import json
+from itertools import compress
+from operator import ne
 from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -39,7 +41,9 @@ class Trace:
         if paths is self._paths:
             if values == before:
                 return
-            changed = {path: now for path, old, now in zip(paths, before, values, strict=True) if _differ(old, now)}
+            # Nearly all are equal: to find the others, no Python code runs for each of them.
+            others = compress(zip(paths, before, values, strict=True), map(ne, before, values))
+            changed = {path: new for path, old, new in others if _differ(old, new)}
             gone = []
         else:
             had, has = dict(zip(self._paths, before, strict=True)), dict(zip(paths, values, strict=True))
