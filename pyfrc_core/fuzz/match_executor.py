@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from ..errors import RobotCodeError
+from ..hal import devices_exist
 from ..processes.call import ForkedCall, run_in_subprocess
 from ..processes.crash_report import CrashLog
 from ..processes.fork import FORK_IS_SAFE, wait_for_any
@@ -189,6 +190,7 @@ class ForkedMatchExecutor(MatchExecutor):
         imports_late, self._lines = self._do(survey)
         if not imports_late:
             robot_lines(project)
+        devices_exist()  # each match asks; the first call prepares the answer, and forks inherit what it has made
         gc.freeze()  # a garbage collection in a fork would copy the memory of all objects
 
     @property
