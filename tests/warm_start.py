@@ -10,6 +10,7 @@ import atexit
 import contextlib
 import gc
 import importlib
+import io
 import json
 import os
 import runpy
@@ -18,10 +19,12 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import types
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
+from importlib.metadata import PathDistribution
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
@@ -51,12 +54,13 @@ _IMPORTED = (
     "pdb",
     "unittest",
     "email.parser",
+    "ntcore._logutil",
     "pyfrc_cli.main",
+    "pyfrc_cli.project_options",
     "pyfrc_core.measure.coverage",
     "pyfrc_core.tests",
-    "pyfrc_core.test_support.pytest_plugin",
-    "pyfrc_core.fuzz.input_generator",
-    "pyfrc_core.fuzz.describe",
+    "pyfrc_core.test_support.run_tests",
+    "pyfrc_core.fuzz.campaign",
     "pyfrc_core.config.sim_file",
     "pyfrc_core.physics.engine",
     "pyfrc_core.deploy.session",
@@ -211,6 +215,35 @@ def end_like_python(code: int) -> NoReturn:
     _exit_now(code & 0xFF)
 
 
+def _import_plugins_of_pytest() -> None:
+    """Import the plugins that each run of pytest imports, in the way it does: the module of a plugin that was
+    imported in another way would make it warn.
+    """
+    import pytest
+
+    with tempfile.TemporaryDirectory() as empty, contextlib.redirect_stdout(io.StringIO()):
+        here = Path.cwd()
+        os.chdir(empty)
+        try:
+            pytest.main(["-VV"])
+        finally:
+            os.chdir(here)
+
+
+def _read_metadata_once() -> None:
+    """Keep what is read of installed packages: each run of pytest reads the entry points of all of them, twice."""
+    read = PathDistribution.read_text
+    known: dict[tuple[object, str], str | None] = {}
+
+    def read_text(self: PathDistribution, filename: str) -> str | None:
+        key = self._path, filename  # type: ignore[attr-defined]
+        if key not in known:
+            known[key] = read(self, filename)
+        return known[key]
+
+    PathDistribution.read_text = read_text  # type: ignore[method-assign]
+
+
 def _fix_the_seed() -> None:
     """Where `pyfrc` would start Python again: it has the seed already."""
     os.environ["PYTHONHASHSEED"] = "0"
@@ -225,6 +258,8 @@ def main() -> None:
     interrupted = signal.signal(signal.SIGINT, signal.SIG_IGN)
     for name in _IMPORTED:
         importlib.import_module(name)
+    _read_metadata_once()
+    _import_plugins_of_pytest()
     from pyfrc_cli import start
 
     assert callable(start._restart_with_fixed_seed)  # under another name, each command would start cold
