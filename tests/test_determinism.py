@@ -22,7 +22,7 @@ NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_
 SESSIONS, TESTED_IN_EACH = 2, 4
 
 #: One more has a busy machine: for a robot that runs in place, and for one with threads and a loop of its own.
-BUSY = 8
+BUSY = 2 * (os.cpu_count() or 1)
 TESTED_BUSY = ("timed", "worker")
 
 #: The ready-made tests, with a match that is shorter than the real one, for the sake of the suite's time.
