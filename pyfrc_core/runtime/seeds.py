@@ -5,10 +5,13 @@ from __future__ import annotations
 import random
 import sys
 
+from ..compat.rev_noise import seed_noise
+
 
 def seed_generators(seed: int) -> None:
-    """Start Python's global generator, and numpy's if it is imported, from `seed`."""
+    """Start Python's global generator, and those of numpy and REV's library if they are imported, from `seed`."""
     random.seed(seed)
     numpy = sys.modules.get("numpy")
     if numpy is not None:
         numpy.random.seed(seed % 2**32)
+    seed_noise(seed)

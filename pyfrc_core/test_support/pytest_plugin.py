@@ -92,6 +92,7 @@ class PyFrcPlugin:
         """Return the robot class; the first call imports it, and the project's physics."""
         if self._robot_class is None:
             self._robot_class = load_robot(self.project)
+            seed_generators(self.options.seed)  # a library that was imported now has one, too
         self._physics_module  # noqa: B018
         return self._robot_class
 

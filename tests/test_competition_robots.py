@@ -1,0 +1,53 @@
+"""Competition robots with vendors' devices: their tests pass without noise, and repeat where vendors allow it."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import MakeProject, RobotProject
+from skips import require
+
+require("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
+
+ROBOTS = Path(__file__).parent / "robots" / "competition"
+NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
+
+#: phoenix6 simulates its devices on threads of its own, in real time.
+DO_NOT_REPEAT = {"ctre_swerve"}
+
+#: A match that is shorter than the real one, for the sake of the suite's time.
+SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 2\npause = 0.1\nteleop = 2\n"
+
+
+@pytest.fixture(params=NAMES)
+def project(request: pytest.FixtureRequest, make_project: MakeProject) -> RobotProject:
+    made = make_project({})
+    left_out = shutil.ignore_patterns("__pycache__", ".pytest_cache", ".pyfrc", "ctre_sim")
+    shutil.copytree(ROBOTS / request.param, made.path, dirs_exist_ok=True, ignore=left_out)
+    settings = made.path / "pyproject.toml"
+    own_match = re.compile(r"\[tool\.pyfrc\.match\]\n(?:[^\[].*\n|\n)*")
+    settings.write_text(own_match.sub("", settings.read_text()) + SETTINGS)
+    return made
+
+
+def hashes(directory: Path) -> list[str]:
+    """The hash at the end of each trace."""
+    return [json.loads(file.read_text().splitlines()[-1])["sha256"] for file in sorted(directory.iterdir())]
+
+
+def test_a_match_passes_quietly_and_repeats(project: RobotProject, request: pytest.FixtureRequest) -> None:
+    for which in ("first", "second"):
+        result = project.run("test", "--trace", which, "-q", "--", "-k", "test_practice")
+        assert result.code == 0, result.output
+        assert "1 passed" in result.stdout
+        noise = [line for line in result.output.splitlines() if "arning" in line or "rror" in line]
+        assert noise == []
+    if request.node.callspec.params["project"] not in DO_NOT_REPEAT:
+        first, second = hashes(project.path / "first"), hashes(project.path / "second")
+        assert first == second
+        assert len(first) == 1
