@@ -22,7 +22,7 @@ import wpilib.simulation
 
 from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
 from ..compat.wpilib_private import LOOP_FUNCTION
-from . import cooperative, data_logs, driver_station, locks, robot_stack
+from . import cooperative, data_logs, driver_station, locks, robot_stack, udp_ports
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
 from .exceptions import TestEnded
@@ -89,6 +89,7 @@ class Patches:
             *self._directories(),
             *robot_stack.patches(lambda: self._files),
             *data_logs.patches(lambda: None if active_run.run is None else active_run.run.data_logs),
+            *udp_ports.patches(),
         ]
 
     def _time_functions(self) -> list[Patch]:
