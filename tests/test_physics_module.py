@@ -379,6 +379,41 @@ def test_dashboards_see_where_the_robot_is(options: list[str], make_project) -> 
     passes(make_project, WATCHED, test.format("one") + test.format("two"), *options)
 
 
+@pytest.mark.parametrize("options", [[], ["--no-isolation"]])
+def test_a_field_that_the_robot_shows_does_not_move_it(options: list[str], make_project) -> None:
+    """Most robots show their odometry as "Field", too."""
+    test = """
+        import ntcore
+
+        def test_{}(control, robot, physics_controller):
+            control.set_operator_control()
+            control.run_test(lambda tm: tm < 1)
+            table = ntcore.NetworkTableInstance.getDefault().getTable("SmartDashboard")
+            pose = physics_controller.get_pose()
+            assert 0.1 < pose.X() < 5
+            assert table.getEntry("Field/Robot").getDoubleArray([])[:2] == [7, 3]
+            assert abs(table.getEntry("Field (physics)/Robot").getDoubleArray([])[0] - pose.X()) < 0.02
+    """
+    robot = """
+        import wpilib
+        from wpimath.geometry import Pose2d, Rotation2d
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.left, self.right = wpilib.PWMSparkMax(0), wpilib.PWMSparkMax(1)
+                self.field = wpilib.Field2d()
+                wpilib.SmartDashboard.putData("Field", self.field)
+
+            def robotPeriodic(self):
+                self.field.setRobotPose(Pose2d(7, 3, Rotation2d()))
+
+            def teleopPeriodic(self):
+                self.left.set(1)
+                self.right.set(1)
+    """
+    passes(make_project, WATCHED, test.format("one") + test.format("two"), *options, robot=robot)
+
+
 def test_without_isolation_each_robot_starts_where_the_first_did(make_project) -> None:
     """What dashboards have seen of the robot before outlives it."""
     passes(

@@ -67,6 +67,10 @@ class PhysicsEngine:
         raise NotImplementedError("your PhysicsEngine has no update_sim")
 
 
+class PhysicsField(wpilib.Field2d):
+    """The field of one run, which is distinguished by its class from those that robot code shows."""
+
+
 class PhysicsInterface:
     """Moves the robot on the field, and turns its gyros with it.
 
@@ -90,7 +94,7 @@ class PhysicsInterface:
         self.robot_path = str(robot_path)
         self.fake_time = fake_time
         #: The field as dashboards show it; `setRobotPose` moves the robot.
-        self.field = wpilib.Field2d()
+        self.field: wpilib.Field2d = PhysicsField()
         #: The targets of a `VisionSim`, and those that it sees now.
         self.vision_targets: tuple[VisionSimTarget, ...] = ()
         self.vision_targets_in_view: tuple[VisionSimTarget, ...] = ()

@@ -17,7 +17,7 @@ from ..project import Project
 from ..runtime.clock import PACKET_US, PHYSICS, to_us
 from ..runtime.loading import import_file
 from ..runtime.robot import RobotRun
-from .core import PhysicsEngine, PhysicsInitException, PhysicsInterface
+from .core import PhysicsEngine, PhysicsField, PhysicsInitException, PhysicsInterface
 
 #: The shortest period of `update_sim`, for robots with faster loops (100 Hz).
 _SHORTEST_PERIOD_US = 10_000
@@ -117,6 +117,7 @@ class Physics:
             run.do(self._make_engine)  # as documented: `initialize` sets inputs before the robot is created
         else:
             run.when_initialized.append(self._make_engine)
+        run.when_initialized.append(self._show_field)
         run.when_constructed.append(self._begin)
 
     def _begin(self) -> None:
@@ -129,13 +130,16 @@ class Physics:
     def _make_engine(self) -> None:
         __tracebackhide__ = True
         module, run = self._module, self._run
-        field, pose = self.controller.field, self.controller.get_pose()
-        wpilib.SmartDashboard.putData("Field", field)
-        field.setRobotPose(pose)  # otherwise, without isolation, the dashboard's pose of the last run would be used
         self.engine = module.engine_class(self.controller, *([run.robot] if module.takes_robot else []))
         initialize = getattr(self.engine, "initialize", None)
         if initialize is not None:
             initialize(run.hal_data)
+
+    def _show_field(self) -> None:
+        """Show the field on the dashboard, once it is known which names robot code uses there."""
+        field, pose = self.controller.field, self.controller.get_pose()
+        wpilib.SmartDashboard.putData(_free_name(), field)
+        field.setRobotPose(pose)  # otherwise, without isolation, the dashboard's pose of the last run would be used
 
     def _update(self) -> None:
         __tracebackhide__ = True
@@ -210,3 +214,15 @@ def _place(thing: Any) -> str:
     """Return the start of a class or function, such as ``physics.py:12``."""
     file, (_, line) = inspect.getsourcefile(thing) or "physics.py", inspect.getsourcelines(thing)
     return f"{Path(file).name}:{line}"
+
+
+def _free_name() -> str:
+    """Return the dashboard's name for the field: another one than "Field" if robot code shows a field of its own there.
+
+    Two fields of one name share one pose: the robot's odometry would move the simulated robot.
+    """
+    try:
+        shown = wpilib.SmartDashboard.getData("Field")
+    except RuntimeError:  # nothing has this name
+        return "Field"
+    return "Field" if shown is None or isinstance(shown, PhysicsField) else "Field (physics)"

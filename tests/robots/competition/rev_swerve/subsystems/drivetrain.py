@@ -43,7 +43,7 @@ class Drivetrain(commands2.Subsystem):
         self.desired_speeds = ChassisSpeeds()
 
         self.field = wpilib.Field2d()
-        wpilib.SmartDashboard.putData("Odometry", self.field)
+        wpilib.SmartDashboard.putData("Field", self.field)
         wpilib.SmartDashboard.putData("Gyro", self.gyro)
         table = ntcore.NetworkTableInstance.getDefault().getTable("Drivetrain")
         self.pose_publisher = table.getStructTopic("Pose", Pose2d).publish()
