@@ -130,9 +130,13 @@ def _work(trials: list[Trial], line_tests: LineTests, directory: Path, queues: t
         copy = Copy(directory)
         copy.enter()
         runner = Runner(copy, line_tests, output)
+
+        def report(number: int, verdict: str) -> None:
+            os.write(results, f"{number} {verdict}\n".encode())
+
         for queue, run in zip(queues, (run_with_imports, run_imported), strict=True):
             numbers = ((number, trials[number]) for number in _numbers(queue))
-            run(runner, numbers, lambda number, verdict: os.write(results, f"{number} {verdict}\n".encode()))
+            run(runner, numbers, report)
         code = 0
     finally:
         os._exit(code)
