@@ -1,0 +1,385 @@
+"""The tree's dicts and lists: they are Python's own to all code, their values are elsewhere, errors name the place."""
+
+from __future__ import annotations
+
+import copy
+import decimal
+import json
+import pickle
+from collections.abc import Callable
+from fractions import Fraction
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import pytest
+import wpilib
+
+from pyfrc_core.hal import HalData, devices_exist, existing_devices
+from pyfrc_core.hal.containers import NOT_SET, LiveDict, LiveList, Slot, ValueList, plain, stored
+from pyfrc_core.hal.kinds import INT32, UnknownKey, WrongIndex, WrongType, WrongValue, number
+
+
+class Store:
+    """Values that are elsewhere, and a dict and a list of them."""
+
+    def __init__(self) -> None:
+        self.values: dict[str, Any] = {"speed": 0.5, "count": 2, "const": 7}
+        self.numbers = [1, 2, 3]
+        self.built = 0
+        self.changes = 0
+        self.tree = LiveDict("place", self.slots)
+        self.list = ValueList("place.list", INT32, lambda: len(self.numbers), self.numbers.__getitem__, self.put)
+
+    def slots(self) -> dict[str, Slot]:
+        self.built += 1
+        return {
+            "speed": Slot(lambda: self.values["speed"], self.setter("speed"), number(-1, 1), unset=NOT_SET),
+            "count": Slot(lambda: self.values["count"], self.setter("count"), INT32),
+            "alias": Slot(lambda: self.values["count"], self.setter("count"), INT32, canonical="count"),
+            "const": Slot(lambda: self.values["const"], None, remedy="leave it"),
+            "list": Slot(lambda: self.list, None),
+            "own": stored(),
+        }
+
+    def setter(self, key: str) -> Callable[[Any], None]:
+        return lambda value: self.values.__setitem__(key, value)
+
+    def put(self, index: int, value: Any) -> None:
+        self.numbers[index] = value
+
+
+@pytest.fixture
+def store() -> Store:
+    return Store()
+
+
+NOW = {"speed": 0.5, "count": 2, "alias": 2, "const": 7, "list": [1, 2, 3], "own": None}
+
+
+# -- dicts -------------------------------------------------------------------------------------------------------------
+
+
+def test_a_dict_is_built_when_it_is_used_and_reads_what_is_elsewhere(store: Store) -> None:
+    assert store.built == 0
+    assert store.tree["speed"] == 0.5
+    store.values["speed"] = 0.75
+    assert store.tree["speed"] == 0.75
+    assert store.tree.get("speed") == 0.75
+    assert store.tree.get("none") is None
+    assert store.tree.get("none", 3) == 3
+    assert store.built == 1
+
+
+def test_a_dict_is_a_dict_to_all_code(store: Store) -> None:
+    tree = store.tree
+    assert isinstance(tree, dict)
+    assert tree == NOW
+    assert tree == MappingProxyType(NOW)
+    assert tree == tree.copy()
+    assert tree != {**NOW, "count": 3}
+    assert tree != [1]
+    assert (tree != NOW) is False
+    assert list(tree) == list(NOW)
+    assert list(reversed(tree)) == list(reversed(NOW))
+    assert len(tree) == 6
+    assert ("speed" in tree, "none" in tree) == (True, False)
+    assert {**tree} == NOW
+    assert tree | {"speed": 1} == {**NOW, "speed": 1}
+    assert {"speed": 1, "more": 2} | tree == {"more": 2, **NOW}
+    assert tree.__or__(3) is tree.__ror__(3) is NotImplemented
+    assert type(tree | {}) is type({} | tree) is dict
+    assert json.loads(json.dumps(tree)) == NOW
+    for same in (copy.copy(tree), copy.deepcopy(tree), pickle.loads(pickle.dumps(tree))):
+        assert type(same) is dict
+        assert same == NOW
+    assert copy.copy(tree)["list"] is store.list
+    assert type(copy.deepcopy(tree)["list"]) is list
+    assert tree.fromkeys("ab", 1) == {"a": 1, "b": 1}
+    assert repr(tree) == f"<place: {NOW!r}>"
+    with pytest.raises(TypeError):
+        hash(tree)
+
+
+def test_a_dict_is_written_where_its_values_are(store: Store) -> None:
+    store.tree["speed"] = 1
+    store.tree.update(count=4)
+    store.tree["alias"] = np.int64(5)
+    store.tree["own"] = "anything"
+    assert store.values == {"speed": 1.0, "count": 5, "const": 7}
+    assert store.tree["own"] == "anything"
+    store.tree["list"] = [9]
+    assert store.numbers == [9, 2, 3]
+    before = store.tree
+    before |= {"speed": -1}
+    assert before is store.tree
+    assert store.values["speed"] == -1
+    store.tree.assign({"count": 1, "speed": 0})
+    assert store.values == {"speed": 0, "count": 1, "const": 7}
+    assert store.tree.setdefault("count", 8) == 1
+
+
+def test_none_is_an_output_that_is_not_set(store: Store) -> None:
+    store.tree["speed"] = None
+    assert store.values["speed"] == NOT_SET
+    assert store.tree["speed"] is None
+    store.tree["speed"] = 0.25
+    assert store.tree["speed"] == 0.25
+    with pytest.raises(WrongType, match=r"place\.count: expected .*None"):
+        store.tree["count"] = None
+
+
+@pytest.mark.parametrize(
+    ("do", "error", "message"),
+    [
+        (lambda tree: tree["speeed"], UnknownKey, "place.speeed: there is no key 'speeed' in place"),
+        (lambda tree: tree[["speed"]], UnknownKey, "there is no key ['speed'] in place"),
+        (lambda tree: tree.__setitem__("speeed", 1), UnknownKey, "did you mean 'speed'? There is: alias, const, count"),
+        (lambda tree: tree.__delitem__("speed"), UnknownKey, "place.speed: a key of hal_data cannot be removed"),
+        (lambda tree: tree.clear(), UnknownKey, "place.speed: a key of hal_data cannot be removed"),
+        (lambda tree: tree.setdefault("none", 1), UnknownKey, "there is no key 'none' in place"),
+        (lambda tree: tree.__setitem__("const", 1), WrongValue, "place.const: cannot be written"),
+        (lambda tree: tree.__setitem__("const", 1), WrongValue, "leave it"),
+        (lambda tree: tree.__setitem__("speed", 2), WrongValue, "place.speed: "),
+        (lambda tree: tree.__setitem__("list", 3), WrongType, "place.list: expected a list, not a int"),
+        (lambda tree: tree.assign([1]), WrongType, "place: expected a dict, not a list"),
+        (lambda tree: tree.register("none", print), UnknownKey, "there is no key 'none' in place"),
+    ],
+)
+def test_errors_of_a_dict_name_the_place(
+    do: Callable[[LiveDict], object], error: type[Exception], message: str, store: Store
+) -> None:
+    with pytest.raises(error) as caught:
+        do(store.tree)
+    assert message in str(caught.value)
+    assert store.values == {"speed": 0.5, "count": 2, "const": 7}
+
+
+def test_listeners_of_a_value_and_of_its_alias(store: Store) -> None:
+    heard: list[tuple[str, Any]] = []
+    store.tree.register("count", lambda key, value: heard.append((key, value)))
+    assert heard == []
+    store.tree.register("alias", lambda key, value: heard.append((key, value)), notify=True)
+    assert heard == [("alias", 2)]
+    store.tree["alias"] = 3
+    assert heard[1:] == [("count", 3), ("alias", 3)]
+    store.tree["speed"] = 1
+    store.tree["count"] = 3
+    assert heard[3:] == [("count", 3), ("alias", 3)]
+
+
+def test_listeners_that_the_hal_has_called_are_called_once() -> None:
+    cell, calls = [0], []
+    connected: list[Callable[[], None]] = []
+
+    def put(value: int) -> None:
+        changed = cell[0] != value
+        cell[0] = value
+        if changed:
+            connected[0]()
+
+    def watch(fire: Callable[[], None]) -> object:
+        connected.append(fire)
+        return fire
+
+    tree = LiveDict("", lambda: {"value": Slot(lambda: cell[0], put, INT32, watch)})
+    tree.register("value", lambda key, value: calls.append(value))
+    for value in (1, 1, 2):
+        tree["value"] = value
+    put(3)
+    assert calls == [1, 1, 2, 3]
+    assert len(connected) == 1
+    assert repr(tree) == "<hal_data: {'value': 3}>"
+    with pytest.raises(UnknownKey, match="there is no key 'x' in hal_data"):
+        tree["x"]
+
+
+# -- lists -------------------------------------------------------------------------------------------------------------
+
+
+def test_a_list_is_a_list_to_all_code(store: Store) -> None:
+    numbers = store.list
+    assert isinstance(numbers, list)
+    assert numbers == [1, 2, 3]
+    assert numbers == (1, 2, 3)
+    assert numbers == numbers
+    assert (numbers == [1, 2], numbers == "abc", numbers != [1, 2, 3], numbers != [1]) == (False, False, False, True)
+    assert (numbers < [2], numbers <= [1, 2, 3], numbers > [2], numbers >= [1, 2, 3]) == (True, True, False, True)
+    assert (numbers < [1, 2, 3], numbers > [1, 2, 3], numbers <= [1], numbers >= [2]) == (False, False, False, False)
+    assert (
+        numbers + [4],  # noqa: RUF005 - what is tested
+        [0] + numbers,  # noqa: RUF005 - what is tested
+        numbers * 2,
+        2 * numbers,
+    ) == (
+        [1, 2, 3, 4],
+        [0, 1, 2, 3],
+        [1, 2, 3, 1, 2, 3],
+        [1, 2, 3, 1, 2, 3],
+    )
+    for other in ("__add__", "__radd__", "__lt__", "__le__", "__gt__", "__ge__"):
+        assert getattr(numbers, other)((1,)) is NotImplemented
+    assert numbers.copy() == [1, 2, 3]
+    assert json.dumps(numbers) == "[1, 2, 3]"
+    assert (numbers.index(2), numbers.count(3), 3 in numbers, list(reversed(numbers))) == (1, 1, True, [3, 2, 1])
+    for same in (copy.copy(numbers), copy.deepcopy(numbers), pickle.loads(pickle.dumps(numbers)), numbers[:]):
+        assert type(same) is list
+        assert same == [1, 2, 3]
+    assert repr(numbers) == "<place.list: [1, 2, 3]>"
+    with pytest.raises(TypeError):
+        hash(numbers)
+
+
+def test_a_list_is_written_where_its_values_are(store: Store) -> None:
+    numbers = store.list
+    numbers[0], numbers[-1] = 10, 30
+    assert store.numbers == [10, 2, 30]
+    assert (numbers[0], numbers[-3], numbers[2], numbers[1:]) == (10, 10, 30, [2, 30])
+    numbers[1:] = (5, 6)
+    assert store.numbers == [10, 5, 6]
+    numbers[::2] = [0, 1]
+    assert store.numbers == [0, 5, 1]
+    numbers.assign([7, 7])
+    assert store.numbers == [7, 7, 1]
+    store.numbers.append(4)
+    assert (len(numbers), numbers) == (4, [7, 7, 1, 4])
+
+
+@pytest.mark.parametrize(
+    ("do", "error", "message"),
+    [
+        (lambda it: it[3], WrongIndex, "place.list[3]: there is no entry 3, the list has 3\n  use 0 to 2"),
+        (lambda it: it[-4], WrongIndex, "there is no entry -4, the list has 3"),
+        (lambda it: it["a"], WrongType, "place.list: expected a list index, not 'a' (str)"),
+        (lambda it: it.__setitem__(3, 1), WrongIndex, "there is no entry 3"),
+        (lambda it: it.__setitem__(-1, "x"), WrongType, "place.list[2]: expected"),
+        (lambda it: it.__setitem__(slice(0, 2), [1]), WrongValue, "place.list: 1 values do not fit 2 entries"),
+        (lambda it: it.assign([1, 2, 3, 4]), WrongValue, "place.list: 4 values are too many for 3 entries"),
+        (lambda it: it.assign("abc"), WrongType, "place.list: expected a list, not a str"),
+        (lambda it: it.assign({1}), WrongType, "place.list: expected a list, not a set"),
+        (lambda it: it.append(1), WrongType, "place.list: the list has a fixed length and order"),
+        (lambda it: it.pop(), WrongType, "the list has a fixed length"),
+        (lambda it: it.sort(key=None), WrongType, "the list has a fixed length"),
+        (lambda it: it.__delitem__(0), WrongType, "the list has a fixed length"),
+        (lambda it: it.__iadd__([1]), WrongType, "the list has a fixed length"),
+    ],
+)
+def test_errors_of_a_list_name_the_place(
+    do: Callable[[ValueList], object], error: type[Exception], message: str, store: Store
+) -> None:
+    with pytest.raises(error) as caught:
+        do(store.list)
+    assert message in str(caught.value)
+    assert store.numbers == [1, 2, 3]
+
+
+def test_a_list_of_devices(store: Store) -> None:
+    other = Store()
+    devices = LiveList("devices", [store.tree, other.tree])
+    assert devices[1] is other.tree
+    assert list(devices) == [store.tree, other.tree]
+    assert devices[0:1] == [store.tree]
+    devices[1] = {"count": 9}
+    assert (store.values["count"], other.values["count"]) == (2, 9)
+    devices[:] = [{"count": 4}, {"count": 5}]
+    assert (store.values["count"], other.values["count"]) == (4, 5)
+    for index, error in ((2, WrongIndex), ("x", WrongType), (None, WrongType)):
+        with pytest.raises(error):
+            devices[index]
+    with pytest.raises(WrongIndex) as caught:
+        LiveList("none", [])[0]
+    assert "use 0" not in str(caught.value)
+
+
+def test_a_write_to_a_list_is_reported(store: Store) -> None:
+    loads: list[int] = []
+
+    def load() -> list[int]:
+        loads.append(1)
+        return list(store.numbers)
+
+    def note() -> None:
+        store.changes += 1
+
+    put = store.numbers.__setitem__
+    numbers = ValueList("l", INT32, lambda: 3, store.numbers.__getitem__, put, load, note)
+    numbers[0] = 5
+    assert store.changes == 1
+    numbers[:] = [1, 1, 1]
+    assert store.changes == 4
+    assert (list(numbers), numbers[0:2], len(loads)) == ([1, 1, 1], [1, 1], 2)
+
+
+# -- plain values ------------------------------------------------------------------------------------------------------
+
+
+class Opaque:
+    pass
+
+
+class Broken:
+    def __str__(self) -> str:
+        raise ValueError
+
+
+class Text(str):
+    __slots__ = ()
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (None, None),
+        (True, True),
+        (1.5, 1.5),
+        (np.float64(1.5), 1.5),
+        (np.int32(4), 4),
+        (Fraction(1, 2), 0.5),
+        (Text("x"), "x"),
+        ({1: (2, 3), 2: np.float64(1)}, {1: [2, 3], 2: 1.0}),
+        ({1: 2, "a": 3}, {"1": 2, "a": 3}),
+        ({"b", "a"}, ["a", "b"]),
+        (frozenset({2, 1}), [1, 2]),
+        (decimal.Decimal("1.5"), "1.5"),
+        (Opaque(), "<Opaque>"),
+        (Broken(), "<Broken>"),
+        (b"ab", "b'ab'"),
+    ],
+)
+def test_plain_values(value: object, shown: object) -> None:
+    found = plain(value)
+    assert found == shown
+    assert type(found) is type(shown)
+    json.dumps(found)
+
+
+# -- what exists -------------------------------------------------------------------------------------------------------
+
+
+def test_devices_that_exist_are_named() -> None:
+    assert "pwm[11]" not in existing_devices()
+    before = len(existing_devices())
+    spark, relay, hub = wpilib.PWMSparkMax(11), wpilib.Relay(3), wpilib.PneumaticHub(40)
+    assert devices_exist()
+    found = existing_devices()
+    assert [each for each in found if each in ("pwm[11]", "relay[3]")] == ["pwm[11]", "relay[3]"]
+    assert "pneumatics or power distribution" in found
+    assert len(found) >= before + 3
+    del spark, relay, hub
+
+
+def test_modules_that_the_robot_has_not_made_are_explained() -> None:
+    tree = HalData()
+    hub = wpilib.PneumaticHub(41)
+    assert 41 in tree["ph"]
+    assert 40.0 not in tree["ph"]
+    assert tree["ph"].get(42) is None
+    with pytest.raises(UnknownKey) as caught:
+        tree["ph"][42]
+    assert str(caught.value).startswith("ph[42]: there is no key 42 in ph\n")
+    assert "a module appears when the robot creates it; existing modules: " in str(caught.value)
+    assert "41" in str(caught.value)
+    assert tree["pcm"][0] is tree["solenoid"]
+    with pytest.raises(UnknownKey):
+        tree["ph"][0]
+    del hub
