@@ -13,7 +13,7 @@ import resource
 import struct
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -41,8 +41,10 @@ class LineTests:
     def tests_of_file(self, file: str) -> set[str]:
         return {test for tests in self.tests_by_line.get(file, {}).values() for test in tests if test}
 
-    def tests_of_line(self, file: str, line: int) -> set[str]:
-        return set(self.tests_by_line.get(file, {}).get(line, ()))
+    def tests_of(self, file: str, lines: Iterable[int]) -> set[str]:
+        """Return the tests that execute the first of these lines which is executed at all."""
+        of_file = self.tests_by_line.get(file, {})
+        return set(next((of_file[line] for line in lines if line in of_file), ()))
 
 
 class LineRecorder:

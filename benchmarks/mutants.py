@@ -32,6 +32,11 @@ class Mutant:
     before: str
     text: str
 
+    @property
+    def lines(self) -> tuple[int, int]:
+        """Its own line, which is not always executed as one, and that of its statement."""
+        return self.line, self.statement
+
     def apply(self, source: bytes) -> bytes:
         return source[: self.start] + self.text.encode() + source[self.end :]
 

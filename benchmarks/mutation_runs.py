@@ -135,8 +135,7 @@ def trial_of(mutant: Mutant, line_tests: LineTests) -> Trial:
         compile(source, mutant.file, "exec", dont_inherit=True),
         compile(mutant.apply(source), mutant.file, "exec", dont_inherit=True),
     )
-    tests = line_tests.tests_of_line(mutant.file, mutant.line)
-    tests = tests or line_tests.tests_of_line(mutant.file, mutant.statement)
+    tests = line_tests.tests_of(mutant.file, mutant.lines)
     if codes is None or "" in tests:  # executed by an import
         codes, tests = None, tests | line_tests.tests_of_file(mutant.file)
     return Trial(mutant, sorted(tests - {""}, key=lambda test: (line_tests.cpu_seconds[test], test)), codes)

@@ -55,17 +55,17 @@ def main() -> None:
     parser.add_argument("--list", action="store_true", help="print which lines no test executes, no more")
     options = parser.parse_args()
     os.nice(19)
-    drawn = draw(options.seed, options.count, options.only)
     imports_that_do_not_change()
     with tempfile.TemporaryDirectory(prefix="mutations-", ignore_cleanup_errors=True) as name:
         began = time.monotonic()
         line_tests = which_tests_run_which_lines(Path(name))
         used = sum(line_tests.cpu_seconds.values())
         print(f"{len(line_tests.cpu_seconds)} tests, recorded in {used:.0f} s of processor time", flush=True)
-        trials = [trial_of(mutant, line_tests) for mutant in drawn]
+        drawn = draw(options.seed, options.count, options.only)
         if options.list:
-            print_lines_not_run([trial.mutant for trial in trials if not trial.tests])
+            print_lines_not_run([mutant for mutant in drawn if not line_tests.tests_of(mutant.file, mutant.lines)])
             return
+        trials = [trial_of(mutant, line_tests) for mutant in drawn]
         *verdicts, without_change = run_all([*trials, control(line_tests)], line_tests, Path(name), options.processes)
         if without_change != SURVIVED:
             sys.exit("in forks, the tests fail without any change")
