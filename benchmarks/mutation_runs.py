@@ -212,6 +212,8 @@ class Runner:
             end_processes_below()
         if hangs:
             return HANGS
+        if status and not trial.mutant.before:
+            print(self._output.read_text()[-5000:], file=sys.stderr)
         return SURVIVED if os.waitstatus_to_exitcode(status) == 0 else KILLED
 
     def set_current(self, number: int) -> None:
@@ -252,7 +254,9 @@ def run_imported(runner: Runner, trials: Iterable[tuple[int, Trial]], report: Ca
         failed = False
 
         def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-            self.failed = self.failed or report.failed
+            if report.failed:
+                self.failed = True
+                print(report.nodeid, report.longreprtext)
 
         @pytest.hookimpl(tryfirst=True)
         def pytest_runtestloop(self, session: pytest.Session) -> bool:

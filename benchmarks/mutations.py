@@ -67,10 +67,10 @@ def main() -> None:
             return
         trials = [trial_of(mutant, line_tests) for mutant in drawn]
         *verdicts, without_change = run_all([*trials, control(line_tests)], line_tests, Path(name), options.processes)
-        if without_change != SURVIVED:
-            sys.exit("in forks, the tests fail without any change")
         print_summary([(trial.mutant, verdict) for trial, verdict in zip(trials, verdicts, strict=True)], options.seed)
         print(f"{time.monotonic() - began:.0f} s of wall time")
+        if without_change != SURVIVED:
+            sys.exit("in forks, the tests fail without any change")
 
 
 def which_tests_run_which_lines(directory: Path) -> LineTests:
@@ -172,7 +172,7 @@ def print_summary(verdicts: list[tuple[Mutant, str]], seed: int) -> None:
     for verdict, count in counts.most_common():
         print(f"{verdict:18} {count:4} {count / len(verdicts):6.1%}")
     dead = counts[KILLED] + counts[HANGS]
-    print(f"{'dead in all':18} {dead:4} {dead / len(verdicts):6.1%}")
+    print(f"{'dead in all':18} {dead:4} {dead / max(1, len(verdicts)):6.1%}")
 
 
 if __name__ == "__main__":

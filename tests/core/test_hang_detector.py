@@ -193,3 +193,21 @@ def test_what_the_project_computes_while_it_is_imported_counts(monkeypatch: pyte
                 threading.Event().wait(0.001)
         assert interrupted[:1] == expected
     assert "pyfrc import hang detector" not in {thread.name for thread in threading.enumerate()}
+
+
+def test_an_import_that_goes_on_is_interrupted_again_only_after_as_much_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    interrupted: list[float] = []
+    now = [0.0]
+    monkeypatch.setattr(
+        hang_detector._Interruption, "interrupt", lambda self, ident, message: interrupted.append(now[0])
+    )
+
+    def cpu() -> float:
+        now[0] += 0.004
+        return now[0]
+
+    monkeypatch.setattr(hang_detector, "_cpu_of_this_thread", lambda: cpu)
+    with importing(SimpleNamespace(is_project_file=lambda filename: True), 0.01):  # type: ignore[arg-type]
+        while len(interrupted) < 3:
+            threading.Event().wait(0.001)
+    assert [round(each, 6) for each in interrupted[:3]] == [0.016, 0.028, 0.04]

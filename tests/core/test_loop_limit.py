@@ -261,3 +261,27 @@ def test_a_robot_with_wpilibs_loop_needs_no_explanation(run: RobotRun) -> None:
     modes.set_mode(enabled=True)
     run.run_until(60_000)
     assert explain_missing_refresh(run) is None
+
+
+def test_the_first_line_of_a_waits_function_is_the_innermost(
+    run: RobotRun, library: Library, exceeded: Exceeded
+) -> None:
+    robot = library.robot(
+        """
+        class Robot(MagicRobot):
+            def teleopPeriodic(self):
+                self.outer()
+
+            def outer(self):
+                self.inner()
+
+            def inner(self):
+                wait(waits.pop(0) if waits else 0)
+        """
+    )
+    run.construct(robot)
+    run.start()
+    library.waits += [0, 150]
+    run.run_until(1_000_000)
+    ((_, error),) = exceeded
+    assert (error.place, error.begins_at, error.function) == ("robot.py:9", "robot.py:8", "teleopPeriodic")

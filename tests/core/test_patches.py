@@ -251,6 +251,9 @@ def test_a_built_in_functions_replacement_is_one_to_all_code(patched: Patches) -
     assert repr(time.sleep) == "<built-in function sleep>"
     assert copy.copy(time.sleep) is copy.deepcopy(time.sleep) is pickle.loads(pickle.dumps(time.sleep)) is time.sleep
 
+    function = time.sleep.__func__  # type: ignore[attr-defined]
+    assert (function.__name__, function.__module__) == ("sleep", "time")  # what a traceback shows
+
     class Uses:
         sleep = time.sleep
 
@@ -453,5 +456,8 @@ def test_code_is_in_motion_only_while_it_runs(run: RobotRun) -> None:
     seen: list[bool] = []
     run.do(lambda: seen.append(run.in_motion))
     assert (seen, run.in_motion) == ([True], False)
+    seen.clear()
+    end = run.threads.end
+    run.threads.end = lambda: seen.append(run.in_motion) or end()  # type: ignore[method-assign, func-returns-value]
     run.end()
-    assert not run.in_motion
+    assert (seen, run.in_motion) == ([True], False)

@@ -466,3 +466,34 @@ def name_of(project: Project, log: CrashLog) -> str:
 def test_a_call_in_a_new_interpreter(tmp_path: Path) -> None:
     project = Project(tmp_path / "robot.py")
     assert run_in_subprocess(name_of, project, "meanwhile") == "robot.py"
+
+
+# -- the last output ---------------------------------------------------------------------------------------------------
+
+PREFORKED = """
+import sys
+from pyfrc_core.processes.prefork import PreforkedProcess
+
+def work(reasons):
+    sys.stdout.write(f"out {reasons}")
+    sys.stderr = open(2, "w", buffering=1000)
+    sys.stderr.write("err")
+    return 7
+
+sys.exit(PreforkedProcess(work).take_over("r" * 600))
+"""
+
+
+@only_forked
+def test_what_a_preforked_process_printed_last_is_not_lost() -> None:
+    done = subprocess.run([sys.executable, "-c", PREFORKED], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (7, "err")
+    assert done.stdout == f"out {'r' * 512}"  # which a pipe holds at once
+
+
+def test_an_exit_before_a_connection_was_read_is_not_held_up() -> None:
+    heard = Heard()
+    heard.channel.connection = heard.ours  # known, and not read
+    heard.channel.ended(3)
+    assert heard.events == [EXIT]
+    heard.ours.close()
