@@ -68,6 +68,7 @@ def command(
     """
     if seconds is not None and runs is not None:
         raise click.UsageError("--time and --runs are mutually exclusive.")
+    from pyfrc_core.compat.real_time_devices import explain_real_time
     from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
     from pyfrc_core.processors import usable_processors
 
@@ -77,6 +78,8 @@ def command(
     printer = _ProgressPrinter(verbosity().quiet)
     campaign = run_campaign(project, CampaignOptions(seed, runs, seconds, jobs or usable_processors()), printer)
     printer.end(campaign.progress)
+    if campaign.real_time:
+        hint(explain_real_time(campaign.real_time))
     if campaign.interrupted:
         click.echo("interrupted")
     if not campaign.findings:
@@ -105,14 +108,15 @@ class _ProgressPrinter:
     def on_found(self, found: FuzzFinding) -> None:
         self._clear()
         click.secho(found.failure.text, fg="red")
-        if found.entry is None:
-            click.echo("  This failure did not repeat in a replay, so no script was saved.")
-        elif found.known:
+        if found.known:
             click.echo(f"  still fails: {found.entry.display_path}")
         else:
             for line in found.story[:-1]:
                 click.echo(f"  {line}")
-            hint(f"  {counted(found.writes, 'write')}, {counted(found.runs, 'run')} of the robot to find them")
+            if found.repeats:
+                hint(f"  {counted(found.writes, 'write')}, {counted(found.runs, 'run')} of the robot to find them")
+            else:
+                click.echo("  This failure did not repeat in a replay. The script of the whole match is saved:")
             click.echo(f"  pyfrc replay {found.entry.display_path}")
 
     def end(self, progress: CampaignProgress) -> None:

@@ -29,6 +29,7 @@ from .runtime.scripts.files import traced
 from .runtime.scripts.player import Player
 from .runtime.scripts.script import InputScript, load_script, trace_beside
 from .runtime.seeds import seed_generators
+from .runtime.trace import repeatable_part
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,7 @@ class ReplayResult:
     :param digest: the hash of the trace
     :param equal: whether the trace equals the recorded one; None when the recording has no hash
     :param difference: the first difference, if the recording has a trace
+    :param real_time: the devices that do not repeat, as `compat.real_time_devices` names them
     """
 
     seconds: float
@@ -63,6 +65,7 @@ class ReplayResult:
     digest: str
     equal: bool | None
     difference: Difference | None
+    real_time: tuple[str, ...] = ()
 
 
 def replay(project: Project, file: Path, *, until: float | None = None, trace: Path | None = None) -> ReplayResult:
@@ -97,6 +100,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
                         construct(project, run, robot_class)
                         Player(script, run).play(until_us)
                     seconds = run.clock.now
+                    real_time = run.hal_data["CAN"].real_time_devices()
             finally:
                 with _collected(failures, project):
                     run.close()
@@ -104,7 +108,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
         difference = _first_difference(beside, written, run_us=until_us) if beside.is_file() else None
     whole = until_us is None or until_us >= script.end_us
     equal = script.trace == recorder.digest() if script.trace and whole else None
-    return ReplayResult(seconds, failures[0] if failures else None, recorder.digest(), equal, difference)
+    return ReplayResult(seconds, failures[0] if failures else None, recorder.digest(), equal, difference, real_time)
 
 
 @contextmanager
@@ -165,5 +169,5 @@ def _changes(trace: Path) -> Iterator[dict[str, Any]]:
     with trace.open(encoding="utf-8") as lines:
         for line in lines:
             change = json.loads(line)
-            if "t" in change:
-                yield change
+            if "t" in change and (repeats := repeatable_part(change)) is not None:
+                yield repeats

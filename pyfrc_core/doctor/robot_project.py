@@ -6,6 +6,7 @@ from codecs import BOM_UTF8
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ..compat.real_time_devices import real_time_libraries
 from ..config.robotpy import load_robot_packages
 from ..errors import PyfrcError, SettingsError
 from ..processes.call import run_in_subprocess
@@ -92,7 +93,7 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[CheckResult]:
 
 def _robot_class(project: Project) -> Iterator[CheckResult]:
     try:
-        name, misspelled = run_in_subprocess(_look_at_class, project, "while it was imported")
+        name, misspelled, real_time = run_in_subprocess(_look_at_class, project, "while it was imported")
     except (PyfrcError, OSError) as error:
         yield problem_from_error("program", error, "Correct that line; pyfrc test shows more details.")
     except Exception as error:  # the other process could not report the error
@@ -101,10 +102,14 @@ def _robot_class(project: Project) -> Iterator[CheckResult]:
         yield ok("program", f"class {name} in {project.main_file}")
         for method in misspelled:
             yield problem("program", str(method), method.remedy)
+        for library in real_time:
+            text = f"{library} simulates its devices in real time: runs of this robot do not repeat exactly"
+            yield hint("program", text, "In tests, compare what depends on these devices with a tolerance.")
 
 
-def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[MisspelledMethod]]:
-    return load_robot(project).__name__, find_misspelled_methods(project)
+def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[MisspelledMethod], tuple[str, ...]]:
+    name = load_robot(project).__name__
+    return name, find_misspelled_methods(project), real_time_libraries()
 
 
 def _sim_config(project: Project) -> Iterator[CheckResult]:

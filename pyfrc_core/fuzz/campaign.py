@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from ..project import Project
+from ..runtime.scripts.script import InputScript
 from .corpus import Corpus, CorpusEntry
 from .describe import story_of
 from .failure import FuzzFailure
@@ -19,9 +20,12 @@ from .lines import Line, share
 from .match import FuzzTask, MatchResult, ReplayTask
 from .match_executor import MatchExecutor, open_match_executor
 from .seed_schedule import SeedScheduler
-from .shrink import Shrinker
+from .shrink import MOST_RUNS, Shrinker
 
 _BATCH = 32
+
+#: The maximum number of runs to shrink a script of a robot that does not repeat: runs that fail by chance prove little.
+_MOST_REAL_TIME_RUNS = 50
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,8 @@ class FuzzFinding:
 
     :param failure: the failure
     :param story: the events that lead to it, one line each; the failure comes last
-    :param entry: the script in the corpus; None when the failure did not repeat
+    :param entry: the saved script
+    :param repeats: whether the robot failed again with the script; if not, it is the script of the whole match
     :param known: whether an earlier campaign saved it
     :param runs: how many matches it took to shrink the script
     :param writes: how many writes the shortest script has
@@ -74,7 +79,8 @@ class FuzzFinding:
 
     failure: FuzzFailure
     story: tuple[str, ...]
-    entry: CorpusEntry | None
+    entry: CorpusEntry
+    repeats: bool = True
     known: bool = False
     runs: int = 0
     writes: int = 0
@@ -87,11 +93,13 @@ class Campaign:
     :param progress: how far it came
     :param findings: the failures that it found
     :param interrupted: whether the user interrupted it
+    :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
     """
 
     progress: CampaignProgress = field(default_factory=CampaignProgress)
     findings: list[FuzzFinding] = field(default_factory=list)
     interrupted: bool = False
+    real_time: tuple[str, ...] = ()
 
 
 class CampaignListener(Protocol):
@@ -173,6 +181,7 @@ class _Runner:
                 new = {line: at_us for line, at_us in played.reached.items() if line not in self._reached}
                 self._scheduler.learn(schedule, new)
                 self._reached |= new.keys()
+                self.campaign.real_time = self.campaign.real_time or played.real_time
                 progress.matches += 1
                 progress.simulated += played.script.end_us / 1e6
                 progress.covered = share(self._reached, self._all_lines) if self._reached else None
@@ -199,10 +208,14 @@ class _Runner:
             progress.doing = f"shrinking: run {runs}"
             self._listener.on_progress(progress)
 
-        shrinker = Shrinker(self._executor, played.script, played.failure, played.inputs, on_run=report_run)
+        most_runs = _MOST_REAL_TIME_RUNS if self.campaign.real_time else MOST_RUNS
+        shrinker = Shrinker(self._executor, played.script, played.failure, played.inputs, most_runs, on_run=report_run)
         self._shrinking = shrinker
         shrinker.shrink()
-        self._write(shrinker, repeats=shrinker.repeats and shrinker.play_again())
+        if shrinker.repeats and shrinker.play_again():
+            self._write(shrinker)
+        else:
+            self._keep(played.script, played.failure, shrinker.runs)
         self._shrinking = None
 
     def save_unshrunk(self) -> None:
@@ -210,14 +223,20 @@ class _Runner:
         for played in self._waiting:
             assert played.failure is not None
             shrinker, self._shrinking = self._shrinking, None
-            self._write(shrinker or Shrinker(self._executor, played.script, played.failure, {}), repeats=True)
+            self._write(shrinker or Shrinker(self._executor, played.script, played.failure, {}))
         self._waiting.clear()
 
-    def _write(self, shrinker: Shrinker, repeats: bool) -> None:
+    def _write(self, shrinker: Shrinker) -> None:
         script, failure = shrinker.script, shrinker.failure
-        entry = self._corpus.add(script, failure) if repeats else None
+        entry = self._corpus.add(script, failure)
         writes = sum(len(step.writes) for step in script.steps)
         self._report(FuzzFinding(failure, story_of(script, failure), entry, runs=shrinker.runs, writes=writes))
+
+    def _keep(self, script: InputScript, failure: FuzzFailure, runs: int) -> None:
+        """Save the whole script of a failure that did not repeat."""
+        entry = self._corpus.keep(script, failure)
+        writes = sum(len(step.writes) for step in script.steps)
+        self._report(FuzzFinding(failure, story_of(script, failure), entry, repeats=False, runs=runs, writes=writes))
 
     def _report(self, found: FuzzFinding) -> None:
         self.campaign.findings.append(found)

@@ -1,4 +1,7 @@
-"""The corpus of a project: scripts of failures in ``tests/fuzz``, and a test file that replays them."""
+"""The corpus of a project: scripts of failures in ``tests/fuzz``, and a test file that replays them.
+
+Failures that did not repeat are in ``tests/fuzz/not_repeated``. The test does not replay them.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,7 @@ from .describe import story_of
 from .failure import FuzzFailure
 
 DIRECTORY = "fuzz"
+NOT_REPEATED = "not_repeated"
 TEST_FILE = "test_fuzz_regressions.py"
 
 _TEST = '''\
@@ -66,16 +70,19 @@ class Corpus:
 
     def add(self, script: InputScript, failure: FuzzFailure) -> CorpusEntry:
         """Write a script to a file with a new name, and the test file if it does not exist."""
-        complete = replace(
-            script,
-            packages={name: version(name) for name in ("pyfrc", "wpilib")},
-            story=story_of(script, failure),
-        )
+        complete = _complete(script, failure)
         file = self._free_name(_name_of(failure))
         complete.save(file)
         test_file = self._tests / TEST_FILE
         if not test_file.exists():
             write_whole(test_file, [_TEST])
+        return CorpusEntry(file, complete)
+
+    def keep(self, script: InputScript, failure: FuzzFailure) -> CorpusEntry:
+        """Write the script of a failure that did not repeat, in place of an earlier one of the same failure."""
+        complete = replace(_complete(script, failure), repeats=False)
+        file = self._tests / DIRECTORY / NOT_REPEATED / f"{_name_of(failure)}.jsonl"
+        complete.save(file)
         return CorpusEntry(file, complete)
 
     def _free_name(self, name: str) -> Path:
@@ -85,6 +92,11 @@ class Corpus:
             number += 1
             file = directory / f"{name}-{number}.jsonl"
         return file
+
+
+def _complete(script: InputScript, failure: FuzzFailure) -> InputScript:
+    packages = {name: version(name) for name in ("pyfrc", "wpilib")}
+    return replace(script, packages=packages, story=story_of(script, failure))
 
 
 def _name_of(failure: FuzzFailure) -> str:

@@ -74,12 +74,14 @@ class MatchResult:
     :param script: the inputs until then
     :param reached: the lines that were reached for the first time, and when, in microseconds
     :param inputs: the robot's inputs, by target
+    :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
     """
 
     failure: FuzzFailure | None
     script: InputScript
     reached: dict[Line, int] = field(default_factory=dict)
     inputs: dict[str, Input] = field(default_factory=dict)
+    real_time: tuple[str, ...] = ()
 
 
 def play(project: Project, task: Task, log: CrashLog) -> MatchResult:
@@ -148,9 +150,9 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
                 pass
             except BaseException as error:  # robot code may call exit(), too
                 failure = failure_of(error, project.files)
-        return MatchResult(
-            failure, fuzz_run.script(project.main_file.name, ROBOT_SEED), dict(reached), generator.inputs
-        )
+        script = fuzz_run.script(project.main_file.name, ROBOT_SEED)
+        real_time = run.hal_data["CAN"].real_time_devices()
+        return MatchResult(failure, script, dict(reached), generator.inputs, real_time)
 
 
 def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:

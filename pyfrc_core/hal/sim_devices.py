@@ -14,6 +14,7 @@ import hal
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
+from ..compat.real_time_devices import real_time_devices
 from .containers import LiveDict, Slot
 from .kinds import ANY, BOOL, FLOAT, INT32, INT64, UnknownKey, choice
 from .paths import join
@@ -113,6 +114,10 @@ class SimDevices(LiveDict):
 
     def __iter__(self) -> Iterator[str]:
         return iter(SimDeviceSim.enumerateDevices(""))
+
+    def real_time_devices(self) -> tuple[str, ...]:
+        """Return the devices whose values do not repeat, as `compat.real_time_devices` names them."""
+        return real_time_devices(self)
 
     def signature(self) -> Signature:
         """Return a value that differs after a device or a value was added or removed; refresh the changed devices."""

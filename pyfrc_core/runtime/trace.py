@@ -1,6 +1,9 @@
 """What a robot did, packet by packet: the changes of `hal_data`, and one hash over all of them.
 
 Two runs with the same hash did the same, bit for bit. As JSON lines, two traces can be compared with any diff.
+
+Values of devices that are simulated in real time (`compat.real_time_devices`) do not repeat. They are marked: a line
+has them under ``real_time``, and the hash leaves them out.
 """
 
 from __future__ import annotations
@@ -11,10 +14,15 @@ from itertools import compress
 from operator import ne
 from typing import IO, TYPE_CHECKING, Any
 
+from ..compat.real_time_devices import is_real_time
+
 if TYPE_CHECKING:
     from ..hal import HalData
 
 FORMAT = "pyfrc-trace 1"
+
+#: The key of a line's values that do not repeat.
+REAL_TIME = "real_time"
 
 
 class Trace:
@@ -29,6 +37,8 @@ class Trace:
         self._out = out
         self._paths: list[str] = []
         self._values: list[Any] = []
+        #: The paths whose values do not repeat.
+        self._real_time: frozenset[str] = frozenset()
         self._hash = hashlib.sha256()
         if out is not None:
             out.write(json.dumps({"format": FORMAT}) + "\n")
@@ -50,11 +60,16 @@ class Trace:
             changed = {path: value for path, value in has.items() if path not in had or _differ(had[path], value)}
             gone = [path for path in had if path not in has]
             self._paths = paths
+            self._real_time = frozenset(path for path in paths if is_real_time(path))
         self._values = values
         if not changed and not gone:
             return
-        line = json.dumps({"t": round(now, 6), "set": changed} | ({"gone": gone} if gone else {}), sort_keys=True)
-        self._hash.update(line.encode())
+        change: dict[str, Any] = {"t": round(now, 6), "set": changed} | ({"gone": gone} if gone else {})
+        if self._real_time:
+            marked = {path: changed.pop(path) for path in sorted(self._real_time & changed.keys())}
+            change |= {REAL_TIME: marked} if marked else {}
+        line = json.dumps(change, sort_keys=True)
+        self._hash.update(hashed_part(line).encode())
         if self._out is not None:
             self._out.write(line + "\n")
 
@@ -68,6 +83,20 @@ class Trace:
         if self._out is not None:
             self._out.write(json.dumps({"sha256": digest}) + "\n")
         return digest
+
+
+def hashed_part(line: str) -> str:
+    """Return what the hash covers of a line; empty if the line has only values that do not repeat."""
+    if f'"{REAL_TIME}"' not in line:
+        return line
+    change = repeatable_part(json.loads(line))
+    return "" if change is None else json.dumps(change, sort_keys=True)
+
+
+def repeatable_part(change: dict[str, Any]) -> dict[str, Any] | None:
+    """Return a line's object without the values that do not repeat; None if it has nothing else."""
+    change = {key: value for key, value in change.items() if key != REAL_TIME}
+    return change if change["set"] or "gone" in change else None
 
 
 def _differ(old: object, new: object) -> bool:

@@ -36,7 +36,7 @@ from . import controller
 from .controller import TestController
 from .fake_time import FakeTime
 from .options import READY_MADE_TESTS, TestOptions
-from .reporting import BUG, bug_of, put_first
+from .reporting import BUG, REAL_TIME, bug_of, put_first
 
 if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
@@ -265,6 +265,10 @@ class PyFrcPlugin:
         if call.excinfo is not None and short:
             leave_out_pyfrc(call.excinfo.value, self.project.files)
         report = yield
+        if report.when == "call" and (self.options.record_directory or self.options.trace_directory):
+            run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
+            if isinstance(run, RobotRun):
+                setattr(report, REAL_TIME, run.hal_data["CAN"].real_time_devices())
         if report.failed and call.excinfo is not None:
             error, files = call.excinfo.value, self.project.files
             text = headline(error, files)

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 #: The attribute of a report that identifies the bug of the robot's code.
 BUG = "pyfrc_bug"
 
+#: The attribute of a report with the devices of the robot that do not repeat.
+REAL_TIME = "pyfrc_real_time"
+
 #: Numbers in a message, such as times, differ from test to test.
 _NUMBER = re.compile(r"\d+(\.\d+)?(e-?\d+)?")
 

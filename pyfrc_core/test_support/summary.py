@@ -12,9 +12,10 @@ from typing import Any, TextIO
 
 import pytest
 
+from ..compat.real_time_devices import explain_real_time
 from ..project import Project
 from ..runtime.misspelled_methods import find_misspelled_methods
-from .reporting import BUG, put_first
+from .reporting import BUG, REAL_TIME, put_first
 
 
 class SummaryPlugin:
@@ -30,6 +31,7 @@ class SummaryPlugin:
     def pytest_terminal_summary(self, terminalreporter: Any, config: pytest.Config) -> Generator[None, object, object]:
         if not config.option.fulltrace:
             _explain_each_bug_once(terminalreporter.stats)
+        _explain_real_time_devices(terminalreporter)
         misspelled = find_misspelled_methods(self._project)
         if misspelled:
             terminalreporter.section("misspelled methods", yellow=True, bold=True)
@@ -42,6 +44,14 @@ def warn_of_misspelled_methods(project: Project, stream: TextIO = sys.stderr) ->
     """Print the misspelled methods of the modules that this process has imported."""
     for method in find_misspelled_methods(project):
         print(f"warning: {method}", file=stream)
+
+
+def _explain_real_time_devices(terminalreporter: Any) -> None:
+    """Explain, once, why recordings of this robot do not repeat."""
+    reports = [report for group in terminalreporter.stats.values() for report in group]
+    devices = sorted({device for report in reports for device in getattr(report, REAL_TIME, ())})
+    if devices:
+        terminalreporter.write_line(explain_real_time(devices))
 
 
 def _explain_each_bug_once(stats: dict[str, list[Any]]) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import ntcore
 
+from ...compat.real_time_devices import is_real_time
 from ...hal import modes
 from ..robot import RobotRun
 from .script import InputScript, Step
@@ -115,6 +116,8 @@ class Recorder:
             if target in before and _same(before[target], value):
                 continue
             if target in _TOLD_OTHERWISE or target == REMAINING:
+                continue
+            if target.startswith("CAN[") and is_real_time(target):  # a thread of its library may have written it
                 continue
             if value == math.inf and target.startswith("encoder") and target.endswith(".period"):
                 # JSON has no infinity; the HAL keeps a rate as its period.

@@ -65,6 +65,7 @@ class InputScript:
     :param trace: the hash of the robot's trace at the time of the recording
     :param story: a description of what happens, in scripts that fuzzing has saved; a replay of these checks for all
         failures that fuzzing checks for
+    :param repeats: False if fuzzing has saved it although the robot did not fail again with it
     :param file: where it was read from, for errors
     """
 
@@ -76,6 +77,7 @@ class InputScript:
     packages: Mapping[str, str] = field(default_factory=dict)
     trace: str | None = None
     story: tuple[str, ...] = ()
+    repeats: bool = True
     file: str = field(default="script", compare=False)
 
     def lines(self) -> Iterator[str]:
@@ -88,6 +90,8 @@ class InputScript:
             header["trace"] = self.trace
         if self.story:
             header["story"] = list(self.story)
+        if not self.repeats:
+            header["repeats"] = False
         yield json.dumps(header, ensure_ascii=False)
         for step in self.steps:
             yield json.dumps({"t": step.at_us / 1_000_000, "set": dict(step.writes)}, ensure_ascii=False)
@@ -160,6 +164,7 @@ def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
         header.of_type("packages", dict, "an object of versions", {}),
         header.of_type("trace", str, "text", ""),
         header.texts("story"),
+        header.flag("repeats", True),
         name,
     )
 
@@ -200,6 +205,13 @@ class _Line:
         if not all(isinstance(each, str) for each in found):
             raise ScriptError(f'"{key}" must be a list of texts', where=self.where)
         return tuple(found)
+
+    def flag(self, key: str, default: bool) -> bool:
+        """Return true or false."""
+        value = self.value.get(key, default)
+        if not isinstance(value, bool):
+            raise ScriptError(f'"{key}" must be true or false, not {_short(value)}', where=self.where)
+        return value
 
     def time(self, key: str, default: float | None = None) -> int:
         """A time in seconds, as microseconds."""

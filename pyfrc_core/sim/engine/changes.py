@@ -15,6 +15,7 @@ from itertools import islice
 from types import MappingProxyType
 from typing import Any
 
+from ...runtime.trace import REAL_TIME
 from .history import History
 
 
@@ -49,7 +50,7 @@ class Change:
 def change_of(line: str) -> Change:
     """Return the change that a line of a trace describes."""
     change = json.loads(line)
-    values = {path: frozen(value) for path, value in change["set"].items()}
+    values = {path: frozen(value) for path, value in (change["set"] | change.get(REAL_TIME, {})).items()}
     return Change(change["t"], MappingProxyType(values), tuple(change.get("gone", ())))
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ...runtime.robot_time import to_us
 from ...runtime.scripts.script import InputScript, Step, trace_beside
-from ...runtime.trace import FORMAT
+from ...runtime.trace import FORMAT, hashed_part
 from ...text_files import write_whole
 from .history import History, entries
 from .messages import StationState, Update
@@ -76,7 +76,7 @@ class Recording:
             return None
         digest = hashlib.sha256()
         for line in entries(self._lines):
-            digest.update(line.rstrip("\n").encode())
+            digest.update(hashed_part(line.rstrip("\n")).encode())
         return digest.hexdigest()
 
     def until(self, time_us: int) -> Recording:

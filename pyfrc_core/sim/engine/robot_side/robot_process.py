@@ -16,6 +16,7 @@ from typing import Any
 
 import hal
 
+from ....compat.real_time_devices import explain_real_time
 from ....errors import PyfrcError
 from ....physics.engine import load_physics
 from ....processes.crash_report import CrashLog
@@ -88,6 +89,8 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
             def ready() -> Ready:
                 tags = tags_of(project.sim_config) if job.tags is None else job.tags
                 notes = tuple(map(str, find_misspelled_methods(project)))
+                if devices := run.hal_data["CAN"].real_time_devices():
+                    notes += (explain_real_time(devices),)
                 return Ready(tags, tuple(_libraries(project)), session.network_address, notes)
 
             try:

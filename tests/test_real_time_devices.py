@@ -1,0 +1,277 @@
+"""Devices that a vendor simulates in real time do not repeat: commands say it once, and no finding is lost.
+
+A stand-in plays phoenix6, so that these tests need no vendor's package; the last one runs a robot on the real one.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+from conftest import MakeProject, RobotProject
+
+from pyfrc_core.compat import real_time_devices as real_time
+from pyfrc_core.runtime.scripts.script import ScriptError, load_script, parse_script
+from pyfrc_core.runtime.trace import hashed_part
+from pyfrc_core.sim.engine.changes import change_of
+
+PHOENIX = """
+    import os
+
+    import hal
+
+
+    class TalonFX:
+        '''Like phoenix6's: a SimDevice for the motor, and one for its sensor, whose values differ in each run.'''
+
+        def __init__(self, number):
+            direction = hal.SimDevice.Direction
+            self.motor = hal.SimDevice(f"CANMotor:Talon FX (v6)[{number}]")
+            self.voltage = self.motor.createDouble("motorVoltage", direction.kOutput, 0.0)
+            self.sensor = hal.SimDevice(f"CANEncoder:Talon FX (v6)[{number}]/Rotor Sensor")
+            self.position = self.sensor.createDouble("position", direction.kBidir, 0.0)
+
+        def update(self):
+            self.voltage.set(int.from_bytes(os.urandom(4), "big"))
+            self.position.set(int.from_bytes(os.urandom(4), "big"))
+    """
+
+ROBOT = """
+    import os
+
+    import phoenix6
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.talons = [phoenix6.TalonFX(number) for number in (11, 12, 21)]
+            self.motor = wpilib.PWMSparkMax(0)
+
+        def robotPeriodic(self):
+            for talon in self.talons:
+                talon.update()
+
+        def teleopPeriodic(self):
+            self.motor.set(0.5)
+    """
+
+TESTS = {
+    "tests/test_robot.py": """
+        def test_teleop(control, robot):
+            with control.run_robot():
+                control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+
+
+        def test_disabled(control, robot):
+            with control.run_robot():
+                control.step_timing(seconds=0.2, autonomous=False, enabled=False)
+        """
+}
+
+SENTENCE = (
+    "Talon FX 11, Talon FX 12 and 1 more device do not repeat exactly, because phoenix6 simulates them in real time: a "
+    "trace's hash leaves out their values, and tests should compare what depends on them with a tolerance."
+)
+
+TELEOP = "tests_test_robot.py.test_teleop.jsonl"
+
+
+class PhoenixProject:
+    """A robot project, and commands in it with the stand-in on Python's path."""
+
+    def __init__(self, project: RobotProject, library: Path) -> None:
+        self.project, self.path = project, project.path
+        self.environment = {"PYTHONPATH": str(library)}
+
+    def output(self, *args: str, code: int = 0) -> str:
+        """Run ``pyfrc``, and return its output as one line of words."""
+        result = self.project.run(*args, env=self.environment, cold=True)
+        assert result.code == code, result.output
+        return " ".join(result.output.split())
+
+    def record(self, directory: str) -> Path:
+        """Record its tests, and return the script of one."""
+        self.output("test", "--record", directory)
+        return self.path / directory / TELEOP
+
+
+@pytest.fixture
+def with_phoenix(make_project: MakeProject, tmp_path: Path) -> PhoenixProject:
+    """A robot with three motors of the stand-in."""
+    library = tmp_path / "library"
+    library.mkdir()
+    (library / "phoenix6.py").write_text(dedent(PHOENIX), "utf-8")
+    return PhoenixProject(make_project({"robot.py": ROBOT, **TESTS}), library)
+
+
+# -- what is one of them -----------------------------------------------------------------------------------------------
+
+
+def test_devices_count_only_where_the_library_is_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same names may be those of other simulations."""
+    names = ["CANMotor:Talon FX (v6)[11]", "CANEncoder:Talon FX (v6)[11]/Rotor Sensor", "SPARK MAX [3]"]
+    monkeypatch.delitem(sys.modules, "phoenix6", raising=False)
+    assert real_time.real_time_devices(names) == ()
+    assert not real_time.is_real_time(names[0])
+    monkeypatch.setitem(sys.modules, "phoenix6", real_time)
+    assert real_time.real_time_devices(names) == ("phoenix6 Talon FX 11",)
+    assert [real_time.is_real_time(name) for name in names] == [True, True, False]
+    assert real_time.is_real_time('CAN["CANGyro:Pigeon 2 (v6)[1]"].yaw')
+
+
+def test_devices_are_in_the_order_of_their_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """9 comes before 10."""
+    monkeypatch.setitem(sys.modules, "phoenix6", real_time)
+    names = [f"CANEncoder:CANcoder (v6)[{number}]" for number in (10, 9)]
+    assert real_time.real_time_devices(names) == ("phoenix6 CANcoder 9", "phoenix6 CANcoder 10")
+
+
+def test_one_sentence_names_the_device_the_reason_and_the_remedy() -> None:
+    """For one device, two and many."""
+    one, two = (real_time.explain_real_time([f"phoenix6 Talon FX {each}" for each in range(count)]) for count in (1, 2))
+    assert one.startswith("Talon FX 0 does not repeat exactly, because phoenix6 simulates it in real time: ")
+    assert two.startswith("Talon FX 0 and Talon FX 1 do not repeat exactly, because phoenix6 simulates them ")
+    assert real_time.explain_real_time([f"phoenix6 Talon FX {each}" for each in (11, 12, 21)]) == SENTENCE
+
+
+# -- traces ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_line_is_hashed_without_its_marked_values() -> None:
+    """A line that has nothing else does not count at all."""
+    plain = '{"set": {"pwm[0].value": 0.5}, "t": 1.0}'
+    assert hashed_part(plain) == plain
+    assert hashed_part('{"real_time": {"CAN": 1}, "set": {"pwm[0].value": 0.5}, "t": 1.0}') == plain
+    assert hashed_part('{"real_time": {"CAN": 1}, "set": {}, "t": 1.0}') == ""
+
+
+def test_marked_values_are_changes_like_others() -> None:
+    """The window and its plots show them."""
+    change = change_of('{"real_time": {"CAN": 1}, "set": {"pwm[0].value": 0.5}, "t": 1.0}')
+    assert dict(change.values) == {"CAN": 1, "pwm[0].value": 0.5}
+
+
+def test_recordings_have_the_same_hash_and_mark_the_values(with_phoenix: PhoenixProject) -> None:
+    """Two recordings with different values of these devices; the hash is that of the lines without them."""
+    first, second = (with_phoenix.record(directory) for directory in ("first", "second"))
+    assert load_script(first).trace == load_script(second).trace
+    lines = first.with_name(f"{first.stem}.trace.jsonl").read_text("utf-8").splitlines()
+    assert any('"real_time": {"CAN[' in line for line in lines)
+    changes = [json.loads(line) for line in lines[1:-1]]
+    assert not any("(v6)" in path for change in changes for path in change["set"])
+    expected = hashlib.sha256("".join(map(hashed_part, lines[1:-1])).encode()).hexdigest()
+    assert load_script(first).trace == expected
+
+
+def test_their_values_are_no_inputs(with_phoenix: PhoenixProject) -> None:
+    """The library may have written them while a test wrote its own inputs."""
+    test = with_phoenix.path / "tests" / "test_robot.py"
+    test.write_text(
+        "def test_teleop(control, robot, hal_data):\n"
+        "    with control.run_robot():\n"
+        "        control.step_timing(seconds=0.2, autonomous=False, enabled=True)\n"
+        "        hal_data['CAN']['CANEncoder:Talon FX (v6)[11]/Rotor Sensor']['position'] = 4.0\n"
+        "        control.step_timing(seconds=0.2, autonomous=False, enabled=True)\n",
+        "utf-8",
+    )
+    assert "(v6)" not in with_phoenix.record("recorded").read_text("utf-8")
+
+
+# -- the commands say it once ------------------------------------------------------------------------------------------
+
+
+def test_a_recorded_test_run_says_it_once(with_phoenix: PhoenixProject) -> None:
+    """Once for all tests, and not when nothing is recorded."""
+    assert with_phoenix.output("test", "--record", "recorded").count(SENTENCE) == 1
+    assert "do not repeat" not in with_phoenix.output("test")
+
+
+def test_a_replay_says_it_and_compares_the_rest(with_phoenix: PhoenixProject) -> None:
+    """The rest of this robot repeats."""
+    script = with_phoenix.record("recorded")
+    output = with_phoenix.output("replay", str(script))
+    assert output.count(SENTENCE) == 1
+    assert "The trace equals the recorded one." in output
+
+
+def test_a_replay_that_differs_is_no_failure(with_phoenix: PhoenixProject) -> None:
+    """What the devices do may reach everything else."""
+    robot = with_phoenix.path / "robot.py"
+    robot.write_text(robot.read_text("utf-8").replace("set(0.5)", "set(os.urandom(1)[0] / 256)"), "utf-8")
+    output = with_phoenix.output("replay", str(with_phoenix.record("recorded")))
+    assert SENTENCE in output
+    assert "The trace differs from the recorded one, first at" in output
+    assert "(v6)" not in output
+
+
+def test_the_simulator_says_it_once(with_phoenix: PhoenixProject) -> None:
+    """As a warning in the terminal."""
+    assert with_phoenix.output("sim", "--ui", "none", "--seconds", "0.5").count(SENTENCE) == 1
+
+
+def test_the_doctor_says_it(with_phoenix: PhoenixProject) -> None:
+    """It does not construct the robot, so it names the library."""
+    result = with_phoenix.project.run("doctor", env=with_phoenix.environment, cold=True)
+    words = " ".join(result.output.split())
+    assert "phoenix6 simulates its devices in real time: runs of this robot do not repeat exactly" in words
+
+
+# -- findings ----------------------------------------------------------------------------------------------------------
+
+ONCE = """\
+        def teleopPeriodic(self):
+            try:
+                os.close(os.open("failed", os.O_CREAT | os.O_EXCL))
+            except FileExistsError:
+                return
+            raise RuntimeError("only once")
+    """
+
+
+def test_a_failure_that_does_not_repeat_is_kept(with_phoenix: PhoenixProject) -> None:
+    """With its story and script, marked; the regression tests leave it out."""
+    with_phoenix.project.write({"robot.py": ROBOT.partition("        def teleopPeriodic")[0] + ONCE})
+    output = with_phoenix.output("fuzz", "--runs", "8", code=1)
+    assert output.count(SENTENCE) == 1
+    assert "RuntimeError: only once" in output
+    assert "This failure did not repeat in a replay. The script of the whole match is saved:" in output
+    (file,) = (with_phoenix.path / "tests" / "fuzz").rglob("*.jsonl")
+    assert file.parent.name == "not_repeated"
+    script = load_script(file)
+    assert not script.repeats
+    assert script.story[-1].endswith("RuntimeError: only once")
+    assert not (with_phoenix.path / "tests" / "test_fuzz_regressions.py").exists()
+
+    (with_phoenix.path / "failed").unlink()
+    with_phoenix.output("fuzz", "--runs", "8", code=1)
+    assert [file] == list((with_phoenix.path / "tests" / "fuzz").rglob("*.jsonl"))
+
+
+def test_the_mark_of_a_script_is_true_or_false() -> None:
+    """As all wrong headers, another value is an error with its line."""
+    header = '{"format": "pyfrc-input 1", "end": 1.0, "repeats": 1}'
+    with pytest.raises(ScriptError, match='"repeats" must be true or false, not 1'):
+        parse_script([header])
+
+
+# -- the real library --------------------------------------------------------------------------------------------------
+
+if find_spec("phoenix6") is not None:
+
+    def test_a_competition_robot_on_phoenix(make_project: MakeProject) -> None:
+        """It drives, and all of its 23 CTRE devices are known."""
+        robot = Path(__file__).parent / "robots" / "competition" / "ctre_swerve"
+        project = make_project({})
+        left_out = shutil.ignore_patterns("__pycache__", ".pytest_cache", ".pyfrc")
+        shutil.copytree(robot, project.path, dirs_exist_ok=True, ignore=left_out)
+        result = project.run("test", "--record", "recorded", "--", "-k", "stick", cold=True)
+        assert result.code == 0, result.output
+        words = " ".join(result.output.split())
+        assert words.count("CANcoder 13, CANcoder 23 and 18 more devices do not repeat exactly") == 1
