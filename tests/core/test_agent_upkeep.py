@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -307,6 +308,43 @@ def test_no_file_stays_open(robot: AgentDisk) -> None:
 
 def open_files() -> int:
     return len(list(Path("/proc/self/fd").iterdir())) if sys.platform == "linux" else 0
+
+
+def test_undeploy_is_on_the_disk_before_the_program_is_stopped_and_when_it_is_done(
+    robot: AgentDisk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    numbered(robot, 1)
+    log: list[str] = []
+
+    def note(what: str) -> None:
+        there = [name for name in ("robotCommand", "py", ".pyfrc") if (robot.home / name).exists()]
+        log.append(f"{what}: {' '.join(there)}")
+
+    monkeypatch.setattr(releases, "flush", lambda directory: note(f"flush {directory.name}"))
+    monkeypatch.setattr(RoboRio, "stop", lambda host, start: note("stop"))
+    robot.ask({"op": "undeploy"})
+    assert log == ["flush lvuser: py .pyfrc", "stop: py .pyfrc", "flush lvuser: "]
+
+
+def test_a_compiling_process_that_was_killed_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ["a.py", "b.py", "c.py"]
+    for name in names:
+        (tmp_path / name).write_text("x = 1\n")
+    forked: list[int] = []
+    fork = os.fork
+
+    def noting() -> int:
+        forked.append(fork())
+        return forked[-1]
+
+    monkeypatch.setattr(os, "fork", noting)
+    with Compiler(tmp_path, names, debug=False) as compiler:
+        os.kill(forked[0], signal.SIGKILL)
+        for _ in names:
+            compiler.add_next()
+        compiler.finish(Activity(lambda **message: None))
+    assert len(forked) == 2
+    assert sorted(each.name.partition(".")[0] for each in (tmp_path / "__pycache__").iterdir()) == ["a", "b", "c"]
 
 
 # -- contents ----------------------------------------------------------------------------------------------------------

@@ -383,3 +383,12 @@ def test_modules_that_the_robot_has_not_made_are_explained() -> None:
     with pytest.raises(UnknownKey):
         tree["ph"][0]
     del hub
+
+
+def test_the_longest_name_of_a_joystick() -> None:
+    stick = HalData()["joysticks"][3]
+    stick["name"] = "n" * 255
+    assert stick["name"] == "n" * 255
+    with pytest.raises(WrongValue):
+        stick["name"] = "n" * 256
+    stick["name"] = ""

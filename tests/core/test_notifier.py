@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import threading
 
 import pytest
 
@@ -138,3 +139,14 @@ def test_an_alarm_that_is_cleaned_lets_its_thread_go(timeline: Timeline) -> None
     timeline.run_until(5)
     alarms.clean(handle)
     assert timeline.run_until(6) == ["5 (0, 0)"]
+
+
+def test_the_thread_of_a_notifier_that_was_dropped_ends_at_once(timeline: Timeline) -> None:
+    notifier = Notifier(lambda: None)
+    notifier.setName("dropped")
+    notifier.startPeriodic(10)
+    timeline.run_until(5)
+    assert "dropped" in {thread.name for thread in threading.enumerate()}
+    del notifier
+    timeline.run_until(6)
+    assert "dropped" not in {thread.name for thread in threading.enumerate()}

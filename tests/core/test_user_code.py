@@ -98,6 +98,9 @@ def test_a_method_without_self_is_named(import_text: Import, files: RobotFiles) 
 
             def drive(speed, turn):
                 pass
+
+            def stop(self):
+                pass
         """
     )
     assert headline(raised_by(lambda: robot.Robot().teleopPeriodic()), files) == (
@@ -106,6 +109,8 @@ def test_a_method_without_self_is_named(import_text: Import, files: RobotFiles) 
     assert headline(raised_by(lambda: robot.Robot().drive(1, 2)), files) == (
         "robot.py:5: the method drive(speed, turn) has no parameter self: write def drive(self, speed, turn):"
     )
+    more = headline(raised_by(lambda: robot.Robot().stop(1)), files)  # it has a self, and is called wrongly
+    assert more == "robot.py:8: TypeError: Robot.stop() takes 1 positional argument but 2 were given"
     missing = headline(raised_by(lambda: robot.Robot().drive()), files)
     assert missing is not None
     assert missing.startswith("robot.py:5: TypeError: Robot.drive() missing 1 required positional argument")
