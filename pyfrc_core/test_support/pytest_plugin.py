@@ -48,6 +48,8 @@ ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_control
 
 _READY_MADE_DIRECTORY = Path(__file__).parents[1] / "tests"
 
+_NOT_IN_FILE_NAMES = re.compile(r"[^\w.\[\]-]+")  # compiled before the fork, not in each test's process
+
 
 class ThreadStillRunningError(NamesItsPlace):
     """A thread of the robot was still running after its test, although it was stopped."""
@@ -300,7 +302,7 @@ def _file_name(nodeid: str) -> str:
     """Return a file name that identifies the test, and is unique."""
     file, _, test = nodeid.partition("::")
     test = test.replace("::", ".")
-    plain = re.sub(r"[^\w.\[\]-]+", "_", test)
+    plain = _NOT_IN_FILE_NAMES.sub("_", test)
     unique = "" if plain == test else "-" + sha256(test.encode()).hexdigest()[:8]
     return f"{file.replace('/', '_')}.{plain}{unique}.jsonl"
 
