@@ -132,6 +132,14 @@ def python(code: str, **variables: str) -> str:
     return done.stdout
 
 
+@pytest.fixture(scope="module")
+def definitions(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the parsed definitions, for copies."""
+    folder = tmp_path_factory.mktemp("cache") / "definitions"
+    registry.build(folder)
+    return folder
+
+
 def works(built: Any) -> bool:
     return bool((60 * built.cpm).to("count / second").magnitude == 1 and (1 * built.foot).to("inch").magnitude > 11)
 
@@ -154,9 +162,8 @@ def test_definitions_are_kept_and_read_again(tmp_path: Path, monkeypatch: pytest
 @pytest.mark.parametrize(
     "content", [b"", b"\x80\x05garbage", b"\x80\x05K\x05.", None], ids=["empty", "garbage", "other", "half"]
 )
-def test_a_damaged_cache_is_made_anew(tmp_path: Path, content: bytes | None) -> None:
-    folder = tmp_path / "definitions"
-    registry.build(folder)
+def test_a_damaged_cache_is_made_anew(definitions: Path, tmp_path: Path, content: bytes | None) -> None:
+    folder = shutil.copytree(definitions, tmp_path / "definitions")
     sound = {path.name: path.stat().st_size for path in folder.iterdir()}
     for path in folder.iterdir():
         path.write_bytes(path.read_bytes()[: path.stat().st_size // 2] if content is None else content)
@@ -173,9 +180,9 @@ def test_a_cache_that_cannot_be_kept_costs_only_time(tmp_path: Path) -> None:
     assert works(registry.build(None))
 
 
-def test_two_at_once_leave_one_whole_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder, other = tmp_path / "definitions", tmp_path / "other"
-    registry.build(other)
+def test_two_at_once_leave_one_whole_cache(definitions: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "definitions"
+    other = shutil.copytree(definitions, tmp_path / "other")
     remove = shutil.rmtree
 
     def another_process_is_first(path: Path, **options: Any) -> None:
