@@ -116,6 +116,30 @@ def test_plain_pytest_does_the_same_as_in_a_new_interpreter(make_shared_project:
     assert expected[0] == 1
 
 
+def test_modules_are_found_where_a_variable_says(tmp_path: Path, make_project: MakeProject) -> None:
+    conftest = """
+        import os
+        import sys
+
+        import found_elsewhere
+
+        started_by = open(f"/proc/{os.getppid()}/cmdline").read().split("\\0")[1]
+        print(found_elsewhere.__file__, started_by.endswith("/warm_start.py"))
+        print(sys.path, flush=True)
+        os._exit(0)
+        """
+    project = make_project({"conftest.py": conftest})
+    (tmp_path / "modules").mkdir()
+    (tmp_path / "modules" / "found_elsewhere.py").touch()
+    environment = {"PYTHONPATH": os.pathsep.join([str(tmp_path / "modules"), str(tmp_path / "missing")])}
+    warm, cold = (project.run("-s", program="pytest", env=environment, cold=cold) for cold in (False, True))
+    assert warm.stdout.splitlines()[0].endswith("found_elsewhere.py True"), warm.output
+    assert "found_elsewhere.py False" in cold.stdout
+    assert warm.stdout == cold.stdout.replace("found_elsewhere.py False", "found_elsewhere.py True")
+    (tmp_path / "modules" / "sitecustomize.py").touch()
+    assert "found_elsewhere.py False" in project.run("-s", program="pytest", env=environment).stdout
+
+
 @pytest.mark.parametrize("end", ["os.kill(os.getpid(), 9)", "os._exit(77)", "sys.exit('enough')"])
 def test_its_end_is_told(end: str, make_project: MakeProject) -> None:
     project = make_project({"conftest.py": f"import os\nimport sys\n\n{end}\n"})

@@ -68,6 +68,9 @@ _IMPORTED = (
     "pyfrc_core.sim.ui.headless",
 )
 
+#: Modules of the user's that a new interpreter would import before anything else.
+_IMPORTED_AT_START = {"sitecustomize", "usercustomize"}
+
 #: Whatever robot code's is made to do.
 _exit_now = os._exit
 
@@ -102,11 +105,14 @@ class WarmStarts:
     def fit(self, directory: Path, environment: Mapping[str, str]) -> bool:
         """Whether in this directory a fork does the same as a new interpreter."""
         if any(
-            name.startswith(READ_AT_START) and self._environment.get(name) != environment[name] for name in environment
+            name.startswith(READ_AT_START) and self._environment.get(name) != environment[name]
+            for name in environment.keys() - {"PYTHONPATH"}
         ):
             return False
         # The user's modules come before others of their names; here, the others are imported already.
-        return not any(path.stem in self._modules for path in directory.rglob("*") if path.suffix in ("", ".py"))
+        first = self._modules | _IMPORTED_AT_START
+        files = (path for place in (directory, *_search_path(environment)) for path in place.rglob("*"))
+        return not any(path.stem in first for path in files if path.suffix in ("", ".py"))
 
     def run(
         self,
@@ -146,6 +152,11 @@ class WarmStarts:
             errors = beside.submit(stderr.read)
             printed = stdout.read()
             return int(word.recv(LARGEST)), printed, errors.result()
+
+
+def _search_path(environment: Mapping[str, str]) -> list[Path]:
+    """Return the directories of ``PYTHONPATH``."""
+    return [Path(place) for place in environment.get("PYTHONPATH", "").split(os.pathsep) if place]
 
 
 class _Job(NamedTuple):
@@ -194,7 +205,7 @@ def _become(job: _Job) -> None:
     os.environ.update(environment)
     sys.orig_argv[1:] = ["-m", program, *arguments]
     sys.argv[1:] = arguments
-    sys.path.insert(0, directory)
+    sys.path[:0] = [directory, *map(str, _search_path(environment))]
     sys.modules["__main__"] = types.ModuleType("__main__")
     code = 0
     try:
