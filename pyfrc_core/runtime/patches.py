@@ -25,6 +25,7 @@ from ..compat.wpilib_private import LOOP_FUNCTION
 from . import cooperative, data_logs, driver_station, locks, robot_stack, udp_ports
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
+from .deferred_imports import deferred_imports
 from .exceptions import TestEnded
 from .loop_watchdog import Watchdog
 from .notifier import Notifier
@@ -68,10 +69,12 @@ class Patches:
             original = vars(owner).get(name, getattr(owner, name, None))
             self._table.patch(owner, name, as_original(owner, name, original, replacement))
         robot_stack.show_robots_lines(lambda: self._files)
+        deferred_imports.install()
 
     def uninstall(self) -> None:
         """Restore the original names."""
         self._table.undo()
+        deferred_imports.uninstall()
         cooperative.scope.is_robot_code = lambda filename: False
         cooperative.scope.line_of = lambda frame: None
         robot_stack.show_all_lines()
