@@ -14,6 +14,7 @@ import tempfile
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from importlib.metadata import distribution
 from pathlib import Path
 from types import TracebackType
 
@@ -202,9 +203,14 @@ class Agents:
 
     def __init__(self) -> None:
         self._control, theirs = socket.socketpair()
+        self._packages = tempfile.TemporaryDirectory()
+        _link_wpilib(Path(self._packages.name))
+        # Without site-packages: a robot's Python has few packages, and each agent reports them.
+        path = os.pathsep.join([str(Path(__file__).parents[2]), self._packages.name])
         self._process = subprocess.Popen(
-            [sys.executable, str(Path(__file__).with_name("zygote.py")), str(theirs.fileno())],
+            [sys.executable, "-S", str(Path(__file__).with_name("zygote.py")), str(theirs.fileno())],
             pass_fds=[theirs.fileno()],
+            env={**os.environ, "PYTHONPATH": path},
         )
         theirs.close()
 
@@ -216,6 +222,7 @@ class Agents:
     ) -> None:
         self._control.close()
         self._process.wait()
+        self._packages.cleanup()
 
     def channel(
         self,
@@ -247,6 +254,13 @@ class Agents:
         channel = LocalChannel(ours, alive, None, cut_to_robot, cut_from_robot)
         _skip_bootstrap(channel)
         return channel
+
+
+def _link_wpilib(directory: Path) -> None:
+    """Make a directory with links to the `wpilib` that is installed here, and nothing else."""
+    wpilib = distribution("wpilib")
+    for name in {file.parts[0] for file in wpilib.files or ()}:
+        (directory / name).symlink_to(Path(str(wpilib.locate_file(name))))
 
 
 def _skip_bootstrap(channel: LocalChannel) -> None:
