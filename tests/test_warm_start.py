@@ -83,7 +83,8 @@ MEASURED = re.compile(r"0x[0-9a-f]+|\d[\d.,]*|[-=]{3,}|(?<=\S)  +")
 
 def told(result: Result, project: RobotProject) -> tuple[int, str, str]:
     def without_figures(text: str) -> str:
-        return MEASURED.sub("~", text.replace(str(project.path), "."))
+        # A campaign tells how far it is as often as it has time to: equal lines after one another count once.
+        return re.sub(r"^(.*\n)\1+", r"\1", MEASURED.sub("~", text.replace(str(project.path), ".")), flags=re.MULTILINE)
 
     # `pyfrc profile` tells how often a loop took too long, if any did.
     stdout = "" if "profile.json" in result.stdout else result.stdout

@@ -42,7 +42,12 @@ _IMPORTED = (
     "hal.simulation",
     "ntcore",
     "click",
+    "numpy.random",
+    "pint",
+    "encodings.idna",
     "pydantic",
+    "pydantic.dataclasses",
+    "pydantic.type_adapter",
     "coverage",
     "paramiko",
     "pytest",
@@ -56,14 +61,17 @@ _IMPORTED = (
     "email.parser",
     "ntcore._logutil",
     "pyfrc_cli.main",
-    "pyfrc_cli.project_options",
     "pyfrc_core.measure.coverage",
     "pyfrc_core.tests",
     "pyfrc_core.test_support.run_tests",
     "pyfrc_core.fuzz.campaign",
     "pyfrc_core.config.sim_file",
+    "pyfrc_core.config.sim_schema",
     "pyfrc_core.physics.engine",
+    "pyfrc_core.physics.create",
     "pyfrc_core.deploy.session",
+    "pyfrc_core.deploy.robot_commands",
+    "pyfrc_core.doctor.examine",
     "pyfrc_core.sim.simulate",
     "pyfrc_core.sim.ui.headless",
 )
@@ -271,8 +279,13 @@ def main() -> None:
         importlib.import_module(name)
     _read_metadata_once()
     _import_plugins_of_pytest()
+    from pyfrc_cli import main as commands
     from pyfrc_cli import start
+    from pyfrc_core.deploy.agent_client import agent_package
 
+    for module, _ in commands.COMMANDS.values():
+        importlib.import_module(module)
+    agent_package()  # is kept: packing the agent costs a deploy more than all else that it does on this side
     assert callable(start._restart_with_fixed_seed)  # under another name, each command would start cold
     start._restart_with_fixed_seed = _fix_the_seed
     server.send(json.dumps(list(sys.modules)).encode())
