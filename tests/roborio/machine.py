@@ -322,6 +322,7 @@ class Roborio:
             os.chown(self.disk / "home" / name, owner, owner)
 
 
+@functools.cache
 def _interpreter(python: str | Path | None) -> tuple[Path | None, Path | None]:
     """The directory that a Python needs to be seen, if it is not below /usr, and its true file."""
     if python is None:
