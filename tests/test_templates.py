@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import io
 import json
 import re
 import shlex
 import shutil
 import sys
 from collections import defaultdict
+from collections.abc import Iterator
 from importlib.metadata import distribution, packages_distributions, version
 from pathlib import Path
 
@@ -19,6 +21,11 @@ from conftest import MakeProject, RobotProject
 from roborio import Roborio, require_roborio
 
 from pyfrc_cli.main import COMMANDS
+from pyfrc_core.deploy import session, starting
+from pyfrc_core.deploy.progress import DeployProgress, UserInterface
+from pyfrc_core.deploy.session import DeployOptions
+from pyfrc_core.deploy.target_connection import RobotChoice
+from pyfrc_core.project import find_project
 from pyfrc_core.scaffold import TEMPLATES
 
 if sys.version_info >= (3, 11):
@@ -88,18 +95,18 @@ def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp
 
 
 def test_what_the_workflows_install_is_installed_here(make_shared_project: MakeProject) -> None:
-    """pip reads it, and finds all of it; each list once."""
-    lists = set()
+    """pip reads it, and finds all of it; all lists at once, each once."""
+    lists: dict[str, Path] = {}
     for template in TEMPLATES:
         project = make_shared_project({})
         assert project.run("init", "--template", template).code == 0
-        needed = (project.path / "requirements.txt").read_text("utf-8")
-        if needed not in lists:
-            program, *arguments = INSTALLING
-            result = project.run(*arguments, program=program, env={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})
-            assert result.code == 0, result.output
-            assert "Downloading" not in result.output
-        lists.add(needed)
+        needed = project.path / "requirements.txt"
+        lists[needed.read_text("utf-8")] = needed
+    program, install, option, _ = INSTALLING
+    arguments = [word for needed in lists.values() for word in (option, str(needed))]
+    result = project.run(install, *arguments, program=program, env={"PIP_DISABLE_PIP_VERSION_CHECK": "1"})
+    assert result.code == 0, result.output
+    assert "Downloading" not in result.output
 
 
 @every_template
@@ -119,18 +126,26 @@ def test_fuzzing_finds_no_failure(project: RobotProject) -> None:
     assert "Nothing was found." in result.stdout
 
 
-def test_every_template_starts_on_a_robot(make_shared_project: MakeProject) -> None:
-    """On a look-alike with the real WPILib; one after the other, as releases of one robot."""
+@pytest.fixture(scope="module")
+def robot() -> Iterator[Roborio]:
+    """A look-alike with the real WPILib; the templates are releases of this one robot."""
     require_roborio()
     with Roborio(wpilib=version("wpilib"), disk_size="1g") as robot:
         _install_real_packages(robot.disk / "usr/local/lib/python3.14/site-packages")
-        for template in TEMPLATES:
-            project = make_shared_project({})
-            assert project.run("init", "--template", template).code == 0
-            result = project.run("deploy", "--robot", robot.where, "--skip-tests")
-            assert result.code == 0, f"{template}: {result.output}"
-            runs = "a MagicRobot does not report" if template == "magic" else "the program runs"
-            assert runs in result.output
+        yield robot
+
+
+@every_template
+def test_it_starts_on_a_robot(
+    project: RobotProject, template: str, robot: Roborio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # A MagicRobot does not report its start. It takes less than two seconds here, on a roboRIO many more.
+    monkeypatch.setattr(starting, "UNHEARD_SECONDS", 5.0)
+    shown = io.StringIO()
+    options = DeployOptions(choice=RobotChoice(robot=robot.where), skip_tests=True)
+    session.deploy(find_project(project.path), options, UserInterface(DeployProgress(shown)))
+    runs = "a MagicRobot does not report" if template == "magic" else "the program runs"
+    assert runs in shown.getvalue()
 
 
 def _install_real_packages(there: Path) -> None:
@@ -159,13 +174,16 @@ def _install_real_packages(there: Path) -> None:
         shutil.copytree(libraries, there / libraries.name)
 
 
-def test_types_and_style_are_clean(tmp_path: Path, make_shared_project: MakeProject) -> None:
+def test_types_and_style_are_clean(pytestconfig: pytest.Config, make_shared_project: MakeProject) -> None:
+    # The types of wpilib and of pyfrc, which take mypy most of its time, are kept from run to run.
+    cache = pytestconfig.cache
+    assert cache is not None
+    kept = cache.mkdir("mypy-of-templates")
     for template in TEMPLATES:
         project = make_shared_project({})
         assert project.run("init", "--template", template).code == 0
-        # The cache, of wpilib's types, is theirs together.
         for program, *arguments in (
-            ("mypy", "--cache-dir", str(tmp_path), "."),
+            ("mypy", "--cache-dir", str(kept), "."),
             ("ruff", "check", "--no-cache", "."),
             ("ruff", "format", "--no-cache", "--check", "."),
         ):
