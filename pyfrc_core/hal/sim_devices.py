@@ -104,7 +104,10 @@ class SimDevices(LiveDict):
 
     def device(self, name: str) -> SimDevice:
         """Return the dict of a device, which need not exist."""
-        return self._devices.get(name) or self._devices.setdefault(name, SimDevice(name))
+        device = self._devices.get(name)
+        if device is None:  # not `or`: whether a device is empty takes listing its values
+            device = self._devices[name] = SimDevice(name)
+        return device
 
     def __setitem__(self, key: Any, value: Any) -> None:
         self[key].assign(value)
