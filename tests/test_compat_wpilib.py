@@ -231,3 +231,68 @@ dog = wpilib.Watchdog(1, print)  # its notifier is neither the first nor new
 print(wpilib_threads.end_watchdog_thread(), hal.simulation.getNumNotifiers())
 """
     assert said_by(program) == ["False 2"]
+
+
+def test_the_hal_reports_devices_values_and_writes() -> None:
+    program = """
+import gc
+from hal.simulation import getSimDeviceHandle, getSimValueHandle
+from pyfrc_core.compat.hal_callbacks import HalNotes, cancel
+
+notes = HalNotes()
+notes.note_devices(7)
+device = hal.SimDevice("Arm")
+print(bool(notes), list(notes.take()), bool(notes))
+notes.note_new_values(getSimDeviceHandle("Arm"), 8)
+value = device.createDouble("Angle", 0, 1.0)
+print(list(notes.take()))
+registered = notes.note_writes(getSimValueHandle(getSimDeviceHandle("Arm"), "Angle"), 9)
+value.set(1.0)
+value.set(2.0)
+print(list(notes.take()))
+value.reset()
+print(list(notes.take()))
+cancel(registered)
+value.set(3.0)
+del device, value
+gc.collect()
+print(list(notes.take()))
+"""
+    assert said_by(program) == ["True [7] False", "[8]", "[9]", "[9]", "[7]"], wpilib_private.NATIVE_HAL.gone
+
+
+def test_threads_that_write_while_others_read_do_not_block_each_other() -> None:
+    """The HAL reports with its lock held, so nothing that waits for this lock may keep Python's."""
+    program = """
+import threading
+from hal import simulation as hs
+from wpilib.simulation import SimDeviceSim
+from pyfrc_core.compat.hal_callbacks import HalNotes
+
+device = hal.SimDevice("Arm")
+value = device.createDouble("Angle", 0, 1.0)
+handle = hs.getSimDeviceHandle("Arm")
+notes = HalNotes()
+notes.note_writes(hs.getSimValueHandle(handle, "Angle"), 9)
+stop = threading.Event()
+
+def write():
+    while not stop.is_set():
+        value.set(1.0)
+
+thread = threading.Thread(target=write)
+thread.start()
+for _ in range(5000):
+    SimDeviceSim.enumerateDevices("")
+    SimDeviceSim("Arm").enumerateValues()
+    hs.isSimDeviceEnabled("x")
+    hs.getSimValueHandle(handle, "Angle")
+    SimDeviceSim("Arm").getDouble("Angle").get()
+    hs.getSimDeviceName(handle)
+    value.set(2.0)
+    list(notes.take())
+stop.set()
+thread.join()
+print("done")
+"""
+    assert said_by(program) == ["done"]

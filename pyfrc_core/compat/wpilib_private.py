@@ -42,7 +42,8 @@ SUBSYSTEMS = PrivateName(
     "commands2:CommandScheduler._subsystems", "runtime.simulation_periodic finds the robot's subsystems by it"
 )
 NATIVE_HAL = PrivateName(
-    "native.wpihal._init_robotpy_native_wpihal:__lib", "hal_data shows the channels of an encoder by it"
+    "native.wpihal._init_robotpy_native_wpihal:__lib",
+    "hal_data shows the channels of an encoder by it, and compat.hal_callbacks has the HAL report SimDevices by it",
 )
 
 #: Those that are attributes of modules and classes.

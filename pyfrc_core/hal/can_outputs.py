@@ -15,6 +15,8 @@ import hal
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
+from .sim_device_list import Signature, sim_device_list
+
 #: Patterns for the device names of motor controllers, and of other devices on the bus.
 _MOTOR = re.compile(r"motor|talon|victor|spark|venom|nova|titan|jaguar", re.IGNORECASE)
 _NO_MOTOR = re.compile(r"encoder|sensor|switch|limit|gyro|imu|candio|canain", re.IGNORECASE)
@@ -64,8 +66,7 @@ class CanOutputs:
     """The outputs of all CAN motor controllers."""
 
     def __init__(self) -> None:
-        self._names: list[str] = []
-        self._handles: list[tuple[str, int]] = []
+        self._devices: Signature = ()
         self._outputs: list[_Output] = []
 
     def turn_off(self) -> Iterator[Callable[[], None]]:
@@ -73,23 +74,15 @@ class CanOutputs:
 
         :returns: a function for each of them that restores it
         """
-        names = SimDeviceSim.enumerateDevices("")
-        if names != self._names or any(hs.getSimDeviceHandle(name) != handle for name, handle in self._handles):
-            self._names = names
-            self._find()
+        devices = sim_device_list.signature()
+        if devices is not self._devices:
+            self._devices = devices
+            self._outputs = [output for name, _handle, values in devices for output in _outputs_of(name, values)]
         for output in self._outputs:
             value = output.get()
             if value and (output.is_position is None or not output.is_position()):
                 output.put(type(value)(0))
                 yield _Written(output, value).restore
-
-    def _find(self) -> None:
-        self._handles, self._outputs = [], []
-        for name in self._names:
-            found = list(_outputs_of(name))
-            if found:
-                self._outputs += found
-                self._handles.append((name, hs.getSimDeviceHandle(name)))
 
 
 class _Written:
@@ -110,10 +103,9 @@ class _Written:
             self._output.put(self._before)
 
 
-def _outputs_of(name: str) -> Iterator[_Output]:
+def _outputs_of(name: str, values: tuple[str, ...]) -> Iterator[_Output]:
     device = SimDeviceSim(name)
     is_motor = bool(_MOTOR.search(name)) and not _NO_MOTOR.search(name)
-    values = [value for value, _ in device.enumerateValues()]
     mode = next((value for value in values if _plain(value) == _MODE), None)
     for value in values:
         raw, what = device.getValue(value), _plain(value)

@@ -20,6 +20,17 @@ from .paths import join
 Callback = Callable[[Any, Any], object]
 
 
+class Raw(NamedTuple):
+    """A value in a form that can be read and compared quickly.
+
+    :param read: returns it
+    :param convert: returns the value of `hal_data`
+    """
+
+    read: Callable[[], Any]
+    convert: Callable[[Any], Any]
+
+
 class Slot(NamedTuple):
     """Access to one value.
 
@@ -31,6 +42,8 @@ class Slot(NamedTuple):
     :param recorded: whether the value cannot be derived from other fields
     :param remedy: the advice in the error when the value cannot be written
     :param unset: the value to write for None, at an output of the robot; None where None cannot be written
+    :param handle: of a value of a SimDevice; 0 for others
+    :param raw: another way to read a value that takes long to read
     """
 
     get: Callable[[], Any]
@@ -41,6 +54,8 @@ class Slot(NamedTuple):
     recorded: bool = True
     remedy: str | None = None
     unset: Any = None
+    handle: int = 0
+    raw: Raw | None = None
 
 
 #: The number that stands for None in the HAL: robots never set it, and it acts like 0.

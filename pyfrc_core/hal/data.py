@@ -9,6 +9,7 @@ import hal
 from wpilib import simulation as sim
 
 from . import devices, driver_station
+from .change_reader import ChangeReader
 from .containers import LiveDict, LiveList, Slot, plain, stored
 from .fields import group
 from .kinds import UnknownKey, WrongPath, WrongType
@@ -193,7 +194,13 @@ class HalData(LiveDict):
 
         The list of paths stays the same object while it does not change.
         """
-        return self._tree_reader().read()
+        reader = self._tree_reader()
+        reader.refresh()
+        return reader.paths, reader.values.copy()
+
+    def changes(self) -> ChangeReader:
+        """Return a reader of what changes in `leaves` from now on; its first look finds all values."""
+        return ChangeReader(self._tree_reader())
 
     def _tree_reader(self) -> TreeReader:
         if self._reader is None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import hal
 import wpilib
 from wpilib import simulation as sim
 
-from ..compat import wpilib_private
-from .containers import NOT_SET
+from ..compat import hal_callbacks, wpilib_private
+from .containers import NOT_SET, Raw
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind
 from .kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
 
@@ -38,6 +39,15 @@ def encoder_channels(index: int) -> dict[str, int | None]:
 def led_data(strip: sim.AddressableLEDSim) -> list[list[int]]:
     """Return the colours as ``[red, green, blue]``, 0 to 255."""
     return [[led.r, led.g, led.b] for led in strip.getData()]
+
+
+def raw_led_data(index: int) -> Raw:
+    """Return the colours of a strip as the HAL stores them."""
+    return Raw(partial(hal_callbacks.led_bytes, index, hal_callbacks.led_buffer()), _led_colours)
+
+
+def _led_colours(stored: bytes) -> list[list[int]]:
+    return [[red, green, blue] for blue, green, red in zip(stored[::4], stored[1::4], stored[2::4], strict=True)]
 
 
 def _colours(value: Any) -> list[list[int]]:
@@ -216,6 +226,7 @@ KINDS = (
                 ValueKind("a list of [red, green, blue], each 0 to 255", _colours, []),
                 get=led_data,
                 put=_set_led_data,
+                raw=raw_led_data,
             ),
         ),
     ),

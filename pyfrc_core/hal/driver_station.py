@@ -207,11 +207,13 @@ class JoystickData(LiveDict):
 
     def fingerprint(self) -> object:
         """Return a value that differs after any change of the controls, or of the data sent back."""
-        port = self._port
+        port, counts = self._port, self.counts()
+        if counts == (0, 0, 0):  # unplugged: the robot sees no control, and its data are sent to nothing
+            return counts
         hs.getJoystickAxes(port, self._axes)
         hs.getJoystickPOVs(port, self._povs)
         values = self._axis_values.tobytes(), self._pov_values.tobytes(), self._bits()
-        return values, self.counts(), hs.getJoystickOutputs(port)
+        return values, counts, hs.getJoystickOutputs(port)
 
     def controls(self) -> tuple[list[float], list[bool], list[int]]:
         """Return the axes, buttons and POVs that the robot sees."""

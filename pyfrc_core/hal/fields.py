@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from .containers import LiveDict, LiveList, Slot, stored
+from .containers import LiveDict, LiveList, Raw, Slot, stored
 from .kinds import ANY, BOOL, ValueKind
 from .paths import join
 
@@ -30,6 +30,7 @@ class DeviceField:
     :param unset: for an output of the robot: the value in the HAL when a test writes None
     :param get: reads from the `*Sim` object, where that differs from WPILib's method
     :param put: writes to the `*Sim` object, where that differs from WPILib's method
+    :param raw: returns another way to read the value of the device with an index, where reading it takes long
     """
 
     name: str
@@ -41,6 +42,7 @@ class DeviceField:
     unset: Any = None
     get: Callable[[Any], Any] | None = None
     put: Callable[[Any, Any], object] | None = None
+    raw: Callable[[int], Raw] | None = None
 
     def slot(self, device: Any) -> Slot:
         """Return the access to this field of `device`; None stands for a channel that the HAL does not have."""
@@ -90,6 +92,9 @@ class DeviceKind:
         def build() -> dict[str, Slot]:
             device = self.make(index) if self.make and index < self.real else None
             slots = {field.name: field.slot(device) for field in self.fields}
+            for field in self.fields:
+                if field.raw is not None:
+                    slots[field.name] = slots[field.name]._replace(raw=field.raw(index))
             if self.config is not None:
                 slots["config"] = Slot(partial(self.config, index), None, recorded=False, remedy="the robot sets it")
             return slots

@@ -18,8 +18,7 @@ from ..compat.real_time_devices import real_time_devices
 from .containers import LiveDict, Slot
 from .kinds import ANY, BOOL, FLOAT, INT32, INT64, UnknownKey, choice
 from .paths import join
-
-Signature = tuple[tuple[str, int, tuple[str, ...]], ...]
+from .sim_device_list import Signature, sim_device_list
 
 
 class SimDevice(LiveDict):
@@ -38,7 +37,7 @@ class SimDevice(LiveDict):
         if self._handle:
             device = SimDeviceSim(self._name)
             for value, _readonly in device.enumerateValues():
-                found[value] = _slot(device, value)
+                found[value] = _slot(device, self._handle, value)
         self._built = found
         for watch_name, watch in self._watches.items():
             if watch_name in found and (connect := found[watch_name].watch):
@@ -68,7 +67,7 @@ class SimDevice(LiveDict):
         return iter([name for name, _ in SimDeviceSim(self._name).enumerateValues()])
 
 
-def _slot(device: SimDeviceSim, name: str) -> Slot:
+def _slot(device: SimDeviceSim, handle: int, name: str) -> Slot:
     raw = device.getValue(name)
     make, kind = {
         hal.Type.BOOLEAN: (device.getBoolean, BOOL),
@@ -87,7 +86,7 @@ def _slot(device: SimDeviceSim, name: str) -> Slot:
         kind = choice({option: i for i, option in enumerate(SimDeviceSim.getEnumOptions(value))})
         load = kind.load or int
         get = lambda: load(value.get())  # noqa: E731
-    return Slot(get, value.set, kind, watch)
+    return Slot(get, value.set, kind, watch, handle=hs.getSimValueHandle(handle, name))
 
 
 class SimDevices(LiveDict):
@@ -96,6 +95,7 @@ class SimDevices(LiveDict):
     def __init__(self) -> None:
         super().__init__("CAN", dict)
         self._devices: dict[str, SimDevice] = {}
+        self._signature: Signature = ()
 
     def __getitem__(self, key: Any) -> SimDevice:
         if key not in self:
@@ -123,16 +123,18 @@ class SimDevices(LiveDict):
         return real_time_devices(self)
 
     def signature(self) -> Signature:
-        """Return a value that differs after a device or a value was added or removed; refresh the changed devices."""
-        now = []
-        for name in SimDeviceSim.enumerateDevices(""):
-            values = tuple([value for value, _readonly in SimDeviceSim(name).enumerateValues()])
-            handle = hs.getSimDeviceHandle(name)
-            device = self.device(name)
-            if device._handle != handle or tuple(device._slots) != values:
-                device.refresh()
-            now.append((name, handle, values))
-        return tuple(now)
+        """Return the devices and their values, as the same object until one is created or removed.
+
+        The changed devices are refreshed.
+        """
+        signature = sim_device_list.signature()
+        if signature is not self._signature:
+            self._signature = signature
+            for name, handle, values in signature:
+                device = self.device(name)
+                if device._handle != handle or tuple(device._slots) != values:
+                    device.refresh()
+        return signature
 
 
 class Bridge(NamedTuple):
@@ -213,7 +215,7 @@ class RobotDict(LiveDict):
     def sync(self, signature: Signature | None = None) -> None:
         """Find new devices, and write the values that were stored for them."""
         signature = self._devices.signature() if signature is None else signature
-        if signature == self._signature:
+        if signature is self._signature:
             return
         self._signature = signature
         self._bridged = {
@@ -257,6 +259,14 @@ class RobotDict(LiveDict):
         if key not in self._free:
             raise self._unknown(key)
         del self._free[key]
+
+    def free(self) -> dict[str, Any]:
+        """Return the keys that do not stand for a device's value, with their values."""
+        return self._free
+
+    def bridged(self) -> dict[str, tuple[SimDevice, str]]:
+        """Return the keys that stand for a device's value, each with the device and the name of the value."""
+        return self._bridged
 
     def clear(self) -> None:
         """Remove the keys that do not stand for a device's value."""

@@ -1,48 +1,64 @@
 """Read every value of `hal_data` that may change during a run, as ``(path, value)`` pairs, for recordings and traces.
 
-The list of values is built again only after a device was created or removed, and the values of joysticks and of the
-event only after their bytes have changed: a trace reads them at each packet.
+A trace reads them at each packet, so that must not take longer the more values there are. The list of values is built
+again only after a device was created or removed. `changing_values` finds the changed values of devices; those of
+joysticks and of the event are read only after their bytes have changed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
 import hal.simulation
 
 from . import driver_station
+from .changing_values import ChangingValues, Leaf, same
 from .containers import LiveDict, Slot, plain
 from .devices import KINDS
 from .modules import Modules
 from .paths import join
-
-Leaf = tuple[str, Callable[[], Any]]
+from .sim_device_list import Signature
 
 
 class TreeReader:
-    """Reads the values of `HalData.leaves` from a prepared list."""
+    """Reads the values of `HalData.leaves` from a prepared list.
+
+    Attributes:
+        paths: the paths at the last `refresh`; the same list until one of them comes or goes
+        values: the value of each path
+        version: a number that grows with each change of a value or path
+    """
 
     def __init__(self, tree: LiveDict, modules: Modules) -> None:
         self._tree = tree
         self._modules = modules
         self._always = list(self._fixed())
-        event = list(_of(tree["event"]))
-        self._rarely_changed = [
-            _RarelyChanged(tree["event"].fingerprint, lambda: [(path, get()) for path, get in event]),
-            *(_RarelyChanged(stick.fingerprint, partial(_stick, stick)) for stick in tree["joysticks"]),
-        ]
+        event = [(leaf.path, leaf.read) for leaf in _of(tree["event"])]
         initialized = [(kind, kind.initialized()) for kind in KINDS]
         self._kinds = [(kind, [slot.get for slot in channels]) for kind, channels in initialized]
         slots = [slot for _, channels in initialized for slot in channels]
         slots += [*modules.initialized(), tree["accelerometer"]._slot("active")]
         self._devices = CreatedDevices(slots)
-        self._state: Any = None
+        self._created: list[bool] = []
+        self._signature: Signature | None = None
+        self._live = ChangingValues(())
         self._here: list[str] = []
-        self._reads: list[Callable[[], Any]] = []
-        self._free: list[str] = []
-        self._paths: list[str] = []
+        self._bridged: list[str] = []
+        self._parts: list[_Part] = [
+            _RarelyChanged(tree["event"].fingerprint, lambda: [(path, get()) for path, get in event]),
+            *(_RarelyChanged(stick.fingerprint, partial(_stick, stick)) for stick in tree["joysticks"]),
+            _FreeValues("robot", tree["robot"].free()),
+            _FreeValues("custom", tree["custom"]),
+        ]
+        #: Where each part begins in `paths`, and how far the bridged values lie behind their place in `_live`.
+        self._begins: list[int] = []
+        self._shift = 0
+        self._recent: dict[int, int] = {}
+        self.paths: list[str] = []
+        self.values: list[Any] = []
+        self.version = 0
 
     def any_exist(self) -> bool:
         """Return whether any device exists, or any thread of WPILib that waits for an alarm."""
@@ -59,30 +75,73 @@ class TreeReader:
             names += [join("CAN", name) for name in sorted(self._tree["CAN"])]
         return names + ["a notifier"] * (hal.simulation.getNumNotifiers() > 0)
 
-    def read(self) -> tuple[list[str], list[Any]]:
-        """Return the paths, as the same list object while they do not change, and the value of each."""
-        tree = self._tree
-        devices = tree["CAN"].signature()
-        tree["robot"].sync(devices)
-        state = (self._devices.created(), devices)
-        others = state != self._state
-        if others:
-            self._state = state
-            leaves = [*self._always, *self._present()]
-            self._here, self._reads = [path for path, _ in leaves], [read for _, read in leaves]
-        values = [read() for read in self._reads]
-        for part in self._rarely_changed:
-            others |= part.refresh()
+    def refresh(self) -> None:
+        """Update `paths`, `values` and `version`."""
+        devices, created = self._tree["CAN"].signature(), self._devices.created()
+        self._tree["robot"].sync(devices)
+        moved = devices is not self._signature or created != self._created
+        if moved:
+            self._signature, self._created = devices, created
+            self._find_live()
+        changed = [part.refresh() for part in self._parts]
+        if moved or _PATHS in changed:
+            self._assemble()
+            return
+        now: list[tuple[int, Any]] = []
+        here, live = len(self._here), self._live
+        for place in sorted(live.look()):
+            now.append((place if place < here else place + self._shift, live.values[place]))
+        if _VALUES in changed:
+            for part, begin, change in zip(self._parts, self._begins, changed, strict=True):
+                if change == _VALUES:
+                    now += enumerate(part.values, begin)
+        self._note(now)
+
+    def changed_since(self, version: int) -> list[int]:
+        """Return the positions of the values that have changed since a version with the same `paths`, in order."""
+        found = []
+        for position in reversed(self._recent):
+            if self._recent[position] <= version:
+                break
+            found.append(position)
+        return sorted(found)
+
+    def _note(self, now: list[tuple[int, Any]]) -> None:
+        now = [(position, value) for position, value in now if not same(self.values[position], value)]
+        self.version += bool(now)
+        for position, value in now:
+            self.values[position] = value
+            self._recent.pop(position, None)  # so that the last ones in it are always the latest
+            self._recent[position] = self.version
+
+    def _find_live(self) -> None:
+        """Build the list of the devices' values."""
+        here = [*self._always, *self._present()]
+        bridged = [
+            next(_of(device, value))._replace(path=join("robot", key))
+            for key, (device, value) in self._tree["robot"].bridged().items()
+        ]
+        self._live.close()
+        self._live = ChangingValues([*here, *bridged])
+        self._here, self._bridged = [leaf.path for leaf in here], [leaf.path for leaf in bridged]
+
+    def _assemble(self) -> None:
+        """Put all paths and values together."""
+        self._live.look()
+        here = len(self._here)
+        paths, values = [*self._here], self._live.values[:here]
+        self._begins.clear()
+        for part in self._parts:
+            if part is self._parts[-1]:  # `robot` has its free keys first, then the bridged ones
+                self._shift = len(paths) - here
+                paths += self._bridged
+                values += self._live.values[here:]
+            self._begins.append(len(paths))
+            paths += part.paths
             values += part.values
-        free = []
-        for name in ("robot", "custom"):
-            if branch := tree[name]:
-                free += [join(name, key) for key in branch]
-                values += [plain(value) for value in branch.values()]
-        if others or free != self._free:
-            self._free = free
-            self._paths = [*self._here, *(path for part in self._rarely_changed for path in part.paths), *free]
-        return self._paths, values
+        self.paths, self.values = paths, values
+        self._recent.clear()
+        self.version += 1
 
     def _fixed(self) -> Iterator[Leaf]:
         tree = self._tree
@@ -110,27 +169,59 @@ class TreeReader:
             for module in branch.values():
                 yield from _of(module)
         for name in sorted(tree["CAN"]):
-            yield from _of(tree["CAN"][name])
+            yield from _of(tree["CAN"].device(name))
 
 
-class _RarelyChanged:
-    """Values that rarely change, and are read only when their fingerprint has changed."""
+#: What a part of the tree finds when it is refreshed: nothing new, other values, or other paths.
+_NOTHING, _VALUES, _PATHS = range(3)
 
-    def __init__(self, fingerprint: Callable[[], object], read: Callable[[], list[tuple[str, Any]]]) -> None:
-        self._fingerprint, self._read = fingerprint, read
-        self._before: object = None
+
+class _Part:
+    """Some paths of the tree, and their values."""
+
+    def __init__(self) -> None:
         self.paths: list[str] = []
         self.values: list[Any] = []
 
-    def refresh(self) -> bool:
-        """Update `paths` and `values`; return whether the paths have changed."""
+    def refresh(self) -> int:
+        """Update `paths` and `values`; return what has changed."""
+        raise NotImplementedError
+
+
+class _RarelyChanged(_Part):
+    """Values that rarely change, and are read only when their fingerprint has changed."""
+
+    def __init__(self, fingerprint: Callable[[], object], read: Callable[[], list[tuple[str, Any]]]) -> None:
+        super().__init__()
+        self._fingerprint, self._read = fingerprint, read
+        self._before: object = None
+
+    def refresh(self) -> int:
         now = self._fingerprint()
         if now == self._before:
-            return False
+            return _NOTHING
         self._before = now
         found, before = self._read(), self.paths
         self.paths, self.values = [path for path, _ in found], [value for _, value in found]
-        return self.paths != before
+        return _VALUES if self.paths == before else _PATHS
+
+
+class _FreeValues(_Part):
+    """The values of free keys, which may be anything."""
+
+    def __init__(self, name: str, source: Mapping[str, Any]) -> None:
+        super().__init__()
+        self._name, self._source = name, source
+        self._keys: list[str] = []
+
+    def refresh(self) -> int:
+        if not self._source and not self._keys:
+            return _NOTHING
+        keys, self.values = list(self._source), [plain(value) for value in self._source.values()]
+        if keys == self._keys:
+            return _VALUES
+        self._keys, self.paths = keys, [join(self._name, key) for key in keys]
+        return _PATHS
 
 
 class CreatedDevices:
@@ -168,12 +259,14 @@ def _of(place: LiveDict, *keys: str) -> Iterator[Leaf]:
         slot = place._slot(key)
         path = join(place._path, key)
         get = slot.get
-        if slot.kind.plain is not None:
-            yield path, _plain(get, slot.kind.plain)
+        if slot.raw is not None:
+            yield Leaf(path, slot.raw.read, 0, slot.raw.convert)
+        elif slot.kind.plain is not None:
+            yield Leaf(path, _plain(get, slot.kind.plain), slot.handle)
         elif isinstance(get(), (LiveDict, list)) or slot.set is None:
-            yield path, _plain(get, plain)
+            yield Leaf(path, _plain(get, plain), slot.handle)
         else:
-            yield path, get
+            yield Leaf(path, get, slot.handle)
 
 
 def _plain(get: Callable[[], Any], convert: Callable[[Any], Any]) -> Callable[[], Any]:

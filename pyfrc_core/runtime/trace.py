@@ -10,11 +10,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from itertools import compress
-from operator import ne
 from typing import IO, TYPE_CHECKING, Any
 
 from ..compat.real_time_devices import is_real_time
+from ..hal.change_reader import MISSING
 
 if TYPE_CHECKING:
     from ..hal import HalData
@@ -33,40 +32,24 @@ class Trace:
     """
 
     def __init__(self, hal_data: HalData, out: IO[str] | None = None) -> None:
-        self._hal_data = hal_data
+        self._changes = hal_data.changes()
         self._out = out
-        self._paths: list[str] = []
-        self._values: list[Any] = []
         #: The paths whose values do not repeat.
-        self._real_time: frozenset[str] = frozenset()
+        self._real_time: set[str] = set()
         self._hash = hashlib.sha256()
         if out is not None:
             out.write(json.dumps({"format": FORMAT}) + "\n")
 
     def look(self, now: float) -> None:
         """Record what has changed by `now`, in seconds of robot time."""
-        # Two lists, since as many pairs at each packet would keep the garbage collector busy.
-        paths, values = self._hal_data.paths_and_values()
-        before = self._values
-        if paths is self._paths:
-            if values == before:
-                return
-            # Nearly all are equal: to find the others, no Python code runs for each of them.
-            others = compress(zip(paths, before, values, strict=True), map(ne, before, values))
-            changed = {path: new for path, old, new in others if _differ(old, new)}
-            gone = []
-        else:
-            had, has = dict(zip(self._paths, before, strict=True)), dict(zip(paths, values, strict=True))
-            changed = {path: value for path, value in has.items() if path not in had or _differ(had[path], value)}
-            gone = [path for path in had if path not in has]
-            self._paths = paths
-            self._real_time = frozenset(path for path in paths if is_real_time(path))
-        self._values = values
+        found, gone = self._changes.look()
+        changed = {path: new for path, old, new in found if old != new}
         if not changed and not gone:
             return
+        self._real_time.update(path for path, old, _ in found if old is MISSING and is_real_time(path))
         change: dict[str, Any] = {"t": round(now, 6), "set": changed} | ({"gone": gone} if gone else {})
         if self._real_time:
-            marked = {path: changed.pop(path) for path in sorted(self._real_time & changed.keys())}
+            marked = {path: changed.pop(path) for path in sorted(changed) if path in self._real_time}
             change |= {REAL_TIME: marked} if marked else {}
         line = json.dumps(change, sort_keys=True)
         self._hash.update(hashed_part(line).encode())
@@ -97,8 +80,3 @@ def repeatable_part(change: dict[str, Any]) -> dict[str, Any] | None:
     """Return a line's object without the values that do not repeat; None if it has nothing else."""
     change = {key: value for key, value in change.items() if key != REAL_TIME}
     return change if change["set"] or "gone" in change else None
-
-
-def _differ(old: object, new: object) -> bool:
-    # NaN differs from itself, so it is compared by its text.
-    return old != new and repr(old) != repr(new)

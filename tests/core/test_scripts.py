@@ -14,10 +14,11 @@ from hal import simulation as hs
 
 from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.hal import HalData, modes
+from pyfrc_core.hal.changing_values import same
 from pyfrc_core.hal.timing import deliver_packet
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.player import Player
-from pyfrc_core.runtime.scripts.recorder import Recorder, _MatchTime, _parts, _same, _shortest
+from pyfrc_core.runtime.scripts.recorder import Recorder, _MatchTime, _parts, _shortest
 from pyfrc_core.runtime.scripts.script import FORMAT, InputScript, ScriptError, Step, load_script, parse_script
 from pyfrc_core.runtime.scripts.targets import Countdown, Targets
 
@@ -199,10 +200,8 @@ def test_targets_that_there_never_are(tree: HalData) -> None:
 
 def test_values_that_are_the_same() -> None:
     nan = float("nan")
-    assert [_same(*pair) for pair in ((1, 1), (1.5, 1.5), (nan, float("nan")), ("a", "a"), ([0.0], [0.0]))] == [
-        True
-    ] * 5
-    assert [_same(*pair) for pair in ((0.0, -0.0), (1, True), (1, 1.0), (1, 2), ("1", 1), (0.0, nan))] == [False] * 6
+    assert [same(*pair) for pair in ((1, 1), (1.5, 1.5), (nan, float("nan")), ("a", "a"), ([0.0], [0.0]))] == [True] * 5
+    assert [same(*pair) for pair in ((0.0, -0.0), (1, True), (1, 1.0), (1, 2), ("1", 1), (0.0, nan))] == [False] * 6
 
 
 def test_of_lists_what_has_changed() -> None:

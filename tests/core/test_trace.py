@@ -7,6 +7,7 @@ import json
 import math
 from typing import Any
 
+from pyfrc_core.hal.change_reader import ChangeReader
 from pyfrc_core.runtime.trace import FORMAT, Trace
 
 
@@ -16,9 +17,16 @@ class Tree:
     def __init__(self) -> None:
         self.paths: list[str] = []
         self.values: list[Any] = []
+        self.version = 0
 
-    def paths_and_values(self) -> tuple[list[str], list[Any]]:
-        return self.paths, self.values
+    def refresh(self) -> None:
+        self.version += 1
+
+    def changed_since(self, version: int) -> list[int]:
+        return list(range(len(self.values)))
+
+    def changes(self) -> ChangeReader:
+        return ChangeReader(self)
 
 
 def trace_of(*looks: dict[str, Any], digest: bool = False) -> list[Any]:

@@ -12,6 +12,8 @@ import ntcore
 
 from ...compat.real_time_devices import is_real_time
 from ...hal import modes
+from ...hal.change_reader import MISSING, Change
+from ...hal.changing_values import same
 from ..robot import RobotRun
 from .script import InputScript, Step
 from .targets import MATCH_TIME, MODE, NETWORK, PACKET, REMAINING, Countdown, plugged
@@ -35,7 +37,11 @@ class Recorder:
     def __init__(self, run: RobotRun) -> None:
         self._run = run
         self._hal_data = run.hal_data
+        self._changes = run.hal_data.changes()
         self._network = _Network()
+        self._mode = ""
+        self._sticks: dict[str, Any] = {}
+        self._left = 0.0
         self._steps: list[Step] = []
         self._forgotten = 0
         self._match_time = _MatchTime()
@@ -43,7 +49,7 @@ class Recorder:
         self._start_us = 0
         #: When the step that is being taken from outside began, if one is.
         self._stepping_since: int | None = None
-        self._before = self._look()
+        self._look()
         run.recorder = self
 
     def begin_outside(self, stepping: bool = False) -> None:
@@ -53,7 +59,7 @@ class Recorder:
         """
         if stepping:
             self._stepping_since = self._run.clock.now_us
-        self._before = self._look()
+        self._look()
 
     def on_packet_out_of_turn(self) -> None:
         """Deliver a packet with the external writes up to now."""
@@ -68,9 +74,9 @@ class Recorder:
             self._stepping_since = None
         if not self._run.started:
             self._start_us = at_us
-        before, self._before = self._before, self._look()
-        writes = dict(self._writes(before, self._before))
-        self._match_time.hear(writes, before[REMAINING], self._before[REMAINING], at_us, stepping)
+        left_before = self._left
+        writes = dict(self._writes(self._look()))
+        self._match_time.hear(writes, left_before, self._left, at_us, stepping)
         if writes:
             self._steps.append(Step(at_us, writes))
 
@@ -97,24 +103,36 @@ class Recorder:
         del self._steps[: index - self._forgotten]
         self._forgotten = index
 
-    def _look(self) -> dict[str, Any]:
-        found: dict[str, Any] = {MODE: modes.mode_name()}
+    def _look(self) -> list[Change]:
+        """Return what has changed since the last look, in the order in which a script has it."""
+        found = []
+        mode = modes.mode_name()
+        if mode != self._mode:
+            found.append(Change(MODE, self._mode, mode))
+            self._mode = mode
+        changed, gone = self._changes.look()
+        if changed or gone:
+            found += self._look_at_sticks()
+            self._left = next((change.new for change in changed if change.path == REMAINING), self._left)
+        return [*found, *changed, *self._network.look()]
+
+    def _look_at_sticks(self) -> Iterator[Change]:
+        """Return which joysticks were plugged in or unplugged, and have other numbers of controls."""
+        before, self._sticks = self._sticks, {}
         for port, stick in enumerate(self._hal_data["joysticks"]):
             axes, buttons, povs = stick.counts()
-            there = found[plugged(port)] = bool(axes or buttons or povs)
+            there = self._sticks[plugged(port)] = bool(axes or buttons or povs)
             if there:
                 path = f"joysticks[{port}]"
-                found[f"{path}.axis_count"] = axes
-                found[f"{path}.button_count"] = buttons
-                found[f"{path}.pov_count"] = povs
-        found.update(zip(*self._hal_data.paths_and_values(), strict=True))
-        found.update(self._network.look())
-        return found
+                self._sticks[f"{path}.axis_count"] = axes
+                self._sticks[f"{path}.button_count"] = buttons
+                self._sticks[f"{path}.pov_count"] = povs
+        for target, value in self._sticks.items():
+            if before.get(target, MISSING) != value:
+                yield Change(target, before.get(target, MISSING), value)
 
-    def _writes(self, before: dict[str, Any], now: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-        for target, value in now.items():
-            if target in before and _same(before[target], value):
-                continue
+    def _writes(self, changes: list[Change]) -> Iterator[tuple[str, Any]]:
+        for target, old, value in changes:
             if target in _TOLD_OTHERWISE or target == REMAINING:
                 continue
             if target.startswith("CAN[") and is_real_time(target):  # a thread of its library may have written it
@@ -125,7 +143,7 @@ class Recorder:
             if target.startswith(NETWORK) or target in self._told_by_name:
                 yield target, value
             elif self._hal_data.can_write(target):
-                yield from _parts(target, before.get(target), value)
+                yield from _parts(target, old, value)
 
 
 class _MatchTime:
@@ -154,13 +172,6 @@ class _MatchTime:
         self._last = writes
 
 
-def _same(before: object, now: object) -> bool:
-    """Whether they are written alike: -0.0 is not 0.0, True not 1, and NaN is NaN."""
-    if before is now or (before == now and type(before) is type(now) is float and now):
-        return True
-    return repr(before) == repr(now)
-
-
 def _parts(target: str, before: Any, value: Any) -> Iterator[tuple[str, Any]]:
     """Of a list, the entries that have changed; an unplugged joystick has none."""
     if not isinstance(value, list):
@@ -168,7 +179,7 @@ def _parts(target: str, before: Any, value: Any) -> Iterator[tuple[str, Any]]:
         return
     old = before if isinstance(before, list) else []
     for index, each in enumerate(value):
-        if index >= len(old) or not _same(old[index], each):
+        if index >= len(old) or not same(old[index], each):
             yield f"{target}[{index}]", _shortest(each) if target.endswith(".axes") else each
 
 
@@ -191,17 +202,32 @@ class _Network:
         self._news.addListener([""], flags.kValueAll | flags.kUnpublish | flags.kImmediate)
         self._found: dict[str, Any] = {}
 
-    def look(self) -> dict[str, Any]:
+    def look(self) -> list[Change]:
+        """Return the entries that have changed since the last look, in the order in which they were first heard of."""
+        before: dict[str, Any] = {}
         for event in self._news.readQueue():
             news = event.data
             if isinstance(news, ntcore.TopicInfo):
-                self._found.pop(NETWORK + news.name, None)
+                self._hear(before, NETWORK + news.name, MISSING)
             elif isinstance(news, ntcore.ValueEventData):
-                self._hear(NETWORK + news.topic.getName(), news.value.value())
-        return self._found
+                value = news.value.value()
+                is_plain = isinstance(value, _PLAIN) or (
+                    isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)
+                )
+                self._hear(before, NETWORK + news.topic.getName(), value if is_plain else MISSING)
+        changed = [target for target in before if target in self._found]
+        if len(changed) > 1:
+            places = {target: place for place, target in enumerate(self._found)}
+            changed.sort(key=places.__getitem__)
+        return [
+            Change(target, before[target], self._found[target])
+            for target in changed
+            if not same(before[target], self._found[target])
+        ]
 
-    def _hear(self, target: str, value: object) -> None:
-        if isinstance(value, _PLAIN) or (isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)):
-            self._found[target] = value
-        else:
+    def _hear(self, before: dict[str, Any], target: str, value: Any) -> None:
+        before.setdefault(target, self._found.get(target, MISSING))
+        if value is MISSING:
             self._found.pop(target, None)
+        else:
+            self._found[target] = value

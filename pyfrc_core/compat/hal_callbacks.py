@@ -1,0 +1,120 @@
+"""The HAL's callbacks for SimDevices that its C interface has and its Python interface lacks.
+
+The C interface says when a SimDevice or a value of one is created, and when a device is freed. It is documented
+(``hal/simulation/SimDeviceData.h``); the library is the one that WPILib's Python packages have loaded.
+"""
+
+from __future__ import annotations
+
+import atexit
+import ctypes
+from collections.abc import Iterator
+from functools import cache
+from typing import Any, NamedTuple
+
+from .wpilib_private import NATIVE_HAL
+
+# A callback has one or two more arguments, which are not declared: the C calling conventions of all systems that
+# WPILib supports allow it. So `dict.__setitem__` serves as the callback. It is no Python code, so no signal handler
+# runs within it: the exception of a handler, such as KeyboardInterrupt, would be lost there.
+_CALLBACK = ctypes.CFUNCTYPE(None, ctypes.c_size_t, ctypes.c_size_t)
+
+#: Callbacks are never freed, since the HAL may call one as long as the process lives.
+_KEPT: list[object] = []
+
+
+class Registered(NamedTuple):
+    """A callback in the HAL.
+
+    :param number: what the HAL has returned for it
+    :param resets: how many times all callbacks have been removed before
+    """
+
+    event: str
+    number: int
+    resets: int
+
+
+#: What is registered, to be cancelled before Python ends: a thread of a vendor's library may still write values then.
+_REGISTERED: dict[Registered, None] = {}
+_resets = 0
+
+
+@cache
+def _library() -> Any:
+    return NATIVE_HAL.find()
+
+
+class HalNotes:
+    """Notes of what the HAL has reported: the numbers under which the events were registered.
+
+    The HAL may call from any thread, with the lock of its SimDevices held. A note only adds to a dict.
+    """
+
+    def __init__(self) -> None:
+        #: The last note of each name, by the address of the name.
+        self._notes: dict[int, int] = {}
+        self._callback = _CALLBACK(self._notes.__setitem__)
+        _KEPT.append(self._callback)
+
+    def __bool__(self) -> bool:
+        """Return whether there is any note."""
+        return bool(self._notes)
+
+    def take(self) -> Iterator[int]:
+        """Return the notes, and clear them."""
+        while self._notes:
+            yield self._notes.popitem()[1]
+
+    def note_devices(self, number: int) -> None:
+        """Note `number` whenever a SimDevice is created or freed, until `resetSimDeviceData` is called."""
+        self._register("SimDeviceCreated", b"", number)
+        self._register("SimDeviceFreed", b"", number)
+
+    def note_new_values(self, device: int, number: int) -> None:
+        """Note `number` whenever the SimDevice with this handle gets a new value."""
+        self._register("SimValueCreated", ctypes.c_int32(device), number)
+
+    def note_writes(self, value: int, number: int) -> Registered:
+        """Note `number` whenever the value with this handle is written. Return what `cancel_writes` needs."""
+        return self._register("SimValueChanged", ctypes.c_int32(value), number)
+
+    def _register(self, event: str, subject: Any, number: int) -> Registered:
+        register = getattr(_library(), f"HALSIM_Register{event}Callback")
+        registered = Registered(event, register(subject, ctypes.c_void_p(number), self._callback, 0), _resets)
+        _REGISTERED[registered] = None
+        return registered
+
+
+def cancel(registered: Registered) -> None:
+    """Cancel a callback, unless it has been removed by a reset: the HAL counts from 1 again then."""
+    if registered in _REGISTERED:
+        del _REGISTERED[registered]
+        getattr(_library(), f"HALSIM_Cancel{registered.event}Callback")(registered.number)
+
+
+def forget_registered() -> None:
+    """Forget what was registered, after `resetSimDeviceData` has removed it."""
+    global _resets
+    _resets += 1
+    _REGISTERED.clear()
+
+
+@atexit.register
+def _cancel_all() -> None:
+    for registered in list(_REGISTERED):
+        cancel(registered)
+
+
+def led_bytes(index: int, buffer: ctypes.Array[ctypes.c_char]) -> bytes:
+    """Return the colours of an LED strip: blue, green, red and 0 for each LED.
+
+    :param buffer: from `led_buffer`
+    """
+    count = _library().HALSIM_GetAddressableLEDData(index, buffer)
+    return ctypes.string_at(buffer, 4 * count)
+
+
+def led_buffer() -> ctypes.Array[ctypes.c_char]:
+    """Return memory for the longest strip."""
+    return ctypes.create_string_buffer(4 * 5460)

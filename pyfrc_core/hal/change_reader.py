@@ -1,0 +1,86 @@
+"""What has changed in `hal_data` between two looks of one reader. Several readers do not affect each other."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+from .changing_values import same
+
+
+class _Missing:
+    def __repr__(self) -> str:
+        return "MISSING"
+
+
+#: Stands for the value of a path that did not exist.
+MISSING: Any = _Missing()
+
+
+class Change(NamedTuple):
+    """A value that has changed, or come: then `old` is `MISSING`."""
+
+    path: str
+    old: Any
+    new: Any
+
+
+class Changes(NamedTuple):
+    """What a look has found, in the order of `HalData.leaves`.
+
+    :param changed: the values that have changed or come, even if only from 0.0 to -0.0
+    :param gone: the paths that no longer exist
+    """
+
+    changed: list[Change]
+    gone: list[str]
+
+
+class Source(Protocol):
+    """What is read: see `TreeReader`."""
+
+    paths: list[str]
+    values: list[Any]
+    version: int
+
+    def refresh(self) -> None:
+        """Update the attributes."""
+
+    def changed_since(self, version: int) -> list[int]:
+        """Return the positions of the values that have changed since a version with the same `paths`, in order."""
+
+
+class ChangeReader:
+    """Finds what has changed since its last look, in a time that depends on the number of changes only."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._version = -1
+        self._paths: list[str] = []
+        self._values: list[Any] = []
+
+    def look(self) -> Changes:
+        """Return what has changed since the last look; at first, all values."""
+        source, version = self._source, self._version
+        source.refresh()
+        self._version = source.version
+        if source.version == version:
+            return Changes([], [])
+        if source.paths is not self._paths:
+            return self._compare_all()
+        changed = []
+        for position in source.changed_since(version):
+            old, new = self._values[position], source.values[position]
+            if not same(old, new):
+                self._values[position] = new
+                changed.append(Change(self._paths[position], old, new))
+        return Changes(changed, [])
+
+    def _compare_all(self) -> Changes:
+        before = dict(zip(self._paths, self._values, strict=True))
+        self._paths, self._values = self._source.paths, self._source.values.copy()
+        changed = []
+        for path, new in zip(self._paths, self._values, strict=True):
+            old = before.pop(path, MISSING)
+            if not same(old, new):
+                changed.append(Change(path, old, new))
+        return Changes(changed, list(before))

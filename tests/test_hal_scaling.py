@@ -1,0 +1,181 @@
+"""What a look at `hal_data` costs depends on what changes, not on what exists; and no change is missed for that."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+import hal
+import pytest
+import wpilib
+from hal import simulation as hs
+
+from pyfrc_core.hal import HalData
+from pyfrc_core.hal.change_reader import MISSING, ChangeReader, Changes
+from pyfrc_core.hal.output_gate import OutputGate
+
+#: Looks after which a value that has not changed is no longer read.
+LOOKS = 60
+
+
+@pytest.fixture
+def tree() -> Iterator[HalData]:
+    hs.resetDriverStationData()
+    hs.resetSimDeviceData()
+    yield HalData()
+    gc.collect()
+    hs.resetSimDeviceData()
+
+
+def make(count: int, start: int = 0) -> list[Any]:
+    """Create SimDevices with 25 values each. Return them and their values."""
+    devices = [hal.SimDevice(f"Motor[{number}]") for number in range(start, start + count)]
+    return [devices, [device.createDouble(f"v{n}", 2, float(n)) for device in devices for n in range(25)]]
+
+
+def after_many_looks(tree: HalData) -> ChangeReader:
+    changes = tree.changes()
+    for _ in range(LOOKS):
+        changes.look()
+    return changes
+
+
+def calls(function: Any) -> int:
+    """Return how many functions a call of this one calls, WPILib's included."""
+    count = 0
+
+    def profile(_frame: object, event: str, _arg: object) -> None:
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(profile)
+    try:
+        function()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+def found(changes: Changes) -> dict[str, Any]:
+    return {path: new for path, _old, new in changes.changed}
+
+
+def test_looking_costs_the_same_for_any_number_of_values(tree: HalData) -> None:
+    few = make(1)
+    changes, gate = after_many_looks(tree), OutputGate()
+    with gate.closed_while_disabled():
+        pass
+    look, signature = calls(changes.look), calls(tree["CAN"].signature)
+    many = make(40, start=1)
+    for _ in range(LOOKS):
+        changes.look()
+    assert len(tree.leaves()) > 1000
+    assert calls(changes.look) == look
+    assert calls(tree["CAN"].signature) == signature < 10
+    many[1][500].set(-1.0)
+    assert look < calls(changes.look) < look + 100
+    del few, many
+
+
+def test_looking_costs_the_same_for_any_length_of_led_strip(tree: HalData) -> None:
+    strip = wpilib.AddressableLED(9)
+    strip.setLength(2)
+    changes = after_many_looks(tree)
+    short = calls(changes.look)
+    strip.setLength(300)
+    strip.setData([wpilib.AddressableLED.LEDData(1, 2, 3)] * 300)
+    assert found(changes.look())["addressable_led[0].data"] == [[1, 2, 3]] * 300
+    assert calls(changes.look) == short
+    strip.setData([wpilib.AddressableLED.LEDData(1, 2, 3)] * 299 + [wpilib.AddressableLED.LEDData(7, 8, 9)])
+    data = found(changes.look())["addressable_led[0].data"]
+    assert data == tree["addressable_led"][0]["data"]
+    assert data[-2:] == [[1, 2, 3], [7, 8, 9]]
+
+
+def test_a_value_that_was_constant_for_long_is_found_when_it_changes(tree: HalData) -> None:
+    devices, values = make(2)
+    changes = after_many_looks(tree)
+    for number in range(3 * LOOKS):
+        if number % 37 == 0:  # now and then quiet again in between
+            values[3].set(100.0 + number)
+            values[28].set(200.0 + number)  # of the same name, in the other device
+            expected = {'CAN["Motor[0]"].v3': 100.0 + number, 'CAN["Motor[1]"].v3': 200.0 + number}
+            assert found(changes.look()) == expected
+        else:
+            assert changes.look() == ([], [])
+    values[3].set(values[3].get())
+    assert changes.look() == ([], [])
+    values[3].set(-0.0)
+    assert repr(found(changes.look())) == "{'CAN[\"Motor[0]\"].v3': -0.0}"
+    values[3].reset()
+    assert repr(found(changes.look())) == "{'CAN[\"Motor[0]\"].v3': 0.0}"
+    del devices
+
+
+def test_all_paths_of_one_value_are_found(tree: HalData) -> None:
+    gyro = wpilib.ADXRS450_Gyro()
+    changes = after_many_looks(tree)
+    tree["robot"]["adxrs450_spi_0_angle"] = 30.0
+    assert found(changes.look()) == {
+        'CAN["Gyro:ADXRS450[0]"].angle_x': 30.0,
+        "robot.adxrs450_spi_0_angle": 30.0,
+    }
+    del gyro
+
+
+def test_readers_do_not_affect_each_other(tree: HalData) -> None:
+    devices, values = make(1)
+    first, second = after_many_looks(tree), after_many_looks(tree)
+    other_tree = after_many_looks(HalData())
+    values[0].set(5.0)
+    assert [found(reader.look()) for reader in (first, first)] == [{'CAN["Motor[0]"].v0': 5.0}, {}]
+    values[0].set(0.0)
+    assert first.look().changed == [('CAN["Motor[0]"].v0', 5.0, 0.0)]
+    assert second.look() == other_tree.look() == ([], [])  # it is as it was at their last look
+    del devices
+
+
+def test_devices_and_values_that_come_and_go(tree: HalData) -> None:
+    devices, values = make(1)
+    changes = after_many_looks(tree)
+    later = devices[0].createDouble("later", 0, 1.0)
+    assert changes.look().changed == [('CAN["Motor[0]"].later', MISSING, 1.0)]
+    for _ in range(LOOKS):
+        assert changes.look() == ([], [])
+    # A device that is freed and created again within one look has the same paths.
+    del devices, values, later
+    gc.collect()
+    again, values = make(1)
+    assert changes.look() == ([], ['CAN["Motor[0]"].later'])
+    values[1].set(7.0)
+    assert found(changes.look()) == {'CAN["Motor[0]"].v1': 7.0}
+    del again
+
+
+def test_a_reset_of_all_sim_devices_is_noticed(tree: HalData) -> None:
+    before = make(1)
+    changes = after_many_looks(tree)
+    hs.resetSimDeviceData()
+    again = make(1)  # with the same handles as before
+    assert changes.look() == ([], [])
+    for _ in range(LOOKS):
+        changes.look()
+    again[1][4].set(9.0)
+    assert found(changes.look()) == {'CAN["Motor[0]"].v4': 9.0}
+    hs.resetSimDeviceData()
+    assert len(changes.look().gone) == 25
+    del before, again
+
+
+def test_an_output_that_is_created_later_is_turned_off_too(tree: HalData) -> None:
+    gate = OutputGate()
+    motor = hal.SimDevice("SPARK MAX [1]")
+    first = motor.createDouble("Applied Output", 2, 1.0)
+    with gate.closed_while_disabled():
+        assert first.get() == 0.0
+    second = motor.createDouble("Motor Voltage", 2, 12.0)
+    with gate.closed_while_disabled():
+        assert (first.get(), second.get()) == (0.0, 0.0)
+    assert (first.get(), second.get()) == (1.0, 12.0)
