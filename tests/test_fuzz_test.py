@@ -393,4 +393,5 @@ def test_a_robot_without_a_fault_passes_and_leaves_nothing(make_project) -> None
     result = project.run("test", "--", "-v")
     assert result.code == 0, result.output
     assert result.outcomes()["tests/pyfrc_test.py::test_fuzz"] == "PASSED"
-    assert not (project.path / ".pyfrc").exists()
+    left = {path.name for path in (project.path / ".pyfrc").iterdir()}
+    assert left == {".gitignore", "passes.json"}, "what every run of the tests writes"

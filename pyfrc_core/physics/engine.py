@@ -107,6 +107,8 @@ class Physics:
     def __init__(self, module: PhysicsModule, controller: PhysicsInterface, run: RobotRun) -> None:
         self.controller = controller
         self.engine: Any = None
+        #: The name of the field on dashboards.
+        self.field_name = "Field"
         self._module = module
         self._run = run
         self._updating = False
@@ -115,9 +117,9 @@ class Physics:
         run.physics = self
         if module.takes_hal_data and not module.takes_robot:
             run.do(self._make_engine)  # as documented: `initialize` sets inputs before the robot is created
+            run.when_initialized.append(self._leave_name_to_robot)
         else:
             run.when_initialized.append(self._make_engine)
-        run.when_initialized.append(self._show_field)
         run.when_constructed.append(self._begin)
 
     def _begin(self) -> None:
@@ -130,15 +132,21 @@ class Physics:
     def _make_engine(self) -> None:
         __tracebackhide__ = True
         module, run = self._module, self._run
+        self._show_field(_free_name())
         self.engine = module.engine_class(self.controller, *([run.robot] if module.takes_robot else []))
         initialize = getattr(self.engine, "initialize", None)
         if initialize is not None:
             initialize(run.hal_data)
 
-    def _show_field(self) -> None:
-        """Show the field on the dashboard, once it is known which names robot code uses there."""
+    def _leave_name_to_robot(self) -> None:
+        """Show the field under another name, if robot code shows one of its own as "Field"."""
+        if (name := _free_name()) != "Field":
+            self._show_field(name)
+
+    def _show_field(self, name: str) -> None:
         field, pose = self.controller.field, self.controller.get_pose()
-        wpilib.SmartDashboard.putData(_free_name(), field)
+        self.field_name = name
+        wpilib.SmartDashboard.putData(name, field)
         field.setRobotPose(pose)  # otherwise, without isolation, the dashboard's pose of the last run would be used
 
     def _update(self) -> None:

@@ -21,7 +21,7 @@ from ....runtime.scripts.player import Player
 from ....runtime.scripts.recorder import Recorder
 from ....runtime.scripts.targets import Targets
 from ....runtime.trace import Trace
-from ..commands import ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
+from ..commands import ROBOT_ON_FIELD, ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
 from ..messages import Job, Ready, Update
 from ..scene import Point, Pose, Target
 from ..time_state import TimeState
@@ -296,6 +296,8 @@ class Session:
             self._notes.append(f"{target} = {value!r}: {wrong}")
 
     def _write(self, target: str, value: Any) -> None:
+        if target == ROBOT_ON_FIELD:  # robot code may show a field of its own under that name
+            target = target.replace("/Field/", f"/{getattr(self._run.physics, 'field_name', 'Field')}/")
         self._targets.write(target, value, self._run.clock.now_us)
 
     def _exchange(self) -> None:
