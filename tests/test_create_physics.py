@@ -452,6 +452,32 @@ def test_what_is_on_the_can_bus_is_named_by_its_number(make_project: MakeProject
     assert "purpose is unknown: SPARK MAX[3] (arm)." in (project.path / "physics.py").read_text().replace("\n# ", " ")
 
 
+def test_parts_of_devices_and_led_strips_are_no_motors_of_unknown_purpose(make_project: MakeProject) -> None:
+    """REV's controllers have a SimDevice for each of their sensors. A strip of LEDs is on a PWM channel."""
+    project = make_project(
+        {
+            "robot.py": """
+            import hal
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.made = []
+                    values = {"": "Applied Output", " RELATIVE ENCODER": "Position Conversion Factor"}
+                    for part, value in values.items():
+                        device = hal.SimDevice(f"SPARK MAX [3]{part}")
+                        self.made += [device, device.createDouble(value, hal.SimDevice.Direction.kOutput, 0.0)]
+                    self.strip = wpilib.AddressableLED(9)
+            """
+        }
+    )
+    create(project)
+    text = (project.path / "physics.py").read_text()
+    assert "purpose is unknown: SPARK MAX [3].\n" in text.replace("\n# ", " ")
+    assert "PWM 9" not in text
+    assert "pwm" not in json.loads((project.path / "sim/config.json").read_text())["pyfrc"]
+
+
 def test_swerve_is_not_taken_for_a_tank(make_project: MakeProject) -> None:
     project = make_project(
         {

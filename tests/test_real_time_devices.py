@@ -170,6 +170,16 @@ def test_recordings_have_the_same_hash_and_mark_the_values(with_phoenix: Phoenix
     assert load_script(first).trace == expected
 
 
+def test_their_passes_are_not_remembered(with_phoenix: PhoenixProject) -> None:
+    for isolation in ("auto", "spawn"):
+        for _ in range(2):
+            output = with_phoenix.output("test", "--changed", "--isolation", isolation)
+            assert "passed before" not in output
+            assert "not remembered, because phoenix6 simulates devices in real time" in output
+    passes = json.loads((with_phoenix.path / ".pyfrc/passes.json").read_text())
+    assert (passes["tests"], passes["green"]) == ({}, None)
+
+
 def test_their_values_are_no_inputs(with_phoenix: PhoenixProject) -> None:
     """The library may have written them while a test wrote its own inputs."""
     test = with_phoenix.path / "tests" / "test_robot.py"

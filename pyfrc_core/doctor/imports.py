@@ -23,6 +23,7 @@ MODULES = {
     "robotpy-navx": "navx",
     "photonlibpy": "photonlibpy",
     "robotpy-pathplannerlib": "pathplannerlib",
+    "robotpy-urcl": "urcl",
 }
 
 #: Seconds after which imports count as hanging.

@@ -113,14 +113,11 @@ def loaded_from_elsewhere(project: Project) -> set[str]:
     """Return the source files that this process has imported from outside the project, Python and its packages."""
     standard = (sysconfig.get_path("stdlib") + os.sep, sysconfig.get_path("platstdlib") + os.sep)
     found = set()
+    packages, more_packages = (f"{os.sep}{name}{os.sep}" for name in _PACKAGES)
     for name, module in list(sys.modules.items()):
         file = getattr(module, "__file__", None)
-        if (
-            name == "__main__"
-            or not isinstance(file, str)
-            or any(f"{os.sep}{packages}{os.sep}" in file for packages in _PACKAGES)
-        ):
+        if not isinstance(file, str) or file.startswith(standard) or packages in file or more_packages in file:
             continue
-        if not file.startswith(standard) and not project.files.is_project_file(file) and Path(file).is_absolute():
+        if name != "__main__" and not project.files.is_project_file(file) and Path(file).is_absolute():
             found.add(file)
     return found

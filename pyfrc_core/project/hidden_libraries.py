@@ -18,7 +18,7 @@ LIBRARIES = frozenset(
     {
         *("commands2", "cscore", "cv2", "hal", "magicbot", "navx", "ntcore", "numpy", "pathplannerlib"),
         *("phoenix5", "phoenix6", "photonlibpy", "pint", "pyfrc", "pyfrc_cli", "pyfrc_core", "rev", "robotpy"),
-        *("robotpy_apriltag", "robotpy_ext", "wpilib", "wpimath", "wpinet", "wpiutil"),
+        *("robotpy_apriltag", "robotpy_ext", "urcl", "wpilib", "wpimath", "wpinet", "wpiutil"),
         *("_pytest", "attr", "attrs", "click", "coverage", "cryptography", "hypothesis", "iniconfig"),
         *("packaging", "paramiko", "pluggy", "pydantic", "pydantic_core", "pygame", "pygments", "pytest"),
         *("rich", "scipy", "sortedcontainers", "tomli", "typing_extensions", "PIL", "pyinstrument", "exceptiongroup"),

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from ..compat.real_time_devices import real_time_libraries
 from ..passes.contents import loaded_from_elsewhere
 from ..passes.memory import Passes
 from ..passes.ran_functions import Place, RanFunctions
@@ -61,12 +62,16 @@ class RememberedPasses:
         self._valid = 0
         self._ran: dict[str, Ran] = {}
         self._not_passed: set[str] = set()
-        #: Files that have changed during the run.
-        self._changed: list[str] = []
+        #: Why nothing of this run is remembered.
+        self._why_not = ""
 
     def record(self, item: pytest.Item, ran: Ran) -> None:
         """Note what a test's process has run; the pass is kept if the test passes."""
         self._ran[item.nodeid] = ran
+
+    def record_real_time(self, libraries: Sequence[str]) -> None:
+        """Note that a test's process has libraries that simulate devices in real time: its pass may be chance."""
+        self._why_not = f"{libraries[0]} simulates devices in real time, so this robot does not repeat exactly"
 
     def pytest_configure(self, config: pytest.Config) -> None:
         if self._only_changed and getattr(config.option, "dist", "no") != "no":
@@ -89,21 +94,23 @@ class RememberedPasses:
     def pytest_sessionfinish(self, session: pytest.Session, exitstatus: int) -> None:
         if self._valid and exitstatus == pytest.ExitCode.NO_TESTS_COLLECTED:
             session.exitstatus = exitstatus = pytest.ExitCode.OK
+        if libraries := real_time_libraries():
+            self.record_real_time(libraries)
         for test in self._not_passed:
             self._passes.forget(test)
         for test, ran in self._ran.items():
-            if test not in self._not_passed:
+            if test not in self._not_passed and not self._why_not:
                 self._passes.record(test, *ran)
-        if exitstatus != pytest.ExitCode.OK:
+        if exitstatus != pytest.ExitCode.OK or self._why_not:
             self._passes.set_green(None)
         elif self._runs_all:
             self._passes.set_green(loaded_from_elsewhere(self._project))
-        self._changed = self._passes.save()
+        if changed := self._passes.save():
+            self._why_not = f"{changed[0]} changed during the run"
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:
         if self._valid:
             passed = f"{counted(self._valid, 'test')} passed before"
             terminalreporter.write_line(f"{passed}, and nothing that they ran or read has changed since")
-        if self._only_changed and self._changed:
-            why = f"{self._changed[0]} changed during the run"
-            terminalreporter.write_line(f"pyfrc: the passes are not remembered, because {why}", yellow=True)
+        if self._only_changed and self._why_not:
+            terminalreporter.write_line(f"pyfrc: the passes are not remembered, because {self._why_not}", yellow=True)

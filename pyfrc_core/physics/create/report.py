@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from .drivetrain import CORNERS, DrivetrainLayout, Mecanum, MotorGroup, Tank
 from .survey import Motor, Survey
 
@@ -28,6 +30,10 @@ def advice(layout: DrivetrainLayout) -> list[str]:
     return []
 
 
+#: A sensor of a vendor's motor controller, such as ``SPARK MAX [11] RELATIVE ENCODER``.
+_PART = re.compile(r".+ \[\d+\] [A-Z]")
+
+
 def notes(found: Survey, layout: DrivetrainLayout) -> list[str]:
     """Return the notes for the written file, as sentences."""
     sentences = list(layout.assumptions)
@@ -36,6 +42,7 @@ def notes(found: Survey, layout: DrivetrainLayout) -> list[str]:
     sentences += advice(layout)
     still = found.gyros if layout.drivetrain is None else []
     left_out = [*map(str, [*layout.undriven, *still]), *found.others]
+    left_out = [device for device in left_out if not _PART.match(device)]
     if left_out:
         sentences.append(f"Not simulated, since their purpose is unknown: {', '.join(left_out)}.")
     return sentences

@@ -185,7 +185,11 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice]) -> Surve
     def name_of(room: str, channel: int) -> Name:
         return named[room, channel].name if (room, channel) in named else Name()
 
+    strips = hal_data["addressable_led"]
+    led_ports = {strips[index]["output_port"] for index in _made(hal_data, "addressable_led")}
     for channel in _made(hal_data, "pwm"):
+        if channel in led_ports:
+            continue
         if ("servo", channel) in named:
             found.others.append(f"servo: PWM {channel} ({name_of('servo', channel)})")
             continue

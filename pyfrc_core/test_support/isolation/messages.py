@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from ...compat.pytest_private import run_test_protocol
+from ...compat.real_time_devices import real_time_libraries
 from ...processes.worker import Send
 from ..remembered_passes import PASSES, RAN
 
@@ -42,6 +43,8 @@ class ReportSender:
             self.send("interrupted", None)
         if item.session.shouldstop:
             self.send("stop", item.session.shouldstop)
+        if libraries := real_time_libraries():
+            self.send("real time", libraries)
         ran: Any = item.config.pluginmanager.getplugin(RAN)
         if ran is not None:
             self.send("ran", ran.ran_here())
@@ -100,6 +103,10 @@ def replay(item: pytest.Item, message: Message) -> pytest.TestReport | None:
     elif kind == "ran":
         passes: Any = item.config.pluginmanager.getplugin(PASSES)
         passes.record(item, content)
+    elif kind == "real time":
+        passes = item.config.pluginmanager.getplugin(PASSES)
+        if passes is not None:  # a plain `pytest` has none
+            passes.record_real_time(content)
     elif kind == "exit":
         raise pytest.exit.Exception(content[0], content[1])
     elif kind == "interrupted":
