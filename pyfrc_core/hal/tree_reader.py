@@ -62,7 +62,7 @@ class TreeReader:
 
     def any_exist(self) -> bool:
         """Return whether any device exists, or any thread of WPILib that waits for an alarm."""
-        created = any(self._devices.created()) or bool(self._tree["CAN"].signature())
+        created = any(self._devices.created_now()) or bool(self._tree["CAN"].signature())
         return created or hal.simulation.getNumNotifiers() > 0
 
     def existing(self) -> list[str]:
@@ -70,7 +70,7 @@ class TreeReader:
         slots = [join(kind.name, index) for kind in KINDS for index, _ in enumerate(kind.initialized())]
         slots += ["pneumatics or power distribution"] * len(list(self._modules.initialized()))
         slots.append("accelerometer")
-        names = [name for name, there in zip(slots, self._devices.created(), strict=True) if there]
+        names = [name for name, there in zip(slots, self._devices.created_now(), strict=True) if there]
         if self._tree["CAN"].signature():
             names += [join("CAN", name) for name in sorted(self._tree["CAN"])]
         return names + ["a notifier"] * (hal.simulation.getNumNotifiers() > 0)
@@ -248,6 +248,11 @@ class CreatedDevices:
                 slot.get for slot, created in zip(self._slots, self._created, strict=True) if created
             ]
         return self._created
+
+    def created_now(self) -> list[bool]:
+        """Return the same, also after a reset of the HAL, which ends all watches without a report."""
+        self._changed = True
+        return self.created()
 
     def _note(self) -> None:
         self._changed = True

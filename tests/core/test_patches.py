@@ -393,7 +393,9 @@ def test_subsystems_own_physics_see_disabled_outputs_as_off(monkeypatch: pytest.
     monkeypatch.setattr(simulation_periodic, "registered_subsystems", lambda: [arm, plain])
     simulation_periodic.gate_subsystems(Gate)  # type: ignore[arg-type]
     assert "simulationPeriodic" not in vars(plain)
+    modes.reset_driver_station()  # what earlier tests have left
     modes.set_mode(enabled=False)
+    wpilib.DriverStation.refreshData()
     arm.simulationPeriodic()
     assert calls == ["closed", "arm", "open"]
     modes.set_mode(enabled=True)
