@@ -87,6 +87,8 @@ class Plugin:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session):
         item, other = session.items
+        with pytest_private.captured_setup(item):
+            os.write(2, b"of a shared fixture\n")
         with pytest_private.shared_fixtures(session, item) as (request, shared):
             print("shared", sorted(shared), *(pytest_private.shared_parameters(each) for each in (item, other)))
             print("value", request.getfixturevalue("wide"))
@@ -110,6 +112,8 @@ class Plugin:
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item, call):
         report = yield
+        if report.when == "setup":
+            print("setup", report.sections)
         if report.failed:
             print("report", pytest_private.put_into_traceback(report, "robot.py:1: first line\nmore", only=False))
             print(report.longreprtext.splitlines()[0], "|", report.longrepr.reprcrash.message)
@@ -145,6 +149,7 @@ def test_one_test_run_as_isolation_runs_it(tmp_path: Path) -> None:
     for expected in (
         "shared ['tmp_path_factory', 'wide'] {'wide': 0} {'wide': 1}",
         "value 7",
+        "setup [('Captured stderr setup', 'of a shared fixture\\n')]",
         "report True",
         "robot.py:1: first line | robot.py:1: first line",
         "shorter True",

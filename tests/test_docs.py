@@ -6,12 +6,14 @@ import re
 import shlex
 import subprocess
 import sys
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 import pytest
 
 from pyfrc_cli.main import COMMANDS, cli
+from pyfrc_core.config.settings import FuzzSettings
 from pyfrc_core.scaffold import TEMPLATES
 
 ROOT = Path(__file__).parents[1]
@@ -247,6 +249,15 @@ def test_the_tables_of_commands_list_every_command(document: str) -> None:
     # A module's first name is its command, others are older names of it.
     names = {module: name for name, (module, _) in reversed(COMMANDS.items())}
     assert named == set(names.values())
+
+
+def test_the_fuzzing_guide_lists_every_check() -> None:
+    checks = {name for name, value in asdict(FuzzSettings()).items() if isinstance(value, bool)}
+    text = (ROOT / "docs/fuzzing.md").read_text("utf-8")
+    (table,) = re.findall(r"^\| setting \|.*\n(?:\|.*\n)+", text, re.MULTILINE)
+    assert set(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == checks
+    (example,) = (block for block in blocks("docs/fuzzing.md", "toml") if block.startswith("[tool.pyfrc.fuzz]"))
+    assert set(re.findall(r"^(\w+) = (?:true|false)", example, re.MULTILINE)) == checks
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from hypothesis import given
@@ -19,7 +19,7 @@ from pyfrc_core.config.sim import SimConfig
 from pyfrc_core.physics.pose import Pose
 from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
-from pyfrc_core.sim.ui.models.devices import SETTABLE, DeviceRows, Row, panels_of
+from pyfrc_core.sim.ui.models.devices import SETTABLE, DeviceRows, Row, RowKind, panels_of
 from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading, hat_angle
 from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
 from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
@@ -34,6 +34,7 @@ from pyfrc_core.sim.ui.models.wording import (
     station_name,
     status_texts,
 )
+from pyfrc_core.sim.ui.tk.device_items import ITEMS
 from pyfrc_core.sim.ui.tk.theme import scale_for
 
 FIELD = Field(54.25, 26.5, 20.0, 2.0, 3.0, {"start": Pose(0.0, 0.0, 0.0)})
@@ -135,6 +136,11 @@ def test_each_row_shows_values_that_there_are() -> None:
     assert len(rows(VALUES)["Pneumatics"]["PH 1"].paths) == 16
     assert "2 Claw" in rows(VALUES)["Pneumatics"]["PCM 0"].tooltip
     assert rows(VALUES)["PWM"]["3  Arm"].tooltip.startswith("PWM 3, Arm: ")  # there may be no room for it beside the 3
+
+
+def test_the_window_draws_each_kind_of_row() -> None:
+    assert ITEMS.keys() == set(get_args(RowKind))
+    assert set(get_args(RowKind)) >= SETTABLE
 
 
 def test_only_what_the_robot_has_made_is_shown() -> None:

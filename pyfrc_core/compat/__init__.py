@@ -1,6 +1,9 @@
-"""What pyfrc uses of WPILib, pytest and CPython without their promise to keep it.
+"""What pyfrc uses of other libraries although these may change it at any time.
 
 One module for each library: `wpilib_private` (with `wpilib_threads`), `pytest_private`, `cpython_private`. No other
 module uses a private name of theirs (`tests/test_compat_boundary.py`), and each name has a test whose failure says what
-depends on it (`tests/test_compat_*.py`). To support a new version of a library, mend these modules until they pass.
+depends on it (`tests/test_compat_*.py`). To support a new version of a library, change these modules until the tests
+pass. `CONTRIBUTING.md` lists the steps.
+
+Two modules depend on how vendors' libraries behave: `real_time_devices` (phoenix6) and `rev_noise` (REV).
 """

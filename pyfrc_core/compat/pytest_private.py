@@ -1,4 +1,9 @@
-"""What pyfrc uses of pytest without its promise to keep it: for tests in processes of their own, and for their reports.
+"""What pyfrc uses of pytest although pytest may change it: to run each test in its own process, and for reports.
+
+Other modules call these functions. To adapt pyfrc to a changed name or signature, change only this module.
+`PrivateName`s are the names that begin with an underscore or are in ``_pytest``. The functions also use methods and
+attributes of what these names stand for (``SetupState.teardown_exact``). tests/test_compat_pytest.py calls them as
+isolation does.
 
 pytest is imported only when one of these functions is called.
 """
@@ -120,6 +125,17 @@ def capture_into(config: pytest.Config, files: tuple[int, int]) -> None:
         if hasattr(stream, "targetfd"):  # captures the file descriptor, not only sys.stdout
             os.dup2(file, stream.tmpfile.fileno())
     capture.suspend_global_capture(in_=False)
+
+
+@contextlib.contextmanager
+def captured_setup(item: pytest.Item) -> Iterator[None]:
+    """Add what is printed in the context to the output of a test's setup."""
+    capture: Any = item.config.pluginmanager.getplugin("capturemanager")
+    if capture is None:
+        yield
+    else:
+        with capture.item_capture("setup", item):
+            yield
 
 
 # -- reports ----------------------------------------------------------------------------------------------------------

@@ -87,7 +87,10 @@ class DeploySettings:
 
 @dataclass(frozen=True)
 class FuzzSettings:
-    """``[tool.pyfrc.fuzz]``: how long fuzzing's matches are, and what counts as a failure besides exceptions."""
+    """``[tool.pyfrc.fuzz]``: how long fuzzing's matches are, and which checks run.
+
+    Each ``bool`` switches a check of `fuzz.oracle` on or off, which reports its failures under this name.
+    """
 
     __pydantic_config__ = STRICT
 

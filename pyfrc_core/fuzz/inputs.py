@@ -85,15 +85,15 @@ def find_sensors(hal_data: HalData) -> Iterator[Input]:
         for axis in "xyz":
             yield Input(f"accelerometer.{axis}", "acceleration", "accelerometer")
     wired = _wired(hal_data)
-    for room, values in _DEVICES.items():
-        for number, device in enumerate(hal_data[room]):
-            if device["initialized"] and device.get("is_input", True) and (room, number) not in wired:
+    for key, values in _DEVICES.items():
+        for number, device in enumerate(hal_data[key]):
+            if device["initialized"] and device.get("is_input", True) and (key, number) not in wired:
                 for value, kind in values:
-                    yield Input(f"{room}[{number}].{value}", kind, f"{room}[{number}]")
-    for room, values in _MODULES.items():
-        for number in hal_data[room]:
+                    yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
+    for key, values in _MODULES.items():
+        for number in hal_data[key]:
             for value, kind in values:
-                yield Input(f"{room}[{number}].{value}", kind, f"{room}[{number}]")
+                yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
     for name in hal_data["CAN"]:
         yield from _of_sim_device(name)
 

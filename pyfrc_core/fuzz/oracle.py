@@ -1,4 +1,10 @@
-"""The oracle: detect misbehavior that raises no exception. A finding ends the run as an exception would."""
+"""The oracle: the checks of `pyfrc fuzz` that detect misbehavior without an exception.
+
+A check calls `_misbehaved`, which ends the run as an exception would. It passes the name of the setting in
+`FuzzSettings` that disables the check. Checks look at the run once in each packet, at each call of a periodic function,
+or at each call of a motor (`motor_calls`). Only at a call do they know the user's line that makes it, and see a value
+that changes back before the next packet.
+"""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 Imports no WPILib: `runtime.loading` imports the robot's code.
 """
 
-from .finding import find_project
+from .locate import find_project
 from .project import MAIN_FILE, Project
 
 __all__ = ["MAIN_FILE", "Project", "find_project"]

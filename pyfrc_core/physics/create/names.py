@@ -202,9 +202,9 @@ def _places(thing: Any) -> Iterator[tuple[Place, str]]:
         yield ("servo", thing.getChannel()), ""
         yield ("pwm", thing.getChannel()), ""
     else:
-        for kinds, room in _WITH_CHANNEL:
+        for kinds, key in _WITH_CHANNEL:
             if isinstance(thing, kinds):
-                yield (room, thing.getChannel()), ""
+                yield (key, thing.getChannel()), ""
         number = _can_number(thing)
         if number is not None:
             yield ("CAN", number), ""

@@ -182,8 +182,8 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice]) -> Surve
     """Return the devices that the robot has created in the HAL, with their names in its code."""
     found = Survey()
 
-    def name_of(room: str, channel: int) -> Name:
-        return named[room, channel].name if (room, channel) in named else Name()
+    def name_of(key: str, channel: int) -> Name:
+        return named[key, channel].name if (key, channel) in named else Name()
 
     strips = hal_data["addressable_led"]
     led_ports = {strips[index]["output_port"] for index in _made(hal_data, "addressable_led")}
@@ -207,15 +207,15 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice]) -> Surve
     for device in hal_data["CAN"]:
         _add_sim_device(found, device, named)
     found.labels = _labels(found, named)
-    for (room, channel), device in named.items():
-        kind = {"dio": "digital", "analog_in": "analog"}.get(room)
+    for (key, channel), device in named.items():
+        kind = {"dio": "digital", "analog_in": "analog"}.get(key)
         if kind is not None and not isinstance(device.thing, (wpilib.Encoder, wpilib.AnalogGyro)):
             found.others.append(f"{kind} channel {channel} ({device.name})")
     return found
 
 
-def _made(hal_data: HalData, room: str) -> list[int]:
-    return [index for index, device in enumerate(hal_data[room]) if device["initialized"]]
+def _made(hal_data: HalData, key: str) -> list[int]:
+    return [index for index, device in enumerate(hal_data[key]) if device["initialized"]]
 
 
 @dataclass(frozen=True)
@@ -295,9 +295,9 @@ def _labels(found: Survey, named: Mapping[Place, NamedDevice]) -> dict[str, dict
         for letter, channel in zip("AB", encoder.channels or (), strict=False):
             names["dio"][channel] = f"encoder {encoder.index} {letter}"
     names["analog"] = {gyro.channel: "gyro" for gyro in found.gyros if gyro.channel is not None}
-    for (room, channel), device in named.items():
-        if room in _LABELLED:
-            names[_LABELLED[room]][channel] = str(device.name)
+    for (key, channel), device in named.items():
+        if key in _LABELLED:
+            names[_LABELLED[key]][channel] = str(device.name)
     return {
         key: {str(channel): labels[channel] for channel in sorted(labels)} for key, labels in names.items() if labels
     }

@@ -34,7 +34,7 @@ class Wishes:
 
 
 @dataclass(frozen=True)
-class Kind:
+class FrontEndKind:
     """A front end that can be chosen by its name.
 
     :param make: makes it
@@ -73,10 +73,10 @@ def _make_headless(wishes: Wishes) -> FrontEnd:
     return Headless(wishes.say, wishes.mode, wishes.seconds, wishes.watching, wishes.quiet)
 
 
-FRONT_ENDS: dict[str, Kind] = {
-    "tk": Kind(_make_tk, needs_display=True, opens_display=True),
-    "wpilib": Kind(_make_wpilib, needs_display=True, prints=True, extensions=(WINDOW,)),
-    "none": Kind(_make_headless, interactive=False, prints=True),
+FRONT_ENDS: dict[str, FrontEndKind] = {
+    "tk": FrontEndKind(_make_tk, needs_display=True, opens_display=True),
+    "wpilib": FrontEndKind(_make_wpilib, needs_display=True, prints=True, extensions=(WINDOW,)),
+    "none": FrontEndKind(_make_headless, interactive=False, prints=True),
 }
 
 

@@ -14,7 +14,6 @@ import contextlib
 import gc
 import os
 import sys
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -231,7 +230,7 @@ def _would_tear_down_fixtures(session: pytest.Session, item: pytest.Item) -> boo
 def _set_up_shared(session: pytest.Session, item: pytest.Item) -> None:
     """Set up what `item` shares with others. What fails here fails again, and is reported, in the test's process."""
     with (
-        _captured(item),
+        pytest_private.captured_setup(item),  # as in pytest: output belongs to the test that first needs a fixture
         contextlib.suppress(Exception, pytest.fail.Exception, pytest.skip.Exception),
         pytest_private.shared_fixtures(session, item) as (request, shared),
     ):
@@ -265,14 +264,3 @@ def _tear_down_shared(session: pytest.Session, last: pytest.Item | None, nextite
 def _is_foreign(hook: Any) -> bool:
     """Return whether a hook is neither pytest's nor pyfrc's."""
     return not hook.function.__module__.startswith((pytest_private.HOOKS_OF_PYTEST, "pyfrc_core."))
-
-
-@contextlib.contextmanager
-def _captured(item: pytest.Item) -> Iterator[None]:
-    """Output of shared fixtures belongs to the test that first needed them, as in pytest."""
-    capture: Any = item.config.pluginmanager.getplugin("capturemanager")
-    if capture is None:
-        yield
-    else:
-        with capture.item_capture("setup", item):
-            yield

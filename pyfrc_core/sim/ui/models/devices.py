@@ -1,5 +1,8 @@
 """The rows of the device panels, made from a snapshot's values.
 
+A device gets its rows from a function in `panels_of`. Only a new `RowKind` needs a change elsewhere: a class in
+`ITEMS` of `tk.device_items`, which draws it, and for an input the mouse in `tk.device_view`.
+
 The values contain only devices that the robot has made, so only these have rows. `DeviceRows` makes the rows again when
 a device comes or goes; otherwise only the values at their paths change.
 """
@@ -18,11 +21,12 @@ if TYPE_CHECKING:
 
 #: How a row is shown. Outputs: ``meter`` (a bar from its range's middle, or from 0), ``lamp``, ``lamps``, ``relay``,
 #: ``bars``, ``leds``, ``text``. Inputs: ``switch``, ``slider`` and ``number``, which can be set.
-Kind = Literal["meter", "lamp", "lamps", "relay", "bars", "leds", "text", "switch", "slider", "number"]
+RowKind = Literal["meter", "lamp", "lamps", "relay", "bars", "leds", "text", "switch", "slider", "number"]
+
+#: The kinds of inputs, which the user can set.
+SETTABLE = frozenset({"switch", "slider", "number"})
 
 _INPUT = "an input, click to change it"
-
-SETTABLE = frozenset({"switch", "slider", "number"})
 
 Values = Mapping[str, Any]
 
@@ -36,7 +40,7 @@ class Row:
     :param tooltip: an explanation of the row
     """
 
-    kind: Kind
+    kind: RowKind
     paths: tuple[str, ...]
     label: str
     low: float = 0.0
@@ -124,8 +128,8 @@ def _titled(what: str, channel: int, labels: Mapping[int, str]) -> str:
     return f"{what} {channel}, {labels[channel]}" if channel in labels else f"{what} {channel}"
 
 
-def _channels(tree: dict[Any, Any], room: str) -> Iterator[tuple[int, dict[Any, Any]]]:
-    yield from sorted(tree.get(room, {}).items())
+def _channels(tree: dict[Any, Any], key: str) -> Iterator[tuple[int, dict[Any, Any]]]:
+    yield from sorted(tree.get(key, {}).items())
 
 
 def _pwm(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
@@ -143,7 +147,7 @@ def _dio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
         if "value" not in fields:
             continue
         is_input = "is_input" in fields and fields["is_input"][1]
-        kind: Kind = "switch" if is_input else "lamp"
+        kind: RowKind = "switch" if is_input else "lamp"
         what = f"{_titled('DIO', channel, config.dio)}: {_INPUT if is_input else 'an output of the robot'}"
         yield Row(kind, (fields["value"][0],), _named(channel, config.dio), tooltip=what)
     for channel, fields in _channels(tree, "duty_cycle"):
@@ -175,13 +179,13 @@ def _relays(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
 
 
 def _pneumatics(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
-    for room, name in (("pcm", "PCM"), ("ph", "PH")):
-        for module, solenoids in _channels(tree, room):
+    for key, name in (("pcm", "PCM"), ("ph", "PH")):
+        for module, solenoids in _channels(tree, key):
             paths = tuple(fields["value"][0] for _, fields in sorted(solenoids.items()) if "value" in fields)
             labels = ", ".join(f"{channel} {label}" for channel, label in sorted(config.solenoid.items()))
             what = f"The solenoids of {name} {module}, from 0" + (f": {labels}" if labels else "")
             yield Row("lamps", paths, f"{name} {module}", tooltip=what)
-            compressor = tree.get(f"{room}_compressor", {}).get(module, {})
+            compressor = tree.get(f"{key}_compressor", {}).get(module, {})
             if "on" in compressor:
                 yield Row(
                     "lamp", (compressor["on"][0],), "   Compressor", tooltip=f"Of {name} {module}: whether it runs"
@@ -269,7 +273,7 @@ def _roborio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
 
 def _robot(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
     for name, (path, value) in tree.get("robot", {}).items():
-        kind: Kind = "switch" if isinstance(value, bool) else "number" if isinstance(value, int | float) else "text"
+        kind: RowKind = "switch" if isinstance(value, bool) else "number" if isinstance(value, int | float) else "text"
         yield Row(
             kind,
             (path,),

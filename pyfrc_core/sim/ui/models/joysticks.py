@@ -64,8 +64,8 @@ class Sticks:
     def adopt(self, values: Values) -> None:
         """Take over the robot's joysticks, which a script or going back in time has changed."""
         for number, stick in enumerate(self.sticks):
-            room = f"joysticks[{number}]"
-            state = tuple(values.get(f"{room}.{part}") for part in ("axes", "buttons", "povs"))
+            path = f"joysticks[{number}]"
+            state = tuple(values.get(f"{path}.{part}") for part in ("axes", "buttons", "povs"))
             if state == self._adopted[number]:
                 continue
             self._adopted[number] = state

@@ -1,4 +1,7 @@
-"""The rows of the device panels on a canvas. Each is created once; `show` updates what has changed."""
+"""The rows of the device panels on a canvas: a class for each `RowKind`, in the table `ITEMS`.
+
+Each row is created once; `show` updates what has changed.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..models.devices import Row
+from ..models.devices import Row, RowKind
 from ..models.wording import number_text
 from . import theme as colors
 from .theme import Theme, fitting
@@ -293,7 +296,8 @@ class Leds(Item):
             self._canvas.itemconfigure(item, fill="#{:02x}{:02x}{:02x}".format(*(int(part) & 255 for part in color)))
 
 
-ITEMS: dict[str, type[Item]] = {
+#: The class that draws each kind of row.
+ITEMS: dict[RowKind, type[Item]] = {
     "meter": Bar,
     "slider": SliderItem,
     "number": Number,
