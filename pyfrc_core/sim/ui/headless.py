@@ -73,6 +73,37 @@ def _text_of(failure: Failure) -> str:
     return f"failed at {failure.time:.2f} s: {failure.headline}"
 
 
+class WholeLines:
+    """Prints the robot's output as it comes, and pyfrc's own lines between its lines."""
+
+    def __init__(self, say: Callable[[str], object]) -> None:
+        self._say = say
+        #: Whether the robot's output has ended a line, and what is printed when it does.
+        self._at_line_start, self._waiting = True, ""
+
+    def pass_on(self, output: str) -> None:
+        """Print output of the robot, and after its next line what waits for that."""
+        line, newline, rest = output.partition("\n")
+        if self._waiting and newline:
+            self._say(line + newline + self._waiting)
+            self._waiting, self._at_line_start, output = "", True, rest
+        if output:
+            self._say(output)
+            self._at_line_start = output.endswith("\n")
+
+    def own(self, text: str) -> None:
+        """Print lines of pyfrc's, as soon as the robot's line is at its end."""
+        if self._at_line_start:
+            self._say(text)
+        else:
+            self._waiting += text
+
+    def end(self) -> None:
+        """End the robot's last line."""
+        if not self._at_line_start:
+            self.pass_on("\n")
+
+
 class Headless(FrontEnd):
     """Runs the robot for some time, and prints a summary.
 
@@ -98,6 +129,7 @@ class Headless(FrontEnd):
         self._watching = watching
         self._simulation: Simulation | None = None
         self._output: OutputCursor | None = None
+        self._lines = WholeLines(say)
         self._reported: Failure | None = None
         self._noted = ""
         self.summary: Summary | None = None
@@ -125,6 +157,7 @@ class Headless(FrontEnd):
             status.late_packets,
         )
         self._print(simulation)
+        self._lines.end()
         if not self._quiet:
             for line in self.summary.lines():
                 self._say(f"{line}\n")
@@ -144,7 +177,7 @@ class Headless(FrontEnd):
             return
         seconds = 0.0 if self._simulation is None else self._time_us(self._simulation) / 1_000_000
         verb = "was" if len(files) == 1 else "were"
-        self._say(f"{', '.join(files)} {verb} saved: going on with the new code at {seconds:.2f} s\n")
+        self._lines.own(f"{', '.join(files)} {verb} saved: going on with the new code at {seconds:.2f} s\n")
 
     def _drive(self, simulation: Simulation, end: float | None) -> None:
         """Run the robot to the end."""
@@ -192,14 +225,14 @@ class Headless(FrontEnd):
 
     def _print(self, simulation: Simulation) -> None:
         if self._output is not None and (output := self._output.read()):
-            self._say(output)
+            self._lines.pass_on(output)
         status = simulation.status
         if status.note not in ("", self._noted):
             self._noted = status.note
-            self._say(f"warning: {status.note}\n")
+            self._lines.own(f"warning: {status.note}\n")
         if self._watching and status.failure is not None and status.failure is not self._reported:
             self._reported = status.failure
             if status.state == "failed":  # otherwise it is over, and the summary says so
-                self._say(f"{_text_of(status.failure)}\n")
+                self._lines.own(f"{_text_of(status.failure)}\n")
                 if not self._quiet:
-                    self._say("waiting for the correction to be saved\n")
+                    self._lines.own("waiting for the correction to be saved\n")
