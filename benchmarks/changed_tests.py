@@ -12,34 +12,28 @@ from __future__ import annotations
 import argparse
 import random
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from competition_robots import NAMES, copy_robot
 from mutants import Mutant, mutants_of
 
-CHECKOUT = Path(__file__).resolve().parents[1]
-ROBOTS = CHECKOUT / "tests" / "robots" / "competition"
 #: A match that is shorter than the real one: the tests of this benchmark are run a hundred times.
 SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 3\npause = 0.1\nteleop = 3\n"
-_OWN_MATCH = re.compile(r"\[tool\.pyfrc\.match\]\n(?:[^\[].*\n|\n)*")
 _RESULT = re.compile(r"^(\S+::\S+(?: .*)?) (PASSED|FAILED|ERROR)", re.MULTILINE)
 
 
 def main() -> None:
     """Change, run both, compare, print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("robot", nargs="?", default="tank_arm", choices=sorted(path.name for path in ROBOTS.iterdir()))
+    parser.add_argument("robot", nargs="?", default="tank_arm", choices=NAMES)
     parser.add_argument("--count", type=int, default=50, help="how many changes")
     parser.add_argument("--seed", type=int, default=15)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="changed-tests-", ignore_cleanup_errors=True) as directory:
-        project = Path(directory, "robot")
-        shutil.copytree(ROBOTS / options.robot, project, ignore=shutil.ignore_patterns("__pycache__", ".pyfrc"))
-        settings = project / "pyproject.toml"
-        settings.write_text(_OWN_MATCH.sub("", settings.read_text()) + SETTINGS)
+        project = copy_robot(options.robot, Path(directory), SETTINGS)
         sys.exit(compare(project, options.count, options.seed))
 
 

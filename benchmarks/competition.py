@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import resource
 import shutil
 import statistics
@@ -21,9 +20,9 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+from competition_robots import NAMES, copy_robot
+
 HERE = Path(__file__).resolve().parent
-ROBOTS = HERE.parent / "tests" / "robots" / "competition"
-_OWN_MATCH = re.compile(r"\[tool\.pyfrc\.match\]\n(?:[^\[].*\n|\n)*")
 MATCH = "\n[tool.pyfrc.match]\nbefore = 1\nautonomous = 15\npause = 3\nteleop = 135\n"
 #: The targets: of the bare loop and one import, and of the run without a trace.
 MOST, MOST_TRACED = 1.15, 1.2
@@ -32,21 +31,17 @@ SECONDS = 154
 
 def main() -> None:
     """Measure each robot, print a row for each."""
-    names = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("robots", nargs="*", metavar="ROBOT", help=f"default: {', '.join(names)}")
+    parser.add_argument("robots", nargs="*", metavar="ROBOT", help=f"default: {', '.join(NAMES)}")
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
-    if unknown := set(options.robots) - set(names):
+    if unknown := set(options.robots) - set(NAMES):
         parser.error(f"no such robot: {', '.join(sorted(unknown))}")
     print(f"CPU seconds for a match of {SECONDS} s, medians of {options.rounds} rounds")
     print(f"{'robot':14}{'bare loop':>10}{'import':>8}{'pyfrc test':>12}{'ratio':>8}{'--trace':>9}{'--record':>10}")
-    for name in options.robots or names:
+    for name in options.robots or NAMES:
         with tempfile.TemporaryDirectory(prefix="competition-", ignore_cleanup_errors=True) as directory:
-            project = Path(directory, name)
-            shutil.copytree(ROBOTS / name, project, ignore=shutil.ignore_patterns("__pycache__", ".pyfrc", "ctre_sim"))
-            settings = project / "pyproject.toml"
-            settings.write_text(_OWN_MATCH.sub("", settings.read_text()) + MATCH)
+            project = copy_robot(name, Path(directory), MATCH)
             shutil.rmtree(project / "tests")
             (project / "tests").mkdir()
             (project / "tests" / "practice_test.py").write_text("from pyfrc.tests import test_practice\n")

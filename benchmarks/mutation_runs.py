@@ -241,7 +241,7 @@ class Runner:
 
 
 def run_with_imports(runner: Runner, trials: Iterable[tuple[int, Trial]], report: Callable[[int, str], None]) -> None:
-    """Run trials whose tests have to import the core anew."""
+    """Run trials whose tests have to import the core again."""
     for number, trial in trials:
         verdict = runner.run(trial, lambda trial: int(pytest.main([*_PYTEST, "-x", *trial.tests])))
         report(number, verdict)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import compileall
 import faulthandler
 import functools
+import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -174,6 +176,11 @@ def cold_hosts(_start_cold: StartInterpreter, monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr("pyfrc_core.processes.spawn.start", _start_cold)
 
 
+def trace_hash(file: Path) -> str:
+    """The hash at the end of a trace."""
+    return str(json.loads(file.read_text("utf-8").splitlines()[-1])["sha256"])
+
+
 @dataclass(frozen=True)
 class RobotProject:
     """A robot project in a directory of its own."""
@@ -188,6 +195,14 @@ class RobotProject:
             file = self.path / name
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(dedent(text).lstrip("\n"), encoding="utf-8")
+
+    def copy(self, robot: Path, *left_out: str) -> None:
+        """Copy a sample robot's files: running a robot leaves files in its project.
+
+        :param left_out: patterns of names that are not copied, besides what runs leave
+        """
+        ignore = shutil.ignore_patterns("__pycache__", ".pytest_cache", ".pyfrc", "ctre_sim", *left_out)
+        shutil.copytree(robot, self.path, dirs_exist_ok=True, ignore=ignore)
 
     def line(self, name: str, text: str) -> int:
         """The number of the one line of a file with `text` in it."""

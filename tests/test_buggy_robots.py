@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -78,7 +77,7 @@ def name(request: pytest.FixtureRequest) -> str:
 @pytest.fixture
 def project(name: str, make_project) -> Any:
     made = make_project({})
-    shutil.copytree(ROBOTS / name, made.path, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
+    made.copy(ROBOTS / name)
     return made
 
 

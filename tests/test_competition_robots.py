@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import re
-import shutil
 import sys
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, trace_hash
 from skips import require
 
 require("robots with vendors' packages", [] if sys.version_info >= (3, 11) else ["Python 3.11"])
@@ -28,17 +25,15 @@ SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 2\npause = 0.1\nteleop = 2\n"
 @pytest.fixture(params=NAMES)
 def project(request: pytest.FixtureRequest, make_project: MakeProject) -> RobotProject:
     made = make_project({})
-    left_out = shutil.ignore_patterns("__pycache__", ".pytest_cache", ".pyfrc", "ctre_sim")
-    shutil.copytree(ROBOTS / request.param, made.path, dirs_exist_ok=True, ignore=left_out)
-    settings = made.path / "pyproject.toml"
-    own_match = re.compile(r"\[tool\.pyfrc\.match\]\n(?:[^\[].*\n|\n)*")
-    settings.write_text(own_match.sub("", settings.read_text()) + SETTINGS)
+    made.copy(ROBOTS / request.param)
+    with (made.path / "pyproject.toml").open("a") as settings:
+        settings.write(SETTINGS)
     return made
 
 
 def hashes(directory: Path) -> list[str]:
-    """The hash at the end of each trace."""
-    return [json.loads(file.read_text().splitlines()[-1])["sha256"] for file in sorted(directory.iterdir())]
+    """The hash of each trace."""
+    return [trace_hash(file) for file in sorted(directory.iterdir())]
 
 
 def test_a_match_passes_quietly_and_repeats(project: RobotProject, request: pytest.FixtureRequest) -> None:

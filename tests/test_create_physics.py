@@ -312,7 +312,7 @@ def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
 @pytest.mark.parametrize("robot", SAMPLES)
 def test_every_sample_robot_runs_with_it(make_project: MakeProject, robot: str) -> None:
     project = make_project({})
-    shutil.copytree(ROBOTS / robot, project.path, dirs_exist_ok=True)
+    project.copy(ROBOTS / robot)
     for name in ("tests", "sim", "since_2020", "physics.py"):
         path = project.path / name
         shutil.rmtree(path, ignore_errors=True)

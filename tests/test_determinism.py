@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, trace_hash
 
 ROBOTS = Path(__file__).parent / "robots"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
@@ -43,10 +43,9 @@ def pyfrc_test(project: RobotProject, *args: str, cold: bool) -> str:
 
 @pytest.fixture
 def project(name: str, make_project: MakeProject) -> RobotProject:
-    """A copy of the sample robot, since running a robot leaves files in its project."""
+    """A copy of the sample robot."""
     project = make_project({})
-    left_out = shutil.ignore_patterns("__pycache__", ".pytest_cache")
-    shutil.copytree(ROBOTS / name, project.path, dirs_exist_ok=True, ignore=left_out)
+    project.copy(ROBOTS / name)
     return project
 
 
@@ -65,8 +64,7 @@ def hashes(directory: Path) -> Iterator[tuple[str, str]]:
     """(test, hash of its trace) for each trace in the directory."""
     for trace in sorted(directory.iterdir()):
         test = trace.stem.partition("_test.py.")[2]
-        last = json.loads(trace.read_text("utf-8").splitlines()[-1])
-        yield test, last["sha256"]
+        yield test, trace_hash(trace)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -44,8 +44,7 @@ def copy_of(
 ) -> Any:
     """A project with one of the sample robots, without its tests, and with short matches."""
     project = make_project({"pyproject.toml": SHORT_MATCHES.format(seconds, settings)})
-    left_out = shutil.ignore_patterns("__pycache__", "tests", "crash.jsonl", "pyproject.toml")
-    shutil.copytree(ROBOTS / robot, project.path, dirs_exist_ok=True, ignore=left_out)
+    project.copy(ROBOTS / robot, "tests", "crash.jsonl", "pyproject.toml")
     return project
 
 

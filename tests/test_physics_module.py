@@ -34,7 +34,7 @@ def test_both_generations_drive_the_same_square(make_shared_project) -> None:
     paths = []
     for physics in ("physics.py", "since_2020/physics.py"):
         project = make_shared_project({})
-        shutil.copytree(SQUARE, project.path, dirs_exist_ok=True)
+        project.copy(SQUARE)
         shutil.copyfile(SQUARE / physics, project.path / "physics.py")
         result = project.run("test", "--", "tests/test_square.py")
         assert result.code == 0, result.output

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -217,6 +218,14 @@ def test_what_does_not_go_together(make_project, options: list[str], expected: s
     result = make_project(FILES).run("test", "--changed", *options)
     assert result.code in (2, 4)
     assert expected in result.output
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 12), reason="newer Pythons observe functions beside other tools")
+def test_another_tool_that_traces_is_named(make_project) -> None:
+    result = make_project(FILES).run("coverage", "test", "--changed")
+    assert result.code == 2
+    assert "error: which functions run cannot be observed: another tool, such as coverage" in result.stderr
+    assert "Leave out that tool, or --changed" in result.stderr
 
 
 def test_a_spoiled_memory_is_ignored(project) -> None:

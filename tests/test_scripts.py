@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import signal
 import subprocess
 import sys
@@ -11,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
+from conftest import trace_hash
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -61,7 +61,7 @@ def text(*lines: object, header: object = HEADER) -> str:
 def test_a_recordings_replay_does_the_same(name: str, make_project) -> None:
     """For each sample robot, the one of its own tests with the most inputs, but not a whole match."""
     project = make_project({})
-    shutil.copytree(ROBOTS / name, project.path, dirs_exist_ok=True)
+    project.copy(ROBOTS / name)
     result = project.run("test", "--record", "recordings", "--", "--ignore=tests/pyfrc_test.py", "-k", "not match")
     assert result.code == 0, result.output
     scripts = [file for file in (project.path / "recordings").iterdir() if ".trace." not in file.name]
@@ -204,7 +204,7 @@ def test_where_a_changed_robot_first_differs_is_told(make_project) -> None:
     assert replayed.code == 1
     assert "first at 0.02 s:" in replayed.stdout
     assert "pwm[0].raw_value was " in replayed.stdout
-    digest = json.loads((project.path / "now.jsonl").read_text().splitlines()[-1])["sha256"]
+    digest = trace_hash(project.path / "now.jsonl")
     assert digest != load_script(script).trace
 
     script.with_name("tests_test_it.py.test_it.trace.jsonl").unlink()

@@ -76,7 +76,7 @@ class HalNotes:
         self._register("SimValueCreated", ctypes.c_int32(device), number)
 
     def note_writes(self, value: int, number: int) -> Registered:
-        """Note `number` whenever the value with this handle is written. Return what `cancel_writes` needs."""
+        """Note `number` whenever the value with this handle is written. Return what `cancel` needs."""
         return self._register("SimValueChanged", ctypes.c_int32(value), number)
 
     def _register(self, event: str, subject: Any, number: int) -> Registered:

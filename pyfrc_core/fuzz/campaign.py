@@ -213,9 +213,9 @@ class _Runner:
         self._shrinking = shrinker
         shrinker.shrink()
         if shrinker.repeats and shrinker.play_again():
-            self._write(shrinker)
+            self._save(shrinker.script, shrinker.failure, shrinker.runs)
         else:
-            self._keep(played.script, played.failure, shrinker.runs)
+            self._save(played.script, played.failure, shrinker.runs, repeats=False)
         self._shrinking = None
 
     def save_unshrunk(self) -> None:
@@ -223,20 +223,17 @@ class _Runner:
         for played in self._waiting:
             assert played.failure is not None
             shrinker, self._shrinking = self._shrinking, None
-            self._write(shrinker or Shrinker(self._executor, played.script, played.failure, {}))
+            if shrinker is None:
+                self._save(played.script, played.failure, 0)
+            else:
+                self._save(shrinker.script, shrinker.failure, shrinker.runs)
         self._waiting.clear()
 
-    def _write(self, shrinker: Shrinker) -> None:
-        script, failure = shrinker.script, shrinker.failure
-        entry = self._corpus.add(script, failure)
+    def _save(self, script: InputScript, failure: FuzzFailure, runs: int, repeats: bool = True) -> None:
+        """Save a script, and report it: the shortest one, or of a failure that did not repeat the whole match's."""
+        entry = (self._corpus.add if repeats else self._corpus.keep)(script, failure)
         writes = sum(len(step.writes) for step in script.steps)
-        self._report(FuzzFinding(failure, story_of(script, failure), entry, runs=shrinker.runs, writes=writes))
-
-    def _keep(self, script: InputScript, failure: FuzzFailure, runs: int) -> None:
-        """Save the whole script of a failure that did not repeat."""
-        entry = self._corpus.keep(script, failure)
-        writes = sum(len(step.writes) for step in script.steps)
-        self._report(FuzzFinding(failure, story_of(script, failure), entry, repeats=False, runs=runs, writes=writes))
+        self._report(FuzzFinding(failure, story_of(script, failure), entry, repeats, runs=runs, writes=writes))
 
     def _report(self, found: FuzzFinding) -> None:
         self.campaign.findings.append(found)

@@ -1,4 +1,4 @@
-"""The SimDevices that exist, with their handles and values, listed anew only after the HAL has reported a change."""
+"""The SimDevices that exist, with their handles and values, listed again only after the HAL has reported a change."""
 
 from __future__ import annotations
 

@@ -8,11 +8,11 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cache
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from ..config.settings import DEFAULT_SEED
-from ..project import Project
+from ..project import TEST_FILES, Project
 from ..text_files import keep_out_of_version_control, write_whole
 from .blocks import MODULE, blocks_of
 from .contents import Contents, environment, hash_of, hash_of_file, read_contents
@@ -21,7 +21,6 @@ from .ran_functions import Place
 #: In the robot project, and out of version control.
 _FILE = Path(".pyfrc", "passes.json")
 _FORMAT = 1
-
 
 #: What a test has read: a source file of the project, a block of it, and the block's hash; or a file from elsewhere.
 _Read = tuple[str, str, str]
@@ -58,17 +57,10 @@ class Passes:
         self._written = list(written)
         self._file = project.root / _FILE
         self._begin = read_contents(project, self._written)
-        self._conditions = [seed, builtin, project.main_file.name, project.class_name]
-        self._basis = self._basis_of(self._begin)
+        self._basis = _basis_of(self._begin, [seed, builtin, project.main_file.name, project.class_name])
         self._kept = _load(self._file)
         self._blocks = cache(lambda path: blocks_of((project.root / path).read_bytes()))
         self._hash_elsewhere = cache(lambda file: hash_of_file(Path(file)))
-
-    def _basis_of(self, contents: Contents) -> str:
-        """Return a hash of what every test depends on: packages, conditions, other files, and which sources exist."""
-        names = [path for path in contents.sources if not _is_test_module(path)]
-        facts = [environment(), *self._conditions, sorted(names), sorted(contents.others.items())]
-        return hash_of(json.dumps(facts).encode())
 
     # -- single tests ----------------------------------------------------------------------------------------------
 
@@ -149,10 +141,14 @@ class Passes:
         return changed
 
 
-def _is_test_module(path: str) -> bool:
-    """Return whether a file has tests that pytest finds, and nothing imports it: a new one changes no other test."""
-    name = path.rpartition("/")[2]
-    return name.startswith("test_") or name.endswith("_test.py")
+def _basis_of(contents: Contents, conditions: list[object]) -> str:
+    """Return a hash of what every test depends on: packages, conditions, other files, and which sources exist.
+
+    A new file with tests changes no other test, since nothing imports it.
+    """
+    names = [path for path in contents.sources if not any(map(PurePath(path).match, TEST_FILES))]
+    facts = [environment(), *conditions, sorted(names), sorted(contents.others.items())]
+    return hash_of(json.dumps(facts).encode())
 
 
 def _load(file: Path) -> _Kept:

@@ -7,6 +7,7 @@ import threading
 from types import CodeType, FrameType
 from typing import Any
 
+from ..errors import UsageError
 from ..project.robot_files import RobotFiles
 
 #: A source file, and the line in which a function begins.
@@ -26,13 +27,16 @@ class RanFunctions:
     def start(self) -> None:
         """Begin. Before Python 3.12, no other tool (a debugger, coverage) may trace at the same time.
 
-        :raises RuntimeError: when one does
+        :raises UsageError: when one does
         """
         if sys.version_info >= (3, 12):
             self._monitor()
             return
         if sys.gettrace() is not None:
-            raise RuntimeError("another tool traces this process")
+            raise UsageError(
+                "which functions run cannot be observed: another tool, such as coverage or a debugger, traces them",
+                remedy="Leave out that tool, or --changed; or use Python 3.12 or newer, which can do both.",
+            )
         known: set[CodeType] = set()
 
         def on_call(frame: FrameType, event: str, argument: object) -> None:
@@ -42,14 +46,6 @@ class RanFunctions:
 
         threading.settrace(on_call)
         sys.settrace(on_call)
-
-    def stop(self) -> None:
-        """End."""
-        if sys.version_info >= (3, 12):
-            sys.monitoring.free_tool_id(_TOOL)
-        else:
-            sys.settrace(None)
-            threading.settrace(None)  # type: ignore[arg-type, unused-ignore]
 
     def _monitor(self) -> None:
         monitoring: Any = sys.monitoring  # type: ignore[attr-defined,unused-ignore]

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from ..config.sim_file import LoadedSimConfig
 
 MAIN_FILE = "robot.py"
+#: The names of files with tests, as pytest's own.
+TEST_FILES = ("test_*.py", "*_test.py")
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,6 @@ class Project:
     def find_tests(self) -> Path | None:
         """Return the directory of the project's tests, or None if there are no test files."""
         for directory in self.test_directories:
-            if any(directory.glob("**/test_*.py")) or any(directory.glob("**/*_test.py")):
+            if any(any(directory.rglob(pattern)) for pattern in TEST_FILES):
                 return directory
         return None

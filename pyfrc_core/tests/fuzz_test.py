@@ -19,6 +19,7 @@ from ..project import Project, find_project
 from ..runtime.scripts.script import InputScript
 from ..test_support.controller import TestController
 from ..test_support.fake_time import FakeTime
+from ..text_files import keep_out_of_version_control
 
 __all__ = ["test_fuzz"]
 
@@ -58,9 +59,7 @@ def _save(project: Project, script: InputScript, generator: InputGenerator, erro
     shrunk = shrink_in_subprocess(project, script, failure_of(error, project.files), generator.inputs, _MOST_RUNS)
     file = project.root / _SCRIPTS / f"seed-{script.seed}.jsonl"
     (shrunk.script or script).save(file)
-    ignored = project.root / _SCRIPTS.parts[0] / ".gitignore"
-    if not ignored.exists():
-        ignored.write_text("*\n", encoding="utf-8")
+    keep_out_of_version_control(project.root / _SCRIPTS.parts[0])
     shown = os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
     if shrunk.script is not None:
         print("The shortest script of the failure:\n", *(f"    {line}" for line in shrunk.story), sep="\n")

@@ -123,7 +123,7 @@ class Swerve:
         return abs((direction - self.pose().rotation()).degrees()) < 2.5
 
     def lock(self) -> None:
-        """Turn the wheels so that nobody can push the robot."""
+        """Turn the wheels so that the robot cannot be pushed."""
         self.locked = True
 
     def execute(self) -> None:
