@@ -14,12 +14,12 @@ import pytest
 from conftest import MakeProject
 from sim_robots import PATIENCE, wait
 
-from pyfrc_core.processes import channel
+from pyfrc_core.processes import channel, output_pipe
 from pyfrc_core.processes.channel import Channel
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.engine import output_pipe, processes
+from pyfrc_core.sim.engine import processes
 from pyfrc_core.sim.engine.messages import Failed
 
 FAILS = """

@@ -5,5 +5,6 @@ module uses a private name of theirs (`tests/test_compat_boundary.py`), and each
 depends on it (`tests/test_compat_*.py`). To support a new version of a library, change these modules until the tests
 pass. `CONTRIBUTING.md` lists the steps.
 
-Two modules depend on how vendors' libraries behave: `real_time_devices` (phoenix6) and `rev_noise` (REV).
+Three modules depend on how libraries behave: `real_time_devices` (phoenix6), `rev_noise` (REV), and `library_output`
+(what they print).
 """

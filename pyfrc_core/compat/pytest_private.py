@@ -108,6 +108,12 @@ def shared_parameters(item: pytest.Item) -> dict[str, int]:
 # -- captured output --------------------------------------------------------------------------------------------------
 
 
+def captures_output(config: pytest.Config) -> bool:
+    """Return whether pytest captures what tests print: false with ``-s``."""
+    capture: Any = config.pluginmanager.getplugin("capturemanager")
+    return capture is not None and bool(capture.is_globally_capturing())
+
+
 def capture_into(config: pytest.Config, files: tuple[int, int]) -> None:
     """Restart the capture of output, into files that another process can read. Leave capturing suspended.
 
@@ -115,9 +121,9 @@ def capture_into(config: pytest.Config, files: tuple[int, int]) -> None:
 
     :param files: the descriptors of the files for standard output and standard error
     """
-    capture: Any = config.pluginmanager.getplugin("capturemanager")
-    if capture is None or not capture.is_globally_capturing():
+    if not captures_output(config):
         return
+    capture: Any = config.pluginmanager.getplugin("capturemanager")
     capture.stop_global_capturing()
     capture.start_global_capturing()
     both = CAPTURE.of(capture)

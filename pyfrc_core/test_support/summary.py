@@ -1,4 +1,7 @@
-"""The end of pytest's output: each bug is explained once, and methods that WPILib never calls are listed.
+"""What `pyfrc test` changes in pytest's output.
+
+Each bug is explained once. Methods that WPILib never calls are listed. What libraries print about themselves is removed
+from the captured output.
 
 Reports are shortened on the terminal only: JUnit files and other reports contain each failure in full.
 """
@@ -12,6 +15,7 @@ from typing import Any, TextIO
 
 import pytest
 
+from ..compat.library_output import LibraryOutput
 from ..compat.real_time_devices import explain_real_time
 from ..project import Project
 from ..runtime.misspelled_methods import find_misspelled_methods
@@ -26,6 +30,17 @@ class SummaryPlugin:
 
     def __init__(self, project: Project) -> None:
         self._project = project
+        self._output = LibraryOutput()
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Remove libraries' lines from what a test has printed."""
+        # What is said once is said where it is seen: a test that passed shows nothing.
+        output = self._output if report.failed else LibraryOutput()
+        sections = (
+            (name, output.of_whole(text) if name.startswith("Captured ") else text) for name, text in report.sections
+        )
+        report.sections = [(name, text) for name, text in sections if text]
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_terminal_summary(self, terminalreporter: Any, config: pytest.Config) -> Generator[None, object, object]:

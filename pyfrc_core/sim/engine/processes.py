@@ -17,12 +17,12 @@ from typing import Any
 
 from ...processes.channel import Channel
 from ...processes.fork import FORK_IS_SAFE
+from ...processes.output_pipe import OutputPipe
 from ...processes.spawn import Interpreter
 from . import host_process
 from .commands import Quit
 from .host import CLOSING_SECONDS, Exited, Hosting, Kill, Launch, Preload
 from .messages import Failed, Job, Message
-from .output_pipe import OutputPipe
 
 #: The most bytes that the name of a socket may have on every system.
 _LONGEST_NAME = 100

@@ -28,6 +28,7 @@ from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
 from .messages import replay
 from .processes import TestProcess, forked_test, spawned_test
+from .uncaptured import UncapturedOutput, uncaptured_output
 
 #: A test file that has anything of these in it may touch the HAL even without a fixture.
 _ROBOT_LIBRARIES = frozenset({"wpilib", "hal", "ntcore", "commands2", "magicbot"})
@@ -44,6 +45,8 @@ class IsolatedTests:
         self._running: dict[pytest.Item, TestProcess] = {}
         self._announced: pytest.Item | None = None
         self._explained = False
+        #: Where tests print to, if pytest captures nothing.
+        self._output: UncapturedOutput | None = None
 
     @pytest.hookimpl
     def pytest_runtestloop(self, session: pytest.Session) -> bool | None:
@@ -52,12 +55,13 @@ class IsolatedTests:
         if session.testsfailed and not session.config.option.continue_on_collection_errors:
             problems = session.testsfailed
             raise session.Interrupted(f"{problems} error{'s' if problems != 1 else ''} during collection")
-        try:
-            self._run_all(session)
-        finally:
-            for process in self._running.values():
-                process.worker.kill()
-            self._running.clear()
+        with uncaptured_output(session.config) as self._output:
+            try:
+                self._run_all(session)
+            finally:
+                for process in self._running.values():
+                    process.worker.kill()
+                self._running.clear()
         return True
 
     def _left_to_others(self, session: pytest.Session) -> bool:
@@ -93,7 +97,8 @@ class IsolatedTests:
             waiting.append(item)
             if len(waiting) == 1:
                 self._announce(item)
-            self._running[item] = (forked_test if forked else spawned_test)(item, self._plugin)
+            plugin = self._plugin
+            self._running[item] = forked_test(item, plugin, self._output) if forked else spawned_test(item, plugin)
         self._finish(session, waiting, down_to=0)
         _tear_down_shared(session, previous, None)
 
@@ -110,6 +115,8 @@ class IsolatedTests:
             item = waiting.pop(0)
             self._announce(item)
             del self._running[item]
+            if self._output is not None:
+                self._output.flush()
             _report(item, process, self._plugin.project.files, seed_section(self._plugin.options))
             process.close()
             item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)

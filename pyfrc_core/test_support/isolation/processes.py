@@ -14,6 +14,7 @@ from ...processes.crash_report import CrashLog
 from ...processes.worker import ForkedWorker, Send, SpawnedWorker, Worker
 from ..pytest_plugin import PyFrcPlugin
 from .messages import ReportSender
+from .uncaptured import UncapturedOutput
 
 
 class Captured:
@@ -54,11 +55,14 @@ class TestProcess:
         self._captured.close()
 
 
-def forked_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
-    """Begin a test in a fork of this process: everything imported is there already."""
+def forked_test(item: pytest.Item, plugin: PyFrcPlugin, output: UncapturedOutput | None) -> TestProcess:
+    """Begin a test in a fork of this process: everything imported is there already.
+
+    :param output: where it prints to, if pytest captures nothing
+    """
     captured = Captured()
     files = captured.stdout.fileno(), captured.stderr.fileno()
-    return TestProcess(ForkedWorker(partial(_run_in_fork, item, plugin, files)), captured)
+    return TestProcess(ForkedWorker(partial(_run_in_fork, item, plugin, files, output)), captured)
 
 
 def spawned_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
@@ -80,9 +84,18 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
 # -- on the other side -----------------------------------------------------------------------------------------------
 
 
-def _run_in_fork(item: pytest.Item, plugin: PyFrcPlugin, files: tuple[int, int], send: Send, log: CrashLog) -> None:
+def _run_in_fork(
+    item: pytest.Item,
+    plugin: PyFrcPlugin,
+    files: tuple[int, int],
+    output: UncapturedOutput | None,
+    send: Send,
+    log: CrashLog,
+) -> None:
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     capture_into(item.config, files)
+    if output is not None:
+        output.connect_this_process()
     plugin.crash_log = log
     log.enable_fault_handler()  # pytest has one of its own
     ReportSender(send).run(item)

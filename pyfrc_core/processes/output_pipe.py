@@ -2,6 +2,7 @@
 
 Other processes that robot code has started may hold the pipe open after the robot's end, so end-of-file says nothing.
 This process keeps a writing end of its own, and writes a marker when it wants to know that all before it has been read.
+What libraries print about themselves is left out.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ import threading
 from codecs import getincrementaldecoder
 from collections.abc import Callable
 from contextlib import suppress
+
+from ..compat.library_output import LibraryOutput
 
 #: Replaced by tests that need the reading thread to be late.
 read = os.read
@@ -35,7 +38,7 @@ class OutputPipe:
         self._markers = 0
         self._waiting: dict[int, threading.Event] = {}
         self._over = False
-        self._thread = threading.Thread(target=self._read, name="pyfrc sim: output", daemon=True)
+        self._thread = threading.Thread(target=self._read, name="pyfrc: output", daemon=True)
         self._thread.start()
 
     def flush(self) -> None:
@@ -65,11 +68,11 @@ class OutputPipe:
 
     def _read(self) -> None:
         decoder = getincrementaldecoder("utf-8")(errors="replace")
-        held = b""
+        held, output = b"", LibraryOutput()
         while data := read(self._reading_end, _MOST_AT_ONCE):
             held += data
             while (marker := self._marker.search(held)) is not None:
-                self._pass_on(decoder.decode(held[: marker.start()]))
+                self._pass_on(output.feed(decoder.decode(held[: marker.start()])) + output.flush())
                 held = held[marker.end() :]
                 if (number := int(marker[1])) == 0:  # that of `close`
                     return
@@ -77,7 +80,7 @@ class OutputPipe:
             # The beginning of a marker whose rest comes with the next piece.
             start = held.rfind(b"\0")
             cut = start if start >= 0 and self._may_begin_a_marker(held[start:]) else len(held)
-            self._pass_on(decoder.decode(held[:cut]))
+            self._pass_on(output.feed(decoder.decode(held[:cut])))
             held = held[cut:]
 
     def _may_begin_a_marker(self, data: bytes) -> bool:
