@@ -7,6 +7,7 @@ import os
 import pstats
 import re
 import sys
+import time
 from collections.abc import Mapping
 from math import ceil
 from typing import Any
@@ -32,7 +33,7 @@ BOTH_MODES = """
         control.run_test(lambda tm: tm < 0.2)
 """
 
-#: Has a stopwatch of its own, with a clock that is not robot time, and writes down what it says.
+#: Has a stopwatch of its own, with the processor time of its thread, and writes down what it says.
 SLOW_ROBOT = """
     import json
     import time
@@ -59,10 +60,11 @@ SLOW_ROBOT = """
             self.work(PLANTED)
 
         def work(self, seconds):
+            computed = time.clock_gettime(time.CLOCK_THREAD_CPUTIME_ID)
             begin = real_time()
             while real_time() - begin < seconds:
                 pass
-            self.took.append(real_time() - begin)
+            self.took.append(time.clock_gettime(time.CLOCK_THREAD_CPUTIME_ID) - computed)
 
         def endCompetition(self):
             Path(__file__).with_name("took.json").write_text(json.dumps(self.took))
@@ -149,6 +151,51 @@ def test_what_waits_takes_as_long_as_on_a_robot(make_project: MakeProject) -> No
     assert (overrun["function"], overrun["robot_time_s"]) == ("MyRobot.teleopPeriodic", 0.1)
     (line,) = [line for line in report["lines"] if line["waiting_ms"]]
     assert (line["place"], line["waiting_ms"]) == (project.place("robot.py", "time.sleep"), 500)
+
+
+@pytest.mark.skipif(not hasattr(time, "CLOCK_THREAD_CPUTIME_ID"), reason="a thread's processor time cannot be read")
+def test_what_else_the_computer_does_does_not_count(make_project: MakeProject) -> None:
+    """The robot measures its processor time itself, and is held up in each call as on a busy computer."""
+    robot = """
+        import json
+        import os
+        import time
+        from pathlib import Path
+
+        import wpilib
+
+
+        def processor_time():
+            return time.clock_gettime(time.CLOCK_THREAD_CPUTIME_ID)
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.took = []
+
+            def teleopPeriodic(self):
+                begin = processor_time()
+                while processor_time() - begin < 0.004:
+                    pass
+                os.system("sleep 0.05")  # in another process, and in real time
+                self.took.append(processor_time() - begin)
+
+            def endCompetition(self):
+                Path(__file__).with_name("took.json").write_text(json.dumps(self.took))
+                super().endCompetition()
+    """
+    project = make_project({"robot.py": robot, "tests/test_a.py": TELEOP})
+    result, report = profile(project, "test", "-j", "1")
+    took = json.loads((project.path / "took.json").read_text())
+    function = by_name(report)["MyRobot.teleopPeriodic"]
+    assert function["total_ms"] == pytest.approx(1000 * sum(took), rel=0.1)
+    assert function["p50_ms"] < 20
+    assert report["period_ms"] == 20
+    assert "The loop has 20 ms for each packet" in result.stdout
+    # That the robot waits for something outside is found nevertheless.
+    held_up = [each for each in report["overruns"] if each["function"] == "MyRobot.teleopPeriodic"]
+    assert len(held_up) >= 8
+    assert all(each["held_up_ms"] >= 40 for each in held_up)
 
 
 # -- which functions ------------------------------------------------------------------------------------------------

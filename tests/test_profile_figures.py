@@ -77,6 +77,27 @@ def test_the_report_groups_overruns_and_says_when_they_were() -> None:
     )
 
 
+def test_the_report_says_how_much_of_the_period_each_periodic_function_takes() -> None:
+    figures = Figures(period_ns=20_000_000)
+    figures.times_of(LOOP).extend([2_000_000] * 9 + [4_000_000] * 10 + [30_000_000])
+    figures.times_of(TELEOP).extend([1_000_000])
+    figures.times_of(Measurand("command", "Lift.execute", "robot.py:9")).extend([1_000_000])
+    text = as_text(figures, COST, top=1).partition("The loop has 20 ms for each packet.")[2]
+    lines = [" ".join(line.split()) for line in text.splitlines()]
+    assert lines[2:6] == [
+        "the whole loop 4.000 ms 20.0% 4.000 ms 20.0% 30.000 ms 150.0%",
+        "MyRobot.teleopPeriodic 1.000 ms 5.0% 1.000 ms 5.0% 1.000 ms 5.0%",
+        "19 of 20 turns would be in time on a computer that is up to 5 times slower.",
+        "A roboRIO is slower than this computer. By how much has not been measured.",
+    ]
+
+
+def test_a_loop_that_is_too_slow_here_is_not_compared_with_a_slower_computer() -> None:
+    figures = Figures(period_ns=20_000_000)
+    figures.times_of(LOOP).append(30_000_000)
+    assert "times slower" not in as_text(figures, COST, top=1)
+
+
 def test_all_of_it_is_in_the_json() -> None:
     figures = Figures()
     figures.times_of(TELEOP).append(30_000_000)

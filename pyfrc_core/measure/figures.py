@@ -45,8 +45,8 @@ class Overrun(NamedTuple):
     :param seconds: the robot time at its start
     :param mode: the driver station's mode
     :param culprit: the innermost timed function that took at least half of it, else the loop itself
-    :param took_ns: the duration of the iteration
-    :param culprit_ns: the duration of the culprit
+    :param took_ns: the wall time of the iteration, with the robot time of its waits
+    :param culprit_ns: the same of the culprit
     :param held_up_ns: the part of it in which the thread neither computed nor waited in robot time: the computer ran
         something else, or robot code waited for something outside the program
     :param period_ns: the loop's period
@@ -67,7 +67,8 @@ class Overrun(NamedTuple):
 class Figures:
     """The measurements of one process, or of all.
 
-    :param times: the duration of each call, in nanoseconds
+    :param times: the duration of each call, in nanoseconds: processor time of its thread, and robot time of its waits
+    :param period_ns: the period of the robot's loop; 0 if it has not run
     :param overruns: the iterations that took longer than their period
     :param lines: for each line the time in which it was the robot's innermost one: computing, and waiting in robot time
         within a timed function, both in nanoseconds
@@ -77,6 +78,7 @@ class Figures:
     """
 
     times: dict[Measurand, array[int]] = field(default_factory=dict)
+    period_ns: int = 0
     overruns: list[Overrun] = field(default_factory=list)
     lines: dict[CodeLine, list[int]] = field(default_factory=dict)
     stacks: dict[tuple[tuple[str, str, int], ...], int] = field(default_factory=dict)
@@ -106,6 +108,7 @@ class Figures:
         """Add the measurements of another process."""
         for what, times in others.times.items():
             self.times_of(what).extend(times)
+        self.period_ns = max(self.period_ns, others.period_ns)
         self.overruns += others.overruns
         for line, (computing, waiting) in others.lines.items():
             self.on_line(line, computing, waiting)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from array import array
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from itertools import groupby
 from typing import Any
@@ -27,6 +28,7 @@ def as_text(figures: Figures, cost: Cost, top: int) -> str:
     return "\n".join(
         [
             *_functions(times, top),
+            *_loop(times, figures.period_ns),
             *_overruns(figures),
             *_lines(figures, top),
             *_cost(cost, figures.samples),
@@ -38,6 +40,7 @@ def as_json(figures: Figures, cost: Cost, command: str) -> dict[str, Any]:
     """Return all measurements; the names contain the units."""
     return {
         "command": command,
+        "period_ms": figures.period_ns / 1e6,
         "functions": [
             {
                 **what._asdict(),
@@ -80,7 +83,7 @@ def _by_total(figures: Figures) -> dict[Measurand, Any]:
 
 
 def _functions(times: dict[Measurand, Any], top: int) -> Iterator[str]:
-    yield "How long each call took, in milliseconds:"
+    yield "How long each call took, in milliseconds of processor time, and of robot time while it waited:"
     rows: list[tuple[str, ...]] = [("function", "place", "calls", "p50", "p95", "p99", "max", "total")]
     for what in list(times)[:top]:
         spread = distribution(times[what])
@@ -91,6 +94,45 @@ def _functions(times: dict[Measurand, Any], top: int) -> Iterator[str]:
     yield from table(rows, left=2)
     if len(times) > top:
         yield f"  and {counted(len(times) - top, 'more function')} (--top {len(times)})"
+
+
+def _loop(times: Mapping[Measurand, array[int]], period_ns: int) -> Iterator[str]:
+    """Yield how long each periodic function takes, and how much of the loop's period that is."""
+    periodic = {what: each for what, each in times.items() if _is_periodic(what)}
+    if WHOLE_LOOP not in periodic or not period_ns:
+        return
+    period = period_ns / 1e6
+    yield ""
+    yield f"The loop has {period:g} ms for each packet. Of these, on this computer:"
+    rows = [("function", "median", "95th percentile", "most")]
+    for what, each in periodic.items():
+        spread = distribution(each)
+        rows.append((what.name, *(_part_of(took, period) for took in (spread.p50, spread.p95, spread.longest))))
+    yield from table(rows, left=1)
+    p95 = distribution(periodic[WHOLE_LOOP]).p95
+    if 0 < p95 < period:
+        factor = _rounded_down(period / p95)
+        yield f"  19 of 20 turns would be in time on a computer that is up to {factor} times slower."
+    yield "  A roboRIO is slower than this computer. By how much has not been measured."
+
+
+def _is_periodic(what: Measurand) -> bool:
+    """Return whether a function is called once in each turn of the loop, or of its mode."""
+    name = what.name.rpartition(".")[2]
+    return (
+        what == WHOLE_LOOP
+        or (what.kind == "robot" and name.endswith("Periodic"))
+        or (what.kind == "subsystem" and name == "periodic")
+        or (what.kind == "component" and name == "execute")
+    )
+
+
+def _part_of(took: float, period: float) -> str:
+    return f"{took:.3f} ms {took / period:6.1%}"
+
+
+def _rounded_down(factor: float) -> str:
+    return f"{int(factor)}" if factor >= 10 else f"{int(factor * 10) / 10:g}"
 
 
 def _overruns(figures: Figures) -> Iterator[str]:

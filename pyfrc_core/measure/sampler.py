@@ -7,8 +7,9 @@ the robot. pyinstrument samples the thread that started it; it only draws the fl
 from __future__ import annotations
 
 import threading
+import time
 from threading import get_ident
-from time import perf_counter_ns
+from time import perf_counter_ns, thread_time_ns
 from types import FrameType
 
 from ..compat.cpython_private import current_frames
@@ -35,6 +36,8 @@ class Sampler:
         self._stacks = stacks
         self._over = real_allocate_lock()
         self._thread: threading.Thread | None = None
+        #: The processor time of each of the loop's threads at its last sample.
+        self._computed: dict[int, int] = {}
 
     def start(self) -> None:
         """Start sampling in this process."""
@@ -70,16 +73,17 @@ class Sampler:
     def clear(self) -> None:
         """Forget the thread, which does not exist in a fork."""
         self._thread = None
+        self._computed.clear()
 
     def _sample(self) -> None:
         # Python's switch interval is not changed: a shorter one would slow down switches between the robot's threads.
         figures, last = self._figures, perf_counter_ns()
         while not self._over.acquire(timeout=_SECONDS):
-            now = perf_counter_ns()
+            now, begin = perf_counter_ns(), thread_time_ns()
             self._take_sample(min(now - last, _LONGEST_NS))
             last = now
             figures.samples += 1
-            figures.sampling_ns += perf_counter_ns() - now
+            figures.sampling_ns += thread_time_ns() - begin
 
     def _take_sample(self, spent_ns: int) -> None:
         run = patches.run
@@ -88,6 +92,10 @@ class Sampler:
         running = run.threads.running
         ident = running.ident if running is not None else run.threads.driver
         frame = current_frames().get(ident) if ident is not None and ident != get_ident() else None
+        loop = run.own_loop
+        # The identifier of a thread that may end at any time must not be used.
+        if ident is not None and (running is None or (running is loop and not loop.finished)):
+            spent_ns = self._computed_since_last_sample(ident, spent_ns)
         line = innermost_line(frame, self._files)
         if line is None or is_waiting(frame, self._files):
             return
@@ -95,6 +103,18 @@ class Sampler:
         if self._stacks:
             stack = self._stack(frame)
             self._figures.stacks[stack] = self._figures.stacks.get(stack, 0) + spent_ns
+
+    def _computed_since_last_sample(self, ident: int, wall_ns: int) -> int:
+        """Return the processor time of a thread since its last sample, at most the given wall time.
+
+        Where the system has no such clock, and for a thread's first sample, that is the wall time.
+        """
+        if not hasattr(time, "pthread_getcpuclockid"):
+            return wall_ns
+        computed_ns = time.clock_gettime_ns(time.pthread_getcpuclockid(ident))
+        since_ns = computed_ns - self._computed.get(ident, computed_ns - wall_ns)
+        self._computed[ident] = computed_ns
+        return min(since_ns, wall_ns)
 
     def _stack(self, frame: FrameType | None) -> tuple[tuple[str, str, int], ...]:
         """Return the call stack from the robot's outermost function on, without pyfrc's own functions."""

@@ -1,7 +1,8 @@
 """Time functions, and find the functions that made the robot's loop overrun its period.
 
-A function's time is the time that it would take on a robot: the wall time of its own computing, and the robot time that
-passes while it waits (`wpilib.wait`, `time.sleep`, a lock). In a test, waiting takes almost no wall time.
+A function's time is the processor time of its thread, and the robot time that passes while it waits (`wpilib.wait`,
+`time.sleep`, a lock). Neither depends on what else this computer does. Overruns are found by wall time instead, so that
+code that waits for something outside of the program (a file, a socket) is found, too.
 """
 
 from __future__ import annotations
@@ -29,8 +30,6 @@ from .figures import CodeLine, Figures, Measurand, Overrun
 _LONG_NS = 5_000_000
 #: The names of the wrappers below.
 _TIMED = ("timed", "timed_method", "timed_loop")
-#: How often to read the CPU time of the loop's thread: once per iteration would cost too much.
-_READ_CPU_TIME_NS = 2_000_000
 
 #: The loop of a robot; the functions that it calls are timed separately.
 WHOLE_LOOP = Measurand("loop", "the whole loop", "")
@@ -46,11 +45,24 @@ class _Call(NamedTuple):
 
 
 class _Wait(NamedTuple):
-    """A wait of a thread, and how much longer it took in wall time than in robot time."""
+    """A wait of a thread.
+
+    :param excess_ns: how much longer it took in wall time than in robot time
+    :param computed_ns: the processor time of its thread, which may run the clock meanwhile
+    """
 
     begin_ns: int
     excess_ns: int
+    computed_ns: int
     robot_ns: int
+
+
+class _Begun(NamedTuple):
+    """When an iteration of a robot's own loop began: in wall time, in processor time, and after how many waits."""
+
+    wall_ns: int
+    computed_ns: int
+    waits: int
 
 
 class Stopwatch:
@@ -66,25 +78,17 @@ class Stopwatch:
         self._waited: dict[int, deque[_Wait]] = {}
         self._long: deque[_Call] = deque(maxlen=64)
         self._record_turn = figures.times_of(WHOLE_LOOP).append
-        #: For a robot with its own loop: the end of its last wait, and the value of `waits` then.
-        self._turn: tuple[int, int] | None = None
+        #: For a robot with its own loop: the end of its last wait.
+        self._turn: _Begun | None = None
         self._own_loop: RobotThread | None = None
         self._has_turns = False
-        #: When the CPU time of the loop's thread was last read, and its value.
-        self.cpu_time_read_ns = self._computed_ns = 0
 
     def clear(self) -> None:
         """Delete all measurements, in a fork."""
-        self.cpu_time_read_ns = self.calls = 0
+        self.calls = 0
         self._waited.clear()
         self._long.clear()
         self._turn = None
-
-    def read_cpu_time(self) -> int:
-        """Read the CPU time of the calling thread; return the current wall time."""
-        self._computed_ns = thread_time_ns()
-        self.cpu_time_read_ns = perf_counter_ns()
-        return self.cpu_time_read_ns
 
     # -- functions ------------------------------------------------------------------------------------------------
 
@@ -93,7 +97,7 @@ class Stopwatch:
 
         :param period_ns: the period, if it is a loop
         """
-        now, unusual, watch = perf_counter_ns, self._unusual, self
+        now, computed, unusual, watch = perf_counter_ns, thread_time_ns, self._unusual, self
         record = self._figures.times_of(what).append
         long_ns = min(_LONG_NS, period_ns or _LONG_NS)
 
@@ -101,46 +105,44 @@ class Stopwatch:
             __tracebackhide__ = True
             waits = watch.waits
             watch.calls += 1
-            begin = now()
-            if begin - watch.cpu_time_read_ns > _READ_CPU_TIME_NS:
-                begin = watch.read_cpu_time()
+            begin, begin_computed = now(), computed()
             try:
                 return function()
             finally:
-                took = now() - begin
+                spent, took = computed() - begin_computed, now() - begin
                 watch.calls -= 1
                 if took > long_ns or watch.waits != waits:
-                    took = watch._iteration_ended(what, begin, took, period_ns or 0)
-                record(took)
+                    spent = watch._iteration_ended(what, begin, took, spent, period_ns or 0)
+                record(spent)
 
         # These two are called most often, so they are as short as possible; the second avoids packing arguments.
         def timed(*args: Any, **kwargs: Any) -> Any:
             __tracebackhide__ = True
             waits = watch.waits
             watch.calls += 1
-            begin = now()
+            begin, begin_computed = now(), computed()
             try:
                 return function(*args, **kwargs)
             finally:
-                took = now() - begin
+                spent, took = computed() - begin_computed, now() - begin
                 watch.calls -= 1
                 if took > long_ns or watch.waits != waits:
-                    took = unusual(what, begin, took)
-                record(took)
+                    _, spent = unusual(what, begin, took, spent)
+                record(spent)
 
         def timed_method(self: Any) -> Any:
             __tracebackhide__ = True
             waits = watch.waits
             watch.calls += 1
-            begin = now()
+            begin, begin_computed = now(), computed()
             try:
                 return function(self)
             finally:
-                took = now() - begin
+                spent, took = computed() - begin_computed, now() - begin
                 watch.calls -= 1
                 if took > long_ns or watch.waits != waits:
-                    took = unusual(what, begin, took)
-                record(took)
+                    _, spent = unusual(what, begin, took, spent)
+                record(spent)
 
         wrapper: Callable[..., Any] = timed_method if _takes_one_argument(function) else timed
         if period_ns is not None:
@@ -150,18 +152,29 @@ class Stopwatch:
         except (AttributeError, TypeError):  # a callable object that is not a function
             return wrapper
 
-    def _unusual(self, what: Measurand, begin: int, took: int) -> int:
-        """Handle a call that took long, or waited; return how long it took."""
-        took -= self._waited_since(begin)[0]
+    def timed_whole_loop(self, function: Callable[..., Any], period_ns: int) -> Callable[..., Any]:
+        """Return the body of the robot's loop with timing."""
+        self._figures.period_ns = period_ns
+        return self.timed(function, WHOLE_LOOP, period_ns)
+
+    def _unusual(self, what: Measurand, begin: int, took: int, spent: int) -> tuple[int, int]:
+        """Handle a call that took long, or waited.
+
+        :param took: its wall time
+        :param spent: the processor time of its thread
+        :return: both, with the robot time of its waits instead of what these took here
+        """
+        excess_ns, computed_ns, robot_ns = self._waited_since(begin)
+        took -= excess_ns
         if took > _LONG_NS:
             self._long.append(_Call(what, begin, took, get_ident()))
-        return took
+        return took, spent - computed_ns + robot_ns
 
-    def _iteration_ended(self, what: Measurand, begin: int, took: int, period_ns: int) -> int:
-        """Handle an iteration of a loop in the same way, and record an overrun."""
-        _, robot_ns = self._waited_since(begin)
-        took = self._unusual(what, begin, took)
-        held_up_ns = max(0, took - robot_ns - (thread_time_ns() - self._computed_ns))
+    def _iteration_ended(self, what: Measurand, begin: int, took: int, spent: int, period_ns: int) -> int:
+        """Handle an iteration of a loop in the same way, and record an overrun; return how long it took by `spent`."""
+        _, _, robot_ns = self._waited_since(begin)
+        took, spent = self._unusual(what, begin, took, spent)
+        held_up_ns = max(0, took - spent)
         within = [call for call in self._long if call.thread == get_ident() and call.begin_ns >= begin]
         if what is WHOLE_LOOP:
             self._long.clear()
@@ -173,17 +186,18 @@ class Stopwatch:
             self._figures.overruns.append(
                 Overrun(began, modes.get_mode(), culprit.what, took, culprit.took_ns, held_up_ns, period_ns, test)
             )
-        return took
+        return spent
 
-    def _waited_since(self, begin: int) -> tuple[int, int]:
-        """Return the excess of wall time over robot time in the calling thread's waits, and their robot time."""
-        excess_ns = robot_ns = 0
+    def _waited_since(self, begin: int) -> tuple[int, int, int]:
+        """Return the sums of the calling thread's waits: excess of wall time, processor time, and robot time."""
+        excess_ns = computed_ns = robot_ns = 0
         for wait in reversed(self._waited.get(get_ident(), ())):
             if wait.begin_ns < begin:
                 break
             excess_ns += wait.excess_ns
+            computed_ns += wait.computed_ns
             robot_ns += wait.robot_ns
-        return excess_ns, robot_ns
+        return excess_ns, computed_ns, robot_ns
 
     # -- waits ----------------------------------------------------------------------------------------------------
 
@@ -203,12 +217,13 @@ class Stopwatch:
 
     def _call_waits(self, frame: FrameType, threads: RobotThreads, original: Callable[[], Any]) -> Any:
         __tracebackhide__ = True
-        begin, robot_us = perf_counter_ns(), threads.clock.now_us
+        begin, begin_computed, robot_us = perf_counter_ns(), thread_time_ns(), threads.clock.now_us
         try:
             return original()
         finally:
             robot_ns = (threads.clock.now_us - robot_us) * 1000
-            wait = _Wait(begin, perf_counter_ns() - begin - robot_ns, robot_ns)
+            computed_ns = thread_time_ns() - begin_computed
+            wait = _Wait(begin, perf_counter_ns() - begin - robot_ns, computed_ns, robot_ns)
             self.waits += 1
             self._waited.setdefault(get_ident(), deque(maxlen=4096)).append(wait)
             line = innermost_line(frame, self._files)
@@ -222,25 +237,23 @@ class Stopwatch:
             return False
         if own_loop is not self._own_loop:  # the loop of a `TimedRobot` is a timed function
             self._own_loop, self._has_turns = own_loop, not isinstance(run.robot, TimedRobot)
+            if self._has_turns:
+                self._figures.period_ns = round(getattr(run.robot, "control_loop_wait_time", 0.02) * 1e9)
         return self._has_turns
 
     def _own_loop_waits(self, original: Callable[[], Any]) -> Any:
         """Record an iteration of a robot with its own loop: it ends with the loop's first wait."""
         __tracebackhide__ = True
         if self._turn is not None:
-            begin, waits = self._turn
-            took = perf_counter_ns() - begin
+            begin, begin_computed, waits = self._turn
+            spent, took = thread_time_ns() - begin_computed, perf_counter_ns() - begin
             if took > _LONG_NS or waits != self.waits:
-                seconds = getattr(patches.run and patches.run.robot, "control_loop_wait_time", 0.02)
-                took = self._iteration_ended(WHOLE_LOOP, begin, took, round(seconds * 1e9))
-            self._record_turn(took)
+                spent = self._iteration_ended(WHOLE_LOOP, begin, took, spent, self._figures.period_ns)
+            self._record_turn(spent)
         try:
             return original()
         finally:
-            begin = perf_counter_ns()
-            if begin - self.cpu_time_read_ns > _READ_CPU_TIME_NS:
-                begin = self.read_cpu_time()
-            self._turn = begin, self.waits
+            self._turn = _Begun(perf_counter_ns(), thread_time_ns(), self.waits)
 
 
 def innermost_line(frame: FrameType | None, files: RobotFiles) -> CodeLine | None:

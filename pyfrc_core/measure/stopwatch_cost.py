@@ -6,6 +6,7 @@ import cProfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from time import thread_time
 from timeit import repeat
 
 from ..project.robot_files import RobotFiles
@@ -70,7 +71,7 @@ def measured_cost(figures: Figures, profiled_calls: int) -> Cost:
 
 def _seconds(call: Callable[[], object]) -> float:
     """Return the duration of a call: the minimum of several rounds, since other programs can only add to it."""
-    return min(repeat(call, number=_CALLS, repeat=_ROUNDS)) / _CALLS
+    return min(repeat(call, timer=thread_time, number=_CALLS, repeat=_ROUNDS)) / _CALLS
 
 
 def _profiled_seconds(robot: _Robot) -> float:

@@ -26,7 +26,7 @@ from ..runtime.robot import RobotRun
 from ..runtime.threads import RobotThreads
 from ..runtime.timed_loop import TimedLoop
 from .figures import Measurand
-from .stopwatch import WHOLE_LOOP, Stopwatch
+from .stopwatch import Stopwatch
 
 _MODES = ("robot", "disabled", "autonomous", "teleop", "test", "simulation", "_simulation")
 #: The methods of a robot that are called; not its constructor, which runs before there is a loop.
@@ -136,7 +136,7 @@ class UserFunctions:
         def add(loop: TimedLoop, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
             period_ns = to_us(period) * 1000
             if getattr(call, "__name__", "") == LOOP_FUNCTION.name:
-                call = self._stopwatch.timed(self._wrap(call), WHOLE_LOOP, period_ns)
+                call = self._stopwatch.timed_whole_loop(self._wrap(call), period_ns)
             else:
                 call = self.timed(call, "periodic", period_ns=period_ns)
             real(loop, call, period, offset)
