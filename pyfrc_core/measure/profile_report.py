@@ -104,7 +104,7 @@ def _loop(times: Mapping[Measurand, array[int]], period_ns: int) -> Iterator[str
     period = period_ns / 1e6
     yield ""
     yield f"The loop has {period:g} ms for each packet. Of these, on this computer:"
-    rows = [("function", "median", "95th percentile", "most")]
+    rows: list[tuple[str, ...]] = [("function", "median", "95th percentile", "most")]
     for what, each in periodic.items():
         spread = distribution(each)
         rows.append((what.name, *(_part_of(took, period) for took in (spread.p50, spread.p95, spread.longest))))
