@@ -14,9 +14,8 @@ require("robots with vendors' packages", [] if sys.version_info >= (3, 11) else 
 ROBOTS = Path(__file__).parent / "robots" / "competition"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
 
-#: phoenix6 simulates its devices on threads of its own, in real time. On the other robot, a command begins one packet
-#: earlier in about one of six runs; the cause is not known yet.
-DO_NOT_REPEAT = {"ctre_swerve", "rev_swerve"}
+#: phoenix6 simulates its devices on threads of its own, in real time.
+DO_NOT_REPEAT = {"ctre_swerve"}
 
 #: A match that is shorter than the real one, for the sake of the suite's time.
 SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 2\npause = 0.1\nteleop = 2\n"

@@ -6,5 +6,5 @@ depends on it (`tests/test_compat_*.py`). To support a new version of a library,
 pass. `CONTRIBUTING.md` lists the steps.
 
 Three modules depend on how libraries behave: `real_time_devices` (phoenix6), `rev_noise` (REV), and `library_output`
-(what they print).
+(what they print). `object_hashes` gives the objects of these libraries hashes that repeat.
 """

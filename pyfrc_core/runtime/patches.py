@@ -21,6 +21,7 @@ import wpilib
 import wpilib.simulation
 
 from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
+from ..compat.object_hashes import hash_by_number, object_base
 from ..compat.wpilib_private import LOOP_FUNCTION
 from . import cooperative, data_logs, driver_station, locks, robot_stack, udp_ports
 from .clock import KICKOFF as KICKOFF
@@ -93,6 +94,7 @@ class Patches:
             *robot_stack.patches(lambda: self._files),
             *data_logs.patches(lambda: None if active_run.run is None else active_run.run.data_logs),
             *udp_ports.patches(),
+            Patch(object_base(), "__hash__", hash_by_number),
         ]
 
     def _time_functions(self) -> list[Patch]:

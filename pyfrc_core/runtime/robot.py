@@ -16,6 +16,7 @@ from typing import Any, Protocol
 import ntcore
 import wpilib
 
+from ..compat.object_hashes import restart_numbers
 from ..compat.wpilib_private import MAGIC_SIMULATION_INIT
 from ..compat.wpilib_threads import end_watchdog_thread
 from ..hal import HalData, devices_exist, modes, timing
@@ -129,6 +130,7 @@ class RobotRun:
     def open(self) -> None:
         """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
         deferred_imports.import_all()
+        restart_numbers()
         self._closing.enter_context(active_run.set_to(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
         ntcore.NetworkTableInstance.getDefault().startLocal()

@@ -1,0 +1,58 @@
+"""Hashes of WPILib's and vendors' objects that are the same in every run.
+
+Python hashes an object by its address in memory, unless its class says otherwise. Addresses differ from run to run, and
+the hashes determine the order of a set. commands2 keeps the commands of a race group in a set: of ``a.until(b)``, some
+runs executed the command first and others the condition, and a command that ended one packet earlier was the result.
+
+All classes of WPILib's bindings, of vendors' C++ libraries and of commands2 derive from one class of pybind11's, which
+is given a hash that counts. The numbers begin again with each run, so the same program gives its objects the same ones.
+Objects of other classes (a plain ``class Module:``) keep the hashes that depend on their addresses.
+"""
+
+from __future__ import annotations
+
+import itertools
+import weakref
+from typing import Any
+
+
+class _Number(weakref.ref[Any]):
+    """The number of an object, for as long as the object exists. The bindings' objects have no attributes."""
+
+    __slots__ = ("address", "number")
+
+    address: int
+    number: int
+
+
+_numbered: dict[int, _Number] = {}  # by the addresses of the objects
+_counter = itertools.count()
+
+
+def object_base() -> type:
+    """Return the class that all classes of WPILib's bindings derive from."""
+    import wpiutil
+
+    base: type = wpiutil.Sendable.__mro__[-2]  # the last one is `object`
+    return base
+
+
+def hash_by_number(self: Any) -> int:
+    """Return the number of an object: how many others were hashed before it in this run. To be used as ``__hash__``."""
+    address = id(self)
+    found = _numbered.get(address)
+    if found is None:
+        found = _Number(self, _forget)
+        found.address, found.number = address, next(_counter)
+        _numbered[address] = found
+    return found.number
+
+
+def restart_numbers() -> None:
+    """Begin again with 0 for new objects. Objects that have a number keep it: it may be in use in a set."""
+    global _counter
+    _counter = itertools.count()
+
+
+def _forget(gone: _Number, numbered: dict[int, _Number] = _numbered) -> None:
+    numbered.pop(gone.address, None)
