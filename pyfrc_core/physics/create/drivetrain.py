@@ -10,9 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from .can_devices import CanMotor
+from .motors import Motor
 from .names import Name
 from .sticks import FORWARD_AXES, Axis
-from .survey import Encoder, Motor, Survey
+from .survey import Encoder, Survey
+from .swerve_modules import Module
 
 
 @dataclass(frozen=True)
@@ -54,11 +57,13 @@ class Mecanum:
 class Swerve:
     """A swerve drive: four wheels with a drive motor and a steering motor each.
 
-    Their joint effect cannot be observed.
+    On other motor controllers, their joint effect cannot be observed.
     """
 
     drive: list[Motor]
     steer: list[Motor]
+    #: Its modules on vendors' motor controllers, whose joint effect vendors' simulations show; empty for others.
+    modules: list[Module] = field(default_factory=list)
 
 
 #: The corners in the order in which pyfrc's drivetrains take their motors.
@@ -73,6 +78,8 @@ class DrivetrainLayout:
     :param swerve: the motors of a swerve drive, by their names
     :param encoders: the encoders of the wheels, by side or corner
     :param mechanisms: the other motors with an encoder, each with its encoder
+    :param can_mechanisms: the other motors on vendors' motor controllers, which have encoders of their own
+    :param duty_cycle: the channels of absolute encoders, by the path of the motor that turns each
     :param undriven: motors and encoders whose purpose is unknown
     :param assumptions: sentences about assumptions
     """
@@ -81,21 +88,27 @@ class DrivetrainLayout:
     swerve: Swerve | None = None
     encoders: dict[str, list[Encoder]] = field(default_factory=dict)
     mechanisms: list[tuple[Motor, Encoder]] = field(default_factory=list)
+    can_mechanisms: list[CanMotor] = field(default_factory=list)
+    duty_cycle: dict[str, int] = field(default_factory=dict)
     undriven: list[Motor | Encoder] = field(default_factory=list)
     assumptions: list[str] = field(default_factory=list)
 
 
 def find_layout(found: Survey) -> DrivetrainLayout:
     """Identify the parts of the robot, as far as names and joysticks allow."""
-    layout = DrivetrainLayout(swerve=_swerve(found.motors))
+    layout = DrivetrainLayout(swerve=_swerve(found))
+    layout.assumptions += found.swerve.assumptions
     if layout.swerve is None and not any(motor.name.says_swerve for motor in found.motors):
         layout.drivetrain = _Finder(found, layout.assumptions).find()
     _assign_encoders(found, layout)
     return layout
 
 
-def _swerve(motors: list[Motor]) -> Swerve | None:
-    drive, steer = ([motor for motor in motors if motor.name.task == task] for task in ("drive", "steer"))
+def _swerve(found: Survey) -> Swerve | None:
+    if found.swerve.modules:
+        modules = found.swerve.modules
+        return Swerve([module.drive for module in modules], [module.steer for module in modules], modules)
+    drive, steer = ([motor for motor in found.motors if motor.name.task == task] for task in ("drive", "steer"))
     return Swerve(drive, steer) if len(drive) == len(steer) == len(CORNERS) else None
 
 
@@ -277,7 +290,9 @@ def _opposite(one: Mapping[str, int], other: Mapping[str, int]) -> bool:
 
 
 def _assign_encoders(found: Survey, layout: DrivetrainLayout) -> None:
-    driving = layout.drivetrain.motors if layout.drivetrain else []
+    driving: list[Motor] = list(layout.drivetrain.motors) if layout.drivetrain else []
+    if layout.swerve is not None and layout.swerve.modules:
+        driving += [*layout.swerve.drive, *layout.swerve.steer]
     others = [motor for motor in found.motors if motor not in driving]
     free = list(found.encoders)
 
@@ -300,7 +315,19 @@ def _assign_encoders(found: Survey, layout: DrivetrainLayout) -> None:
     single = layout.drivetrain is None and len(others) == len(free) == 1
     if single and not (others[0].name.purpose and free[0].name.purpose):
         pair(others[0], free[0])
-    layout.undriven = [*others, *free]
+    layout.can_mechanisms = [motor for motor in others if isinstance(motor, CanMotor)]
+    _assign_duty_cycle(found, layout)
+    layout.undriven = [*(motor for motor in others if not isinstance(motor, CanMotor)), *free]
+
+
+def _assign_duty_cycle(found: Survey, layout: DrivetrainLayout) -> None:
+    for name, channel in found.duty_cycle:
+        fitting = [motor for motor in layout.can_mechanisms if name.purpose & motor.name.purpose]
+        if fitting:
+            turning = max(fitting, key=lambda motor: _likeness(motor.name, name))
+            layout.duty_cycle.setdefault(turning.path, channel)
+        if not fitting or layout.duty_cycle[turning.path] != channel:
+            found.others.append(f"digital channel {channel} ({name})")
 
 
 def _likeness(motor: Name, encoder: Name) -> tuple[int, bool, bool, bool]:

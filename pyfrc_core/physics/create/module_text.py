@@ -7,7 +7,8 @@ import re
 from keyword import kwlist
 from unicodedata import normalize
 
-from .survey import Encoder, Motor
+from .motors import Motor
+from .survey import Encoder
 
 
 class ModuleText:
@@ -16,6 +17,9 @@ class ModuleText:
     def __init__(self) -> None:
         self.imports: set[str] = set()
         self.sims: set[str] = set()
+        #: The names from `pyfrc.physics.can_motors`, and whether wpimath's `DCMotor` is used.
+        self.from_can_motors: set[str] = set()
+        self.needs_dc_motor = False
         self.numbers: list[str] = []
         self.setup: list[str] = []
         self.update: list[str] = []

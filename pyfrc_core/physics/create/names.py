@@ -125,38 +125,58 @@ class NamedDevice(NamedTuple):
     thing: Any
 
 
-def find_devices(robot: Any, files: RobotFiles) -> dict[Place, NamedDevice]:
-    """Return the robot's devices with their names in its code; the shortest name where there are several.
+class Reached(NamedTuple):
+    """An object that the robot's code holds.
+
+    :param path: the names of the attributes that lead to it
+    :param expression: the Python expression for it, from the name ``robot``; empty if there is none
+    """
+
+    path: tuple[str, ...]
+    thing: Any
+    expression: str
+
+
+def find_objects(robot: Any, files: RobotFiles) -> list[Reached]:
+    """Return what the robot's code holds, the shortest path first.
 
     The search covers the robot's attributes, those of the project's own objects, lists and dicts of them, and the
-    variables of the project's modules. It calls only methods of devices that return a channel.
+    variables of the project's modules. It calls nothing.
+    """
+    return list(_reachable(robot, files))
+
+
+def find_devices(objects: Iterable[Reached]) -> dict[Place, NamedDevice]:
+    """Return the robot's devices with their names in its code; the shortest name where there are several.
+
+    Only methods of devices that return a channel are called.
     """
     found: dict[Place, NamedDevice] = {}
-    for path, thing in _reachable(robot, files):
+    for path, thing, _ in objects:
         for place, suffix in _places(thing):
             found.setdefault(place, NamedDevice(Name((*path[:-1], path[-1] + suffix)), thing))
     return found
 
 
-def _reachable(robot: Any, files: RobotFiles) -> Iterator[tuple[tuple[str, ...], Any]]:
+def _reachable(robot: Any, files: RobotFiles) -> Iterator[Reached]:
     modules = [
         module
         for module in list(sys.modules.values())
         if files.is_robot_code(str(getattr(module, "__file__", None) or ""))
     ]
-    waiting: deque[tuple[tuple[str, ...], Any]] = deque([((), robot), *(((), module) for module in modules)])
+    waiting: deque[Reached] = deque([Reached((), robot, "robot"), *(Reached((), module, "") for module in modules)])
     seen = {id(robot), *map(id, modules)}
     ours = {module.__name__ for module in modules}
     while waiting:
-        path, owner = waiting.popleft()
-        for name, value in _parts(owner, ours):
+        path, owner, expression = waiting.popleft()
+        for name, value, access in _parts(owner, ours):
             if id(value) in seen or isinstance(value, (str, bytes, int, float, type(None))):
                 continue
             seen.add(id(value))
-            here = (*path, name)
-            yield here, value
-            if len(here) < _DEPTH and _is_looked_into(value, ours):
-                waiting.append((here, value))
+            here = Reached((*path, name), value, expression + access if expression and access else "")
+            yield here
+            if len(here.path) < _DEPTH and _is_looked_into(value, ours):
+                waiting.append(here)
 
 
 def _is_looked_into(value: Any, ours: set[str]) -> bool:
@@ -166,17 +186,22 @@ def _is_looked_into(value: Any, ours: set[str]) -> bool:
     return any(base.__module__ in ours for base in owner.__mro__)
 
 
-def _parts(owner: Any, ours: set[str]) -> Iterable[tuple[str, Any]]:
+def _parts(owner: Any, ours: set[str]) -> Iterable[tuple[str, Any, str]]:
+    """Return the name and value of each part, and how Python code gets it from its owner; empty if it cannot."""
     if isinstance(owner, dict):
-        return [(f"[{key}]", value) for key, value in list(owner.items())[:_PARTS]]
-    if isinstance(owner, (list, tuple, set)):
-        return [(f"[{index}]", value) for index, value in enumerate(list(owner)[:_PARTS])]
+        items = list(owner.items())[:_PARTS]
+        return [(f"[{key}]", value, f"[{key!r}]" if type(key) in (str, int) else "") for key, value in items]
+    if isinstance(owner, (list, tuple)):
+        return [(f"[{index}]", value, f"[{index}]") for index, value in enumerate(owner[:_PARTS])]
+    if isinstance(owner, set):
+        return [(f"[{index}]", value, "") for index, value in enumerate(list(owner)[:_PARTS])]
     parts = dict(getattr(owner, "__dict__", {}))
     for base in () if isinstance(owner, type) else type(owner).__mro__:
         if base.__module__ in ours:
             for name, value in vars(base).items():
                 parts.setdefault(name, value)
-    return [(name, value) for name, value in parts.items() if not name.startswith("__")]
+    plain = [(name, value) for name, value in parts.items() if not name.startswith("__")]
+    return [(name, value, f".{name}" if name.isidentifier() else "") for name, value in plain]
 
 
 def _places(thing: Any) -> Iterator[tuple[Place, str]]:

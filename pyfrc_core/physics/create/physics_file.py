@@ -6,11 +6,14 @@ import re
 from textwrap import wrap
 
 from ...errors import PyfrcError
+from . import can_text
+from .can_devices import CanMotor
 from .drivetrain import CORNERS, DrivetrainLayout, Mecanum, Tank
 from .module_text import ModuleText, quoted
+from .motors import Motor
 from .names import one_line
 from .report import listed, notes
-from .survey import Encoder, Gyro, Motor, Survey
+from .survey import Encoder, Gyro, Survey
 
 _HEAD = '''"""The physics of this robot: how its motors change its sensors and its position on the field.
 
@@ -22,7 +25,7 @@ robot: replace them with your own.
 
 _TANK_NUMBERS = """
 # The drivetrain. Other motors are in pyfrc.physics.motor_cfgs too, such as MOTOR_CFG_NEO.
-MOTOR = motor_cfgs.MOTOR_CFG_CIM
+MOTOR = motor_cfgs.{config}
 MOTORS_PER_SIDE = {per_side}
 GEARING = 10.71  # turns of a motor for one turn of the wheels
 MASS = 110 * units.lbs  # with battery and bumpers
@@ -103,8 +106,16 @@ def physics_text(found: Survey, layout: DrivetrainLayout) -> str:
         _tank(text, drivetrain, layout, found.gyros)
     elif isinstance(drivetrain, Mecanum):
         _mecanum(text, drivetrain, layout, found.gyros)
+    elif layout.swerve is not None and layout.swerve.modules:
+        can_text.add_swerve(text, layout.swerve.modules)
+        _gyros(text, found.gyros, "math.degrees(speeds.omega * tm_diff)")
     for motor, encoder in layout.mechanisms:
-        _mechanism(text, motor, encoder)
+        if isinstance(motor, CanMotor):
+            can_text.add_mechanism(text, motor, encoder, None)
+        else:
+            _mechanism(text, motor, encoder)
+    for motor in layout.can_mechanisms:
+        can_text.add_mechanism(text, motor, None, layout.duty_cycle.get(motor.path))
     return checked(_assembled(text, notes(found, layout)))
 
 
@@ -129,9 +140,12 @@ def _assembled(text: ModuleText, remarks: list[str]) -> str:
     numbers = "".join(text.numbers)
     imports = ["import math\n"] if any("math." in part for part in (numbers, *text.update)) else []
     sims = f"from wpilib.simulation import {', '.join(sorted(text.sims))}\n" if text.sims else ""
-    imports.append(f"import wpilib\n{sims}")
-    ours = sorted({"from pyfrc.physics.core import PhysicsInterface", *text.imports}, key=_import_order)
-    imports.append("\n".join(ours) + "\n")
+    plant = "from wpimath.system.plant import DCMotor\n" if text.needs_dc_motor else ""
+    imports.append(f"import wpilib\n{sims}{plant}")
+    names = ", ".join(sorted(text.from_can_motors))
+    ours = {"from pyfrc.physics.core import PhysicsInterface", *text.imports}
+    ours |= {f"from pyfrc.physics.can_motors import {names}"} if names else set()
+    imports.append("\n".join(sorted(ours, key=_import_order)) + "\n")
     comments = [wrap(one_line(remark), 98, initial_indent="# ", subsequent_indent="# ") for remark in remarks]
     engine = _ENGINE.format(setup=_indented(text.setup), update=_indented(text.update))
     return "".join(
@@ -159,14 +173,18 @@ def _indented(lines: list[str]) -> str:
 
 def _tank(text: ModuleText, tank: Tank, layout: DrivetrainLayout, gyros: list[Gyro]) -> None:
     text.imports |= {"from pyfrc.physics import motor_cfgs, tankmodel", "from pyfrc.physics.units import units"}
-    text.numbers.append(_TANK_NUMBERS.format(per_side=max(len(tank.left.motors), len(tank.right.motors))))
+    per_side = max(_count(tank.left.motors), _count(tank.right.motors))
+    text.numbers.append(_TANK_NUMBERS.format(per_side=per_side, config=can_text.motor_config(tank.motors)))
+    text.numbers.append(can_text.wheel_numbers(tank.motors, in_units=True))
     outputs = {}
-    for side, motors in (("left", tank.left), ("right", tank.right)):
-        text.setup += ["", f"# {side.capitalize()}: {listed(motors.motors)}"]
-        if len(motors.motors) > 1:
+    wheels: list[tuple[str, str, int]] = []
+    for side, group in (("left", tank.left), ("right", tank.right)):
+        text.setup += ["", f"# {side.capitalize()}: {listed(group.motors)}"]
+        if len(group.motors) > 1:
             text.setup[-1] += ". Geared together, so one is enough."
-        sign = motors.forward if side == "left" else -motors.forward
-        outputs[side] = _signed(sign, text.motor(motors.motors[0], f"{side}_motor"))
+        output, names = can_text.wheel_motors(text, group.motors, f"{side}_motor")
+        outputs[side] = _signed(group.forward if side == "left" else -group.forward, output)
+        wheels += [(side, name, group.forward) for name in names]
     text.setup += [
         "",
         "self.drivetrain = tankmodel.TankModel.theory(",
@@ -195,19 +213,30 @@ def _tank(text: ModuleText, tank: Tank, layout: DrivetrainLayout, gyros: list[Gy
     for side, name in encoders:
         model = f"self.drivetrain.{side[0]}"
         text.update.append(f"self.{name}.turn_to({model}_position, {model}_velocity)")
+    if wheels:
+        text.update += ["", 'wheel = math.pi * WHEEL_DIAMETER.m_as("foot")  # from feet to turns of the wheels']
+    for side, name, sign in wheels:
+        turns, speed = (_signed(sign, f"self.drivetrain.{side[0]}_{what} / wheel") for what in ("position", "velocity"))
+        text.update.append(f"self.{name}.measure({turns}, {speed}, tm_diff)")
     _gyros(text, gyros, "math.degrees(moved.rotation().radians())")
+
+
+def _count(motors: list[Motor]) -> int:
+    return sum(motor.count if isinstance(motor, CanMotor) else 1 for motor in motors)
 
 
 def _mecanum(text: ModuleText, mecanum: Mecanum, layout: DrivetrainLayout, gyros: list[Gyro]) -> None:
     text.imports |= {"from pyfrc.physics import drivetrains", "from pyfrc.physics.units import units"}
-    text.numbers.append(_MECANUM_NUMBERS)
+    text.numbers += [_MECANUM_NUMBERS, can_text.wheel_numbers(mecanum.motors, in_units=False)]
     text.setup.append("")
     if any(len(wheel.motors) > 1 for wheel in mecanum.wheels.values()):
         text.setup.append("# Of motors that are geared together, one is enough.")
     values = []
+    on_can: list[tuple[str, str, int]] = []
     for corner in CORNERS:
         wheel = mecanum.wheels[corner]
-        output = text.motor(wheel.motors[0], f"{corner}_motor")
+        output, controllers = can_text.wheel_motors(text, wheel.motors, f"{corner}_motor")
+        on_can += [(corner, name, wheel.forward) for name in controllers]
         names = [str(motor.name) for motor in wheel.motors if motor.name]
         if names:
             text.setup[-1] += f"  # {', '.join(names)}"
@@ -221,15 +250,27 @@ def _mecanum(text: ModuleText, mecanum: Mecanum, layout: DrivetrainLayout, gyros
         ")",
         "self.physics_controller.drive(speeds, tm_diff)",
     ]
-    if encoders:
+    if encoders or on_can:
         text.update += ["", "wheels = self.drivetrain.wheelSpeeds  # in metres per second"]
+    for corner, name, sign in on_can:
+        turns = text.name(f"{name}_turns")
+        text.setup.append(f"self.{turns} = 0.0")
+        speed = _signed(sign, f"{_wheel_speed(corner)} / WHEEL_CIRCUMFERENCE")
+        text.update += [
+            f"self.{turns} += {speed} * tm_diff",
+            f"self.{name}.measure(self.{turns}, {speed}, tm_diff)",
+        ]
     for corner, name in encoders:
         distance = text.name(f"{name}_distance")
         text.setup.append(f"self.{distance} = 0.0")
-        end, side = corner.split("_")
-        speed = f"wheels.{end}{side.capitalize()}"
+        speed = _wheel_speed(corner)
         text.update += [f"self.{distance} += {speed} * tm_diff", f"self.{name}.turn_to(self.{distance}, {speed})"]
     _gyros(text, gyros, "math.degrees(speeds.omega * tm_diff)")
+
+
+def _wheel_speed(corner: str) -> str:
+    end, side = corner.split("_")
+    return f"wheels.{end}{side.capitalize()}"
 
 
 def _wheel_encoders(text: ModuleText, layout: DrivetrainLayout) -> list[tuple[str, str]]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 
 from .drivetrain import CORNERS, DrivetrainLayout, Mecanum, MotorGroup, Tank
-from .survey import Motor, Survey
+from .motors import Motor
+from .survey import Survey
 
 
 def listed(motors: list[Motor]) -> str:
@@ -14,6 +15,8 @@ def listed(motors: list[Motor]) -> str:
 
 def advice(layout: DrivetrainLayout) -> list[str]:
     """Return the remaining work until the robot drives."""
+    if layout.swerve is not None and layout.swerve.modules:
+        return []
     if layout.swerve is not None:
         return [
             "The wheels of a swerve drive cannot be identified by joystick inputs: the robot does not move. To drive "
@@ -40,7 +43,8 @@ def notes(found: Survey, layout: DrivetrainLayout) -> list[str]:
     if found.problem:
         sentences.append(f"The robot's joysticks could not be tested: {found.problem.splitlines()[0]}")
     sentences += advice(layout)
-    still = found.gyros if layout.drivetrain is None else []
+    moves = layout.drivetrain is not None or (layout.swerve is not None and layout.swerve.modules)
+    still = [] if moves else found.gyros
     left_out = [*map(str, [*layout.undriven, *still]), *found.others]
     left_out = [device for device in left_out if not _PART.match(device)]
     if left_out:
@@ -60,6 +64,12 @@ def summary(layout: DrivetrainLayout, found: Survey) -> list[str]:
         lines.append("mecanum drive")
         wheels = {corner.replace("_", " "): drivetrain.wheels[corner] for corner in CORNERS}
         lines += [f"  {name}: {listed(wheel.motors)}{_reversed(wheel)}" for name, wheel in wheels.items()]
+    elif layout.swerve is not None and layout.swerve.modules:
+        lines.append("swerve drive")
+        lines += [
+            f"  {module.drive} drives, {module.steer} steers: {module.x:+.2f} m, {module.y:+.2f} m"
+            for module in layout.swerve.modules
+        ]
     elif layout.swerve is not None:
         lines += ["swerve drive, which you need to complete"]
         lines += [f"  drive: {listed(layout.swerve.drive)}", f"  steering: {listed(layout.swerve.steer)}"]
@@ -69,6 +79,7 @@ def summary(layout: DrivetrainLayout, found: Survey) -> list[str]:
         lines += [f"  {wheel.replace('_', ' ')} encoder: {encoder}" for encoder in encoders]
     lines += [f"gyro: {gyro}" for gyro in found.gyros]
     lines += [f"{motor} with {encoder}" for motor, encoder in layout.mechanisms]
+    lines += [f"mechanism: {motor}" for motor in layout.can_mechanisms]
     return lines
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from typing import TypeVar
 
 from ...hal import HalData, modes
 from ...runtime.robot import RobotRun
@@ -16,11 +17,13 @@ Responses = dict[Axis, dict[str, float]]
 
 Output = Callable[[HalData], float]
 
+_Seen = TypeVar("_Seen")
+
 #: The axes for forward and backward: of a joystick or a gamepad's left stick, and of its right stick.
 FORWARD_AXES = (1, 5)
 
 _PORTS, _AXES = 6, 6
-_PUSHED_US, _STEADY_US = 200_000, 100_000
+_PUSHED_US, _STEADY_US, _DRIVING_US = 200_000, 100_000, 1_000_000
 #: How often to wait for motors to stop, for code that limits their acceleration.
 _PATIENCE = 40
 #: Smaller changes of an output are not a reaction.
@@ -114,3 +117,29 @@ class _Trial:
 
     def _read(self) -> dict[str, float]:
         return {name: output(self._hal_data) for name, output in self._outputs.items()}
+
+
+def while_driving_forward(run: RobotRun, is_driving: Callable[[], bool], look: Callable[[], _Seen]) -> _Seen | None:
+    """Push one forward axis after the other for a second, in teleop.
+
+    :param is_driving: whether the robot drives
+    :returns: what `look` returns while the first such axis drives the robot; None if none does
+    """
+    # Robots that drive relative to the field drive the other way in the red alliance.
+    run.hal_data["alliance_station"] = "blue1"
+    modes.set_mode(enabled=True)
+    try:
+        for port in range(_PORTS):
+            for index in FORWARD_AXES:
+                axes = run.hal_data["joysticks"][port]["axes"]
+                axes[index] = -1.0
+                run.run_until(run.clock.now_us + _DRIVING_US)
+                seen = look() if is_driving() else None
+                axes[index] = 0.0
+                run.run_until(run.clock.now_us + _PUSHED_US)
+                if seen is not None or not run.alive:
+                    return seen
+        return None
+    finally:
+        modes.set_mode(enabled=False)
+        run.run_until(run.clock.now_us + _STEADY_US)

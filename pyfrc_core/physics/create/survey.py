@@ -22,8 +22,11 @@ from ...runtime.hang_detector import HangDetector
 from ...runtime.loading import load_robot
 from ...runtime.patches import patches
 from ...runtime.robot import RobotRun
-from .names import Name, NamedDevice, Place, find_devices, one_line
+from .can_devices import CanDevices, CanMotor, find_can_devices
+from .motors import Motor
+from .names import Name, NamedDevice, Place, find_devices, find_objects, one_line
 from .sticks import Responses, try_sticks
+from .swerve_modules import SwerveSurvey, find_swerve
 
 #: How long the robot stays disabled before its devices are counted: some are created in the first loop.
 _SETTLING_US = 100_000
@@ -32,39 +35,6 @@ _SETTLING_US = 100_000
 _LIMIT_US = 10_000_000_000
 
 _FAILURES = (Exception, SystemExit, TestRanTooLong)
-
-
-@dataclass(frozen=True)
-class Motor:
-    """A motor, and where its output can be read.
-
-    :param name: its name in the robot's code
-    :param channel: the PWM channel; None for a motor that appears as a SimDevice
-    :param device: the name of the SimDevice
-    :param value: the name of the SimDevice's value with the output
-    :param inverted: whether the robot has inverted it, if that is known
-    """
-
-    name: Name
-    channel: int | None = None
-    device: str = ""
-    value: str = ""
-    inverted: bool = False
-
-    @property
-    def path(self) -> str:
-        """Return the path of its output in `hal_data`."""
-        return f"pwm[{self.channel}].value" if self.channel is not None else f"CAN[{self.device}].{self.value}"
-
-    def __str__(self) -> str:
-        place = f"PWM {self.channel}" if self.channel is not None else one_line(self.device)
-        return f"{place} ({self.name})" if self.name else place
-
-    def output(self, hal_data: HalData) -> float:
-        """Return the output that the robot has set, from -1 to 1."""
-        if self.channel is not None:
-            return float(hal_data["pwm"][self.channel]["value"])
-        return float(hal_data["CAN"][self.device][self.value])
 
 
 @dataclass(frozen=True)
@@ -120,6 +90,10 @@ class Survey:
     motors: list[Motor] = field(default_factory=list)
     encoders: list[Encoder] = field(default_factory=list)
     gyros: list[Gyro] = field(default_factory=list)
+    #: The modules of a swerve drive on vendors' motor controllers.
+    swerve: SwerveSurvey = field(default_factory=lambda: SwerveSurvey([], []))
+    #: Absolute encoders at a digital input, by name and channel.
+    duty_cycle: list[tuple[Name, int]] = field(default_factory=list)
     #: Devices without known physics, as text.
     others: list[str] = field(default_factory=list)
     #: The names of the channels of each kind, for ``sim/config.json``.
@@ -150,9 +124,14 @@ def survey(project: Project, log: CrashLog) -> Survey:
                 run.run_until(run.clock.now_us + _SETTLING_US)
             except _FAILURES as error:
                 raise _of_robot_code(error, project) from error
-            found = list_devices(run.hal_data, find_devices(run.robot, project.files))
+            objects = find_objects(run.robot, project.files)
+            can = find_can_devices(objects)
+            found = list_devices(run.hal_data, find_devices(objects), can)
+            run.clock.before_packet.append(can.update)
             try:
-                found.responses = try_sticks(run, {motor.path: motor.output for motor in found.motors})
+                found.swerve = find_swerve(run, can.motors, objects)
+                if not found.swerve.modules:  # otherwise, what drives the robot is known
+                    found.responses = try_sticks(run, {motor.path: motor.output for motor in found.motors})
             except _FAILURES as error:
                 found.problem = str(_of_robot_code(error, project))
         finally:
@@ -178,7 +157,7 @@ def _of_robot_code(error: BaseException, project: Project) -> PyfrcError:
     )
 
 
-def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice]) -> Survey:
+def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice], can: CanDevices) -> Survey:
     """Return the devices that the robot has created in the HAL, with their names in its code."""
     found = Survey()
 
@@ -204,10 +183,16 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice]) -> Surve
         found.encoders.append(Encoder(name_of("encoder", index), index, channels, counts))
     for channel in _made(hal_data, "analog_gyro"):
         found.gyros.append(Gyro(name_of("analog_gyro", channel), channel))
+    found.motors += can.motors
     for device in hal_data["CAN"]:
+        if can.owns(device):
+            continue
         _add_sim_device(found, device, named)
     found.labels = _labels(found, named)
     for (key, channel), device in named.items():
+        if isinstance(device.thing, wpilib.DutyCycleEncoder):
+            found.duty_cycle.append((device.name, channel))
+            continue
         kind = {"dio": "digital", "analog_in": "analog"}.get(key)
         if kind is not None and not isinstance(device.thing, (wpilib.Encoder, wpilib.AnalogGyro)):
             found.others.append(f"{kind} channel {channel} ({device.name})")
@@ -234,6 +219,7 @@ class _GyroKind:
 _GYROS = (
     _GyroKind(re.compile(r"Gyro:ADXRS450\[\d+\]"), "angle_x", "rate_x"),
     _GyroKind(re.compile(r"Gyro:ADIS16(448|470)\[\d+\]"), "gyro_angle_z", "gyro_rate_z", clockwise=False),
+    _GyroKind(re.compile(r"CANGyro:Pigeon 2 \(v6\)\[\d+\]"), "rawYawInput", "angularVelZ", clockwise=False),
     _GyroKind(re.compile(r"navX-Sensor\[\d+\]"), "Yaw", "Rate", wraps=True),
 )
 
@@ -268,13 +254,13 @@ def _one_output_each(found: Survey) -> list[Motor]:
     reactions = {path: abs(value) for group in found.responses.values() for path, value in group.items()}
     chosen: dict[str, Motor] = {}
     for motor in found.motors:
-        if motor.channel is not None:
+        if motor.channel is not None or isinstance(motor, CanMotor):
             chosen[motor.path] = motor
             continue
         claim, before = _claim(motor, reactions), chosen.get(motor.device)
         if any(claim) and (before is None or claim > _claim(before, reactions)):
             chosen[motor.device] = motor
-    missed = {motor.device: motor for motor in found.motors if motor.channel is None and motor.device not in chosen}
+    missed = {motor.device: motor for motor in found.motors if motor.path not in chosen and motor.device not in chosen}
     found.others += map(str, missed.values())
     return list(chosen.values())
 

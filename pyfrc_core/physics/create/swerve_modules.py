@@ -1,0 +1,125 @@
+"""Identify the modules of a swerve drive on the vendors' motor controllers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from wpimath.kinematics import SwerveDrive4Kinematics
+
+from ...runtime.robot import RobotRun
+from .can_devices import CanMotor
+from .names import Reached
+from .sticks import while_driving_forward
+
+#: The usual order of the modules, by the signs of their places in front of and to the left of the centre.
+_CORNERS = {
+    ("front", "left"): (1, 1),
+    ("front", "right"): (1, -1),
+    ("rear", "left"): (-1, 1),
+    ("rear", "right"): (-1, -1),
+}
+#: Half the distance between two wheels, in metres, if the robot's code does not have it.
+_HALF = 0.27
+
+
+@dataclass(frozen=True)
+class Module:
+    """A wheel with its two motors.
+
+    :param x: its place in front of the robot's centre, in metres
+    :param y: its place to the left of the centre
+    :param ahead: what its absolute encoder measures when the wheel points ahead, in turns
+    """
+
+    drive: CanMotor
+    steer: CanMotor
+    x: float
+    y: float
+    ahead: float = 0.0
+
+
+@dataclass(frozen=True)
+class SwerveSurvey:
+    """The modules, and sentences about assumptions."""
+
+    modules: list[Module]
+    assumptions: list[str]
+
+
+def find_swerve(run: RobotRun, motors: list[CanMotor], objects: Iterable[Reached]) -> SwerveSurvey:
+    """Return the modules, if there are four. The robot is driven forward to see where the wheels point then."""
+    drive = [motor for motor in motors if motor.name.task == "drive"]
+    steer = [motor for motor in motors if motor.name.task == "steer"]
+    if len(drive) != len(_CORNERS) or len(steer) != len(_CORNERS):
+        return SwerveSurvey([], [])
+    pairs = [(each, _steering(each, index, steer)) for index, each in enumerate(drive)]
+    if len({other.path for _, other in pairs}) != len(pairs):
+        return SwerveSurvey([], [])
+    assumptions: list[str] = []
+    modules = _placed(pairs, objects, assumptions)
+    return SwerveSurvey(_measured(run, modules, assumptions), assumptions)
+
+
+def _steering(drive: CanMotor, index: int, steer: list[CanMotor]) -> CanMotor:
+    for part in ("owner", "corner"):
+        same = [motor for motor in steer if _part(motor, part) == _part(drive, part)]
+        if len(same) == 1:
+            return same[0]
+    return steer[index]
+
+
+def _part(motor: CanMotor, part: str) -> object:
+    return motor.name.owner if part == "owner" else (motor.name.end, motor.name.side)
+
+
+def _placed(pairs: list[tuple[CanMotor, CanMotor]], objects: Iterable[Reached], assumptions: list[str]) -> list[Module]:
+    """Return the modules with their places, from the robot's kinematics if it has one."""
+    known = next((each.thing for each in objects if isinstance(each.thing, SwerveDrive4Kinematics)), None)
+    if known is None:
+        places = [(x * _HALF, y * _HALF) for x, y in _CORNERS.values()]
+        assumptions.append(f"It was assumed that the wheels are {2 * _HALF:g} m apart.")
+    else:
+        places = [(place.X(), place.Y()) for place in known.getModules()]
+    corners = [(drive.name.end, drive.name.side) for drive, _ in pairs]
+    by_corner = {(_sign(x), _sign(y)): (x, y) for x, y in places}
+    if set(corners) == set(_CORNERS) and len(by_corner) == len(places):
+        places = [by_corner[_CORNERS[str(end), str(side)]] for end, side in corners]
+    else:
+        order = "of the robot's kinematics" if known else "front left, front right, rear left, rear right"
+        assumptions.append(f"It was assumed that the modules are in the order {order}.")
+    return [Module(drive, steer, x, y) for (drive, steer), (x, y) in zip(pairs, places, strict=True)]
+
+
+def _sign(value: float) -> int:
+    return (value > 0) - (value < 0)
+
+
+def _measured(run: RobotRun, modules: list[Module], assumptions: list[str]) -> list[Module]:
+    """Return the modules with their encoders' values while the robot drives straight ahead."""
+
+    def is_driving() -> bool:
+        return all(abs(_speed(module.drive)) > 0.05 for module in modules)
+
+    def look() -> list[float]:
+        return [_turns(module.steer) + (0.0 if _speed(module.drive) > 0 else 0.5) for module in modules]
+
+    seen = while_driving_forward(run, is_driving, look)
+    if seen is None:
+        assumptions.append(
+            "No stick drove all four wheels: it was assumed that the wheels point ahead where their encoders measure 0."
+        )
+        return modules
+    # A wheel that is nearly there has not come to rest yet.
+    return [
+        Module(module.drive, module.steer, module.x, module.y, round(ahead, 2) % 1)
+        for module, ahead in zip(modules, seen, strict=True)
+    ]
+
+
+def _speed(motor: CanMotor) -> float:
+    return 0.0 if motor.live is None else motor.live.speed
+
+
+def _turns(motor: CanMotor) -> float:
+    return 0.0 if motor.live is None else motor.live.turns
