@@ -189,6 +189,22 @@ def test_the_commands_in_the_measuring_guide_work(project) -> None:
         assert (project.path / file).is_file(), file
 
 
+def test_the_examples_of_a_slow_and_a_fast_robot_work(make_project) -> None:
+    document = "docs/speed.md"
+    project = make_project(files(document))
+    medians = {}
+    for command in commands(document):
+        program, *arguments = shlex.split(command)
+        assert program == "pyfrc"
+        directory = arguments[arguments.index("--project") + 1]
+        (project.path / directory / "pyproject.toml").write_text(SHORT_MATCHES, "utf-8")
+        result = project.run(*arguments)
+        assert result.code == 0, result.output
+        (median,) = re.findall(r"^  MyRobot.teleopPeriodic +([0-9.]+) ms", result.stdout, re.MULTILINE)
+        medians[directory] = float(median)
+    assert medians["fast"] < medians["slow"]
+
+
 @pytest.mark.parametrize("command", commands("docs/testing.md") + commands("docs/physics.md"))
 def test_the_commands_in_the_guides_work(command: str, project) -> None:
     program, *arguments = shlex.split(command)

@@ -71,6 +71,7 @@ def test_the_report_groups_overruns_and_says_when_they_were() -> None:
     assert teleop in lines
     assert "MyRobot.teleopPeriodic robot.py:3 test 1 40.0 ms 39.0 ms 20 ms 9.50 s" in lines
     assert lines.index(teleop) + 2 == next(at for at, line in enumerate(lines) if line.startswith("Held up:"))
+    assert "Without that, 1 of these turns would have been in time." in lines
     assert lines[-1] == (
         "Cost of measuring: 3.0 ms for timing (0.30 µs a call), 2.0 ms for 1 sample; "
         "5% of the 100.0 ms that the robot took without it."

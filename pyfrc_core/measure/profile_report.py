@@ -158,7 +158,9 @@ def _overruns(figures: Figures) -> Iterator[str]:
         )
     yield from table(rows, left=3, left_at_end=1)
     if any(overrun.held_up_ns > overrun.took_ns / 2 for overrun in figures.overruns):
+        in_time = sum(overrun.took_ns - overrun.held_up_ns <= overrun.period_ns for overrun in figures.overruns)
         yield "  Held up: the computer ran another program then, or the robot's code waited for something outside."
+        yield f"  Without that, {in_time:,} of these turns would have been in time."
 
 
 def _grouped(overruns: Iterable[Overrun]) -> list[list[Overrun]]:
