@@ -197,6 +197,14 @@ def test_the_work_is_linear_in_the_files_of_a_directory(robot: LocalRobot, agent
         assert many - some <= 2.2 * (some - few) + 200, counts
 
 
+def test_the_same_work_has_the_same_count(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
+    """However busy the machine is: the comparisons of counts rely on it."""
+    project = large_project(tmp_path / "project", 40)
+    robots = [robot.copy(robot.root.with_name(str(number))) for number in range(4)]
+    counts = {calls_of(there, agents, lambda agent: agent.deploy(project, REQUEST)) for there in robots}
+    assert len(counts) == 1, counts
+
+
 def test_an_unchanged_file_is_read_once(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
     """Only the program in place is looked through, where it has all: earlier releases cost nothing."""
     project = large_project(tmp_path / "project", 100)

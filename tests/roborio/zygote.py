@@ -19,9 +19,11 @@ import sys
 import tempfile
 import traceback
 import zlib
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from pyfrc_core.deploy.agent import host, program, releases, robot_paths, serve, start_monitor, system, wire
+from pyfrc_core.deploy.agent import compiling, host, program, releases, robot_paths, serve, start_monitor, system, wire
+from pyfrc_core.deploy.agent.activity import Activity
 
 _CHANGES = {
     "os.rename",
@@ -35,6 +37,8 @@ _CHANGES = {
     "os.fork",
 }
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT
+#: In seconds.
+_LONGER_THAN_A_TEST = 3600.0
 
 
 class Steps:
@@ -92,14 +96,45 @@ class Steps:
 
 
 class Calls:
-    """Counts the calls that an agent makes, of functions in Python and in C."""
+    """Counts the calls that an agent makes, of functions in Python and in C.
+
+    Other processes and threads, and the wall clock, do not change the count: a busy machine gives the same.
+    """
 
     def __init__(self) -> None:
         self.count = 0
+        wait = compiling.Compiler._wait
+
+        def wait_for_all(compiler: compiling.Compiler, activity: Activity) -> Sequence[str]:
+            self._uncounted(wait_for_end)(compiler)  # all that was compiled is read at once then
+            return wait(compiler, activity)
+
+        compiling.Compiler._wait = wait_for_all  # type: ignore[method-assign]
+        wire.Wire._read = self._uncounted(wire.Wire._read)  # type: ignore[method-assign]  # as many reads as come
+        Activity.wait_for = self._uncounted(Activity.wait_for)  # type: ignore[method-assign]
+        serve.Activity = functools.partial(serve.Activity, pause=_LONGER_THAN_A_TEST)  # type: ignore[misc,assignment]
         sys.setprofile(self._count)
+
+    def _uncounted(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Return the function without the calls that it makes."""
+
+        def call(*args: Any) -> Any:
+            sys.setprofile(None)
+            try:
+                return function(*args)
+            finally:
+                sys.setprofile(self._count)
+
+        return call
 
     def _count(self, frame: object, event: str, argument: object) -> None:
         self.count += event in ("call", "c_call")
+
+
+def wait_for_end(compiler: compiling.Compiler) -> None:
+    """Wait until the compiling process has ended, and leave its exit to be collected."""
+    if compiler._child is not None:
+        os.waitid(os.P_PID, compiler._child, os.WEXITED | os.WNOWAIT)
 
 
 def agent(connection: int, alive: int, options: dict[str, Any]) -> None:
