@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import warm_processes
 import warm_start
 from conftest import MakeProject, RobotProject
 from sim_robots import settle, wait
@@ -180,6 +181,29 @@ def test_a_warm_command_has_a_warm_host(make_project: MakeProject) -> None:
         f"started by {Path(__file__).with_name('warm_processes.py')}\n"
         in project.run("sim", "--ui", "none", "--seconds", "0.1").stdout
     )
+
+
+def test_a_deploys_check_starts_warm(make_project: MakeProject, tmp_path: Path) -> None:
+    """Its hash seed is any, where the warm process has a fixed one."""
+    robot = f"""
+        import os
+
+        import wpilib
+
+        with open({str(tmp_path)!r} + "/found", "w") as file:
+            print("warm_processes.py" in open(f"/proc/{{os.getppid()}}/cmdline").read(), file=file)
+
+        class MyRobot(wpilib.TimedRobot):
+            pass
+        """
+    project = make_project({"robot.py": robot})
+    assert "no robot found" in project.run("deploy", "--skip-tests", "--robot", "127.0.0.1:1").stderr.lower()
+    assert (tmp_path / "found").read_text() == "True\n"
+
+
+@pytest.mark.parametrize(("seed", "is_warm"), [("0", True), ("1", False), ("random", False)])
+def test_a_seed_that_is_asked_for_is_the_seed(seed: str, is_warm: bool) -> None:
+    assert warm_processes._the_same({"PYTHONHASHSEED": seed}, {"PYTHONHASHSEED": "0"}) is is_warm
 
 
 def test_what_is_looked_at_apart_does_the_same_as_in_a_new_interpreter(

@@ -188,6 +188,8 @@ def _the_same(environment: Mapping[str, str], started_with: Mapping[str, str]) -
     if any(name.startswith(_MEASURING) for name in environment):
         return False
     names = (environment.keys() | started_with.keys()) - _NOT_COMPARED
+    if "PYTHONHASHSEED" not in environment:  # any seed might be the new interpreter's
+        names.discard("PYTHONHASHSEED")
     return all(environment.get(name) == started_with.get(name) for name in names if name.startswith(READ_AT_START))
 
 

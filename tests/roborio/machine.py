@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import os
+import shlex
 import shutil
 import signal
 import socket
@@ -113,8 +114,8 @@ class Roborio:
         #: Whether what the robot program prints is printed here.
         self.echo = False
         try:
-            prefix, executable = _interpreter(python)
-            self._holder = self._mount(disk_size, prefix)
+            prefix, executable, hidden = _interpreter(python)
+            self._holder = self._mount(disk_size, prefix, hidden)
             #: Its root directory, as it can be looked at from outside, also while it has no power.
             self.disk = Path(f"/proc/{self._holder.pid}/root{self._root}")
             self._install(wpilib, image, executable, password, authorized_key, kill_script)
@@ -246,7 +247,7 @@ class Roborio:
                 if self.echo:
                     print(piece.decode(errors="replace"), end="", flush=True)
 
-    def _mount(self, disk_size: str, prefix: Path | None) -> subprocess.Popen[bytes]:
+    def _mount(self, disk_size: str, prefix: Path | None, hidden: tuple[Path, ...]) -> subprocess.Popen[bytes]:
         root = self._root
         lines = ["set -e", f"mount -t tmpfs -o size={disk_size},mode=755 tmpfs {root}", f"cd {root}"]
         lines += ["mkdir usr dev proc run tmp home etc var .local"]
@@ -261,6 +262,8 @@ class Roborio:
         if prefix is not None:
             inner = str(prefix).lstrip("/")
             lines += [f"mkdir -p {inner}", f"mount --bind {prefix} {inner}", f"mount -o remount,ro,bind {inner}"]
+        inside = [shlex.quote(str(directory).lstrip("/")) for directory in hidden]
+        lines += [f"[ ! -d {each} ] || mount -t tmpfs -o ro tmpfs {each}" for each in inside]
         holder = subprocess.Popen(
             ["unshare", "-m", "--propagation", "private", "sh", "-c", "\n".join([*lines, "echo ready", "exec cat"])],
             stdin=subprocess.PIPE,
@@ -323,14 +326,19 @@ class Roborio:
 
 
 @functools.cache
-def _interpreter(python: str | Path | None) -> tuple[Path | None, Path | None]:
-    """The directory that a Python needs to be seen, if it is not below /usr, and its true file."""
+def _interpreter(python: str | Path | None) -> tuple[Path | None, Path | None, tuple[Path, ...]]:
+    """Return the directory that a Python needs to be seen, if it is not below /usr; its true file; its packages.
+
+    The robot has packages of its own. Starting a Python can cost more for this machine's packages than all else does.
+    """
     if python is None:
-        return None, None
-    question = "import os, sys; print(sys.base_prefix); print(os.path.realpath(sys.executable))"
+        return None, None, ()
+    question = "import os, site, sys; print(sys.base_prefix); print(os.path.realpath(sys.executable))"
+    question += "; print(*site.getsitepackages([sys.base_prefix]), sep='\\n')"
     said = subprocess.run([str(python), "-c", question], capture_output=True, text=True, check=True).stdout.splitlines()
-    prefix, executable = Path(said[0]).resolve(), Path(said[1])
-    return (None if prefix.is_relative_to("/usr") and not prefix.is_relative_to("/usr/local") else prefix), executable
+    prefix, executable, packages = Path(said[0]).resolve(), Path(said[1]), tuple(map(Path, said[2:]))
+    is_below_usr = prefix.is_relative_to("/usr") and not prefix.is_relative_to("/usr/local")
+    return None if is_below_usr else prefix, executable, packages
 
 
 def _crypted(password: str) -> str:
