@@ -68,6 +68,7 @@ class World:
         """Step through the match; yield for each packet: enabled, autonomous, whether the mode is new."""
         import physics
         import wpilib
+        from hal.simulation import notifyDriverStationNewData
         from wpilib.simulation import DriverStationSim, stepTimingAsync
 
         self._physics = physics.PhysicsEngine(Controller(), self._robot)
@@ -83,8 +84,7 @@ class World:
                 self._physics.update_sim(self._now, PERIOD)
                 DriverStationSim.setEnabled(enabled)
                 DriverStationSim.setAutonomous(autonomous)
-                DriverStationSim.notifyNewData()
-                wpilib.DriverStation.refreshData()
+                notifyDriverStationNewData()  # the robot's loop takes it in, as WPILib's and magicbot's do
                 yield enabled, autonomous, number == 0
 
 
@@ -109,12 +109,14 @@ class Periodic:
 
 def run_timed(robot: Any, periodic: Periodic) -> None:
     """Call what `TimedRobot` calls."""
+    import hal
     import wpilib
 
     # Python's WPILib has the base class's method under a name of its own.
     simulation_periodic = getattr(robot, "simulationPeriodic", robot._simulationPeriodic)
     robot.robotInit()
     for packet, (enabled, autonomous, is_new) in enumerate(World(robot).packets()):
+        wpilib.DriverStation.refreshData()
         mode = "disabled" if not enabled else "autonomous" if autonomous else "teleop"
         if is_new:
             getattr(robot, f"{mode}Init")()
@@ -122,7 +124,9 @@ def run_timed(robot: Any, periodic: Periodic) -> None:
         robot.robotPeriodic()
         wpilib.SmartDashboard.updateValues()
         wpilib.LiveWindow.updateValues()
+        hal.simPeriodicBefore()  # vendors' libraries register callbacks with it
         simulation_periodic()
+        hal.simPeriodicAfter()
         periodic.run(packet)
 
 
@@ -159,11 +163,14 @@ def main() -> None:
     sys.modules["__main__"].__file__ = str(project / "robot.py")  # WPILib finds the deploy directory beside it
     begin = time.process_time()
     import hal
+    import ntcore
     import wpilib
     from wpilib.simulation import pauseTiming
 
     hal.initialize(500, 0)
     pauseTiming()
+    # Or WPILib starts a server, whose threads send to nothing.
+    ntcore.NetworkTableInstance.getDefault().startLocal()
     import robot as program
 
     classes = [each for each in vars(program).values() if inspect.isclass(each) and each.__module__ == "robot"]
