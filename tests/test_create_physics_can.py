@@ -100,6 +100,9 @@ def test_closed_loops(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.5, autonomous=True, enabled=False)
         assert (robot.arm_encoder.getPosition(), robot.wrist_encoder.getPosition()) == (0, 0)
+        # An encoder that does not close the loop measures too.
+        control.step_timing(seconds=0.06, autonomous=True, enabled=True)
+        assert abs(robot.wrist["motor"].getEncoder().getVelocity()) > 100
         highest = 0
         for _ in range(100):
             control.step_timing(seconds=0.02, autonomous=True, enabled=True)

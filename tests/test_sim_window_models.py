@@ -168,6 +168,62 @@ def test_custom_labels_may_be_anything(label: str, value: object) -> None:
     assert [row.paths for row in rows({path: value})["Custom"].values()] == [(path,)]
 
 
+def spark(mode: int, velocity_factor: float = 1.0) -> dict[str, Any]:
+    """Return the values of a SPARK MAX in one of REV's control modes."""
+    return {
+        'CAN["SPARK MAX [3]"].Setpoint': 3000.0,
+        'CAN["SPARK MAX [3]"]["Applied Output"]': 0.5,
+        'CAN["SPARK MAX [3]"]["Control Mode"]': mode,
+        'CAN["SPARK MAX [3]"]["Motor Temperature"]': 25,
+        'CAN["SPARK MAX [3] RELATIVE ENCODER"].Position': 1.0,
+        'CAN["SPARK MAX [3] RELATIVE ENCODER"]["Velocity Conversion Factor"]': velocity_factor,
+    }
+
+
+@pytest.mark.parametrize(
+    ("values", "label", "unit"),
+    [
+        (spark(0), "Setpoint (duty cycle)", ""),
+        (spark(1), "Setpoint (velocity)", "rpm"),
+        (spark(1, 0.05), "Setpoint (velocity)", ""),
+        (spark(2), "Setpoint (voltage)", "V"),
+        (spark(3), "Setpoint (position)", "turns"),
+        (spark(6), "Setpoint (MAXMotion velocity)", "rpm"),
+        (spark(9), "Setpoint (unknown mode)", ""),
+    ],
+)
+def test_the_set_point_of_a_spark_has_its_mode_and_unit(values: dict[str, Any], label: str, unit: str) -> None:
+    """What drives its motor is the applied output, whatever the mode."""
+    (panel,) = panels_of(values, SimConfig())
+    rows = {row.label.strip(): row for row in panel.rows}
+    assert (rows[label].kind, rows[label].unit) == ("number", unit)
+    applied = rows["Applied Output"]
+    assert (applied.kind, applied.low, applied.high) == ("meter", -1, 1)
+    assert rows["Motor Temperature"].unit == "°C"
+    assert rows["Position"].kind in SETTABLE
+
+
+def test_a_new_mode_makes_new_rows() -> None:
+    rows = DeviceRows(SimConfig())
+    assert rows.update(spark(1))
+    assert not rows.update(spark(1))
+    assert rows.update(spark(3))
+
+
+def test_ctre_devices_have_the_names_that_people_know() -> None:
+    values = {
+        'CAN["CANMotor:Talon FX (v6)[3]"].dutyCycle': 0.5,
+        'CAN["CANEncoder:Talon FX (v6)[3]/Rotor Sensor"].velocity': 1.0,
+        'CAN["CANEncoder:CANcoder (v6)[4]"].rawPositionInput': 0.25,
+        'CAN["CANGyro:Pigeon 2 (v6)[5]"].rawYawInput': 90.0,
+    }
+    panels = {panel.title: panel.rows for panel in panels_of(values, SimConfig(CAN={3: "arm"}))}
+    titles = [row.label for row in panels["CAN and SimDevices"] if not row.paths]
+    assert titles == ["Talon FX [3]  arm", "Talon FX [3] Rotor Sensor", "CANcoder [4]"]
+    yaw = panels["Gyros"][1]
+    assert (panels["Gyros"][0].label, yaw.kind, yaw.unit) == ("Pigeon 2 [5]", "slider", "°")
+
+
 # -- zoom -------------------------------------------------------------------------------------------------------------
 
 lengths = st.floats(1, 200)

@@ -94,7 +94,9 @@ class Spark:
         for sensor, ratio in self._sensors:
             if sensor is not self._feedback:
                 # This adds to the position, so that it stays relative to what the robot's code has set.
-                sensor.iterate(speed * ratio * 60 * sensor.getVelocityConversionFactor(), tm_diff)
+                converted = speed * ratio * 60 * sensor.getVelocityConversionFactor()
+                sensor.iterate(converted, tm_diff)
+                sensor.setVelocity(converted)
         self._set_absolute(turns, speed)
 
     def _set_absolute(self, turns: float, speed: float) -> None:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from ....hal.paths import parse_path
+from .can_devices import OUTPUTS, SetPoint, changes_rows, device_name, set_point, unit_of
 
 if TYPE_CHECKING:
     from ....config.sim import SimConfig
@@ -25,6 +26,9 @@ RowKind = Literal["meter", "lamp", "lamps", "relay", "bars", "leds", "text", "sw
 
 #: The kinds of inputs, which the user can set.
 SETTABLE = frozenset({"switch", "slider", "number"})
+
+#: Names of values that are angles in degrees.
+_ANGLE = re.compile("angle|yaw", re.IGNORECASE)
 
 _INPUT = "an input, click to change it"
 
@@ -71,8 +75,9 @@ class DeviceRows:
 
     def update(self, values: Values) -> bool:
         """Make the panels for these values, and return whether they have changed."""
-        # A robot may use a channel as an input and later as an output.
-        shape = values.keys(), [value for path, value in values.items() if path.endswith(".is_input")]
+        # A robot may use a channel as an input and later as an output, and a motor controller in several modes.
+        decisive = [value for path, value in values.items() if path.endswith(".is_input") or changes_rows(path)]
+        shape = values.keys(), decisive
         if shape == self._shape:
             return False
         self._shape = frozenset(values), shape[1]
@@ -208,7 +213,7 @@ def _encoders(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
 
 
 def _is_gyro(device: object) -> bool:
-    return str(device).startswith("Gyro:") or "navx" in str(device).lower()
+    return str(device).startswith(("Gyro:", "CANGyro:")) or "navx" in str(device).lower()
 
 
 def _gyros(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
@@ -218,7 +223,8 @@ def _gyros(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
             yield Row("slider", (fields["angle"][0],), f"Analog {channel}", -360.0, 360.0, 1, "°", what)
     for device, fields in tree.get("CAN", {}).items():
         if _is_gyro(device):
-            yield from _device_rows(str(device), fields, str(device).partition(":")[2] or str(device))
+            name = device_name(str(device))
+            yield from _device_rows(str(device), fields, name.partition(":")[2] or name)
 
 
 def _sim_devices(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
@@ -226,20 +232,27 @@ def _sim_devices(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
         if not _is_gyro(device):
             number = re.search(r"\[(?:\d+,\s*)?(\d+)\]$", str(device))
             label = config.CAN.get(int(number[1]), "") if number and not str(device).startswith("DutyCycle") else ""
-            yield from _device_rows(str(device), fields, f"{device}  {label}".strip())
+            title = f"{device_name(str(device))}  {label}".strip()
+            yield from _device_rows(str(device), fields, title, set_point(str(device), tree["CAN"]))
 
 
-def _device_rows(device: str, fields: Mapping[Any, Any], title: str) -> Iterator[Row]:
+def _device_rows(device: str, fields: Mapping[Any, Any], title: str, setting: SetPoint | None = None) -> Iterator[Row]:
     yield Row("text", (), title, tooltip=f"The simulated device {device}")
     for name, (path, value) in fields.items():
         text, tooltip = f"   {str(name).strip()}", f"{name} of {device}"
         if isinstance(value, bool):
             yield Row("switch", (path,), text, tooltip=f"{tooltip}: click to change it")
-        elif isinstance(value, int | float) and "angle" in str(name).lower():
+        elif setting is not None and name == "Setpoint":
+            what = f"{tooltip}: {setting}. The robot has set it"
+            yield Row("number", (path,), f"   Setpoint ({setting.mode})", unit=setting.unit, tooltip=what)
+        elif name in OUTPUTS:
+            yield Row("meter", (path,), text, -1.0, 1.0, 2, "", f"{tooltip}: what drives the motor, from -1 to 1")
+        elif isinstance(value, int | float) and _ANGLE.search(str(name)):
             yield Row("slider", (path,), text, -360.0, 360.0, 1, "°", tooltip)
         elif isinstance(value, int | float):
             decimals = 0 if isinstance(value, int) else 2
-            yield Row("number", (path,), text, decimals=decimals, tooltip=f"{tooltip}: click the number to change it")
+            tooltip = f"{tooltip}: click the number to change it"
+            yield Row("number", (path,), text, decimals=decimals, unit=unit_of(str(name)), tooltip=tooltip)
         else:
             yield Row("text", (path,), text, tooltip=tooltip)
 
