@@ -137,6 +137,57 @@ def test_readers_do_not_affect_each_other(tree: HalData) -> None:
     del devices
 
 
+def test_a_reader_that_skips_finds_only_what_changes_later(tree: HalData) -> None:
+    devices, values = make(1)
+    changes, other = after_many_looks(tree), after_many_looks(tree)
+    values[0].set(5.0)
+    changes.skip()
+    assert changes.look() == ([], [])
+    assert found(other.look()) == {'CAN["Motor[0]"].v0': 5.0}
+    values[1].set(6.0)
+    other.look()
+    changes.skip(refresh=False)  # the other one has looked
+    assert changes.look() == ([], [])
+    values[1].set(7.0)
+    assert changes.look().changed == [('CAN["Motor[0]"].v1', 6.0, 7.0)]
+    del devices
+
+
+def test_a_reader_that_has_not_looked_for_long_finds_everything(tree: HalData) -> None:
+    devices, values = make(1)
+    seldom, often = after_many_looks(tree), after_many_looks(tree)
+    for number in range(LOOKS):
+        values[number % 20].set(100.0 + number)
+        often.look()
+    assert found(seldom.look()) == {f'CAN["Motor[0]"].v{n}': 140.0 + n for n in range(20)}
+    del devices
+
+
+def test_signs_of_zero_and_nan_beside_other_changes(tree: HalData) -> None:
+    devices, values = make(1)
+    changes, path = tree.changes(), 'CAN["Motor[0]"].v0'
+    changes.look()
+    before = 0.0
+    for number, value in enumerate((-0.0, 0.0, float("nan"), float("nan"), -0.0, 1.0, 1.0)):
+        values[0].set(value)
+        values[5].set(100.0 + number)
+        expected = {} if repr(value) == repr(before) else {path: value}
+        assert repr(found(changes.look())) == repr(expected | {'CAN["Motor[0]"].v5': 100.0 + number})
+        assert changes.look() == ([], [])
+        before = value
+    del devices
+
+
+def test_currents_of_a_power_distribution_module_are_found(tree: HalData) -> None:
+    module = wpilib.PowerDistribution(1, wpilib.PowerDistribution.ModuleType.kRev)
+    changes = after_many_looks(tree)
+    for channel in (0, 23):
+        tree["pdp"][1]["current"][channel] = 2.5 + channel
+        assert found(changes.look()) == {"pdp[1].current": list(tree["pdp"][1]["current"])}
+        assert changes.look() == ([], [])
+    del module
+
+
 def test_devices_and_values_that_come_and_go(tree: HalData) -> None:
     devices, values = make(1)
     changes = after_many_looks(tree)

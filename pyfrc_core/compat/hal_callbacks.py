@@ -115,6 +115,20 @@ def led_bytes(index: int, buffer: ctypes.Array[ctypes.c_char]) -> bytes:
     return ctypes.string_at(buffer, 4 * count)
 
 
+def current_bytes(module: int, buffer: ctypes.Array[ctypes.c_double]) -> bytes:
+    """Return the currents of a power distribution module as C doubles.
+
+    :param buffer: memory for the module's channels
+    """
+    _library().HALSIM_GetPowerDistributionAllCurrents(module, buffer, len(buffer))
+    return bytes(buffer)
+
+
+def current_buffer(channels: int) -> ctypes.Array[ctypes.c_double]:
+    """Return memory for the currents of a module."""
+    return (ctypes.c_double * channels)()
+
+
 def led_buffer() -> ctypes.Array[ctypes.c_char]:
     """Return memory for the longest strip."""
     return ctypes.create_string_buffer(4 * 5460)

@@ -46,7 +46,7 @@ class Source(Protocol):
         """Update the attributes."""
 
     def changed_since(self, version: int) -> list[int]:
-        """Return the positions of the values that have changed since a version with the same `paths`, in order."""
+        """Return the positions of values that may have changed since a version with the same `paths`, in order."""
 
 
 class ChangeReader:
@@ -68,12 +68,25 @@ class ChangeReader:
         if source.paths is not self._paths:
             return self._compare_all()
         changed = []
+        paths, before, now = self._paths, self._values, source.values
         for position in source.changed_since(version):
-            old, new = self._values[position], source.values[position]
+            old, new = before[position], now[position]
             if not same(old, new):
-                self._values[position] = new
-                changed.append(Change(self._paths[position], old, new))
+                before[position] = new
+                changed.append(Change(paths[position], old, new))
         return Changes(changed, [])
+
+    def skip(self, refresh: bool = True) -> None:
+        """Look without finding what has changed, which takes less time.
+
+        :param refresh: False when nothing can have changed since any reader of the same tree has looked
+        """
+        source = self._source
+        if refresh:
+            source.refresh()
+        if source.version != self._version:
+            self._version = source.version
+            self._paths, self._values = source.paths, source.values.copy()
 
     def _compare_all(self) -> Changes:
         before = dict(zip(self._paths, self._values, strict=True))

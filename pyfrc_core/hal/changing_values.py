@@ -12,6 +12,9 @@ from __future__ import annotations
 
 import marshal
 from collections.abc import Callable, Iterable, Sequence
+from itertools import compress, count
+from math import copysign
+from operator import ne
 from typing import Any, NamedTuple
 
 from ..compat.hal_callbacks import HalNotes, Registered, cancel
@@ -37,8 +40,10 @@ class Leaf(NamedTuple):
 
 def same(old: object, new: object) -> bool:
     """Return whether two values are written alike: -0.0 is not 0.0, True is not 1, and NaN is NaN."""
-    if old is new or (old == new and type(old) is type(new) is float and new):
+    if old is new:
         return True
+    if type(old) is type(new) is float:  # the text of a float takes long to make
+        return copysign(1, old) == copysign(1, new) if old == new else old != old and new != new
     return repr(old) == repr(new)
 
 
@@ -62,35 +67,50 @@ class ChangingValues:
         self._busy: list[int] = []
         self._changed: set[int] = set()
         self._looks = 0
+        found = [leaf.read() for leaf in leaves]
+        #: What was read of each leaf the last time that it was read; and of the busy ones, in their order.
+        self._found: list[Any] = found
+        self._last: list[Any] = []
         self._packed = b""
-        self._found: list[Any] = [leaf.read() for leaf in leaves]
-        self.values = [_plain(leaf, value) for leaf, value in zip(leaves, self._found, strict=True)]
+        self.values = [_plain(leaf, value) for leaf, value in zip(leaves, found, strict=True)]
         self._read_these(range(len(leaves)))
 
     def look(self) -> list[int]:
-        """Read what may have changed; return the positions of the changed values."""
+        """Read what may have changed; return the positions of the changed values, in order."""
         if self._notes:
             self._wake(set(self._notes.take()))
         self._looks += 1
         # The values that become quiet are read once more, because they may be written before the HAL reports it.
         quiet = self._find_quiet() if self._looks % _ROUND == 0 else False
-        found = [read() for read in self._reads]
-        # Much faster than comparing one by one, and exact: 0.0 == -0.0, and NaN differs from itself. Version 2 of the
-        # format does not depend on which objects are shared.
-        packed = marshal.dumps(found, 2)
-        changed = [] if packed == self._packed else self._compare(found)
-        self._packed = packed
+        changed = self._compare([read() for read in self._reads])
         if quiet:
             self._read_these(position for position in self._busy if self._leaves[position].handle not in self._quiet)
         return changed
 
     def _compare(self, found: list[Any]) -> list[int]:
+        last = self._last
+        places = []
+        for place in compress(count(), map(ne, last, found)):
+            old, new = last[place], found[place]
+            last[place] = new
+            if (type(new) is float and new == new) or not same(old, new):  # NaN differs from itself
+                places.append(place)
+        # What is left may be equal and not the same, such as 0.0 and -0.0. Version 2 of the format does not depend on
+        # which objects are shared.
+        packed = marshal.dumps(found, 2)
+        if packed != (marshal.dumps(last, 2) if places else self._packed):
+            places = sorted(
+                {*places, *(place for place, pair in enumerate(zip(last, found, strict=True)) if not same(*pair))}
+            )
+            last[:] = found
+        self._packed = packed
         changed = []
-        for position, value in zip(self._busy, found, strict=True):
-            if not same(self._found[position], value):
-                self._found[position] = value
-                self.values[position] = _plain(self._leaves[position], value)
-                changed.append(position)
+        for place in places:
+            position = self._busy[place]
+            leaf, value = self._leaves[position], found[place]
+            self._found[position] = value
+            self.values[position] = value if leaf.convert is None else leaf.convert(value)
+            changed.append(position)
         self._changed.update(changed)
         return changed
 
@@ -113,9 +133,10 @@ class ChangingValues:
         self._read_these([*self._busy, *written])
 
     def _read_these(self, positions: Iterable[int]) -> None:
-        self._busy = list(positions)
+        self._busy = sorted(positions)
         self._reads = [self._leaves[position].read for position in self._busy]
-        self._packed = b""
+        self._last = [self._found[position] for position in self._busy]
+        self._packed = marshal.dumps(self._last, 2)
 
     def close(self) -> None:
         """End the HAL's reports."""

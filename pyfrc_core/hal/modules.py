@@ -8,7 +8,8 @@ from typing import Any
 
 from wpilib import simulation as sim
 
-from .containers import LiveDict, LiveList, Slot, ValueList
+from ..compat import hal_callbacks
+from .containers import LiveDict, LiveList, Raw, Slot, ValueList
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, group
 from .kinds import BOOL, FLOAT, choice
 from .paths import join
@@ -61,13 +62,14 @@ def solenoid(module: Any, path: str, channel: int) -> LiveDict:
     return LiveDict(path, build)
 
 
-def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
+def distribution(path: str, number: int, module: sim.PowerDistributionSim) -> LiveDict:
     """Return a power distribution module. Both kinds show the HAL's 24 channels."""
 
     def build() -> dict[str, Slot]:
         slots = {field.name: field.slot(module) for field in DISTRIBUTION}
         currents = ValueList(join(path, "current"), FLOAT, lambda: CHANNELS, module.getCurrent, module.setCurrent)
-        slots["current"] = Slot(lambda: currents, None, watch=watch)
+        read = partial(hal_callbacks.current_bytes, number, hal_callbacks.current_buffer(CHANNELS))
+        slots["current"] = Slot(lambda: currents, None, watch=watch, raw=Raw(read, _currents))
         # Computed like the HAL's value for the robot.
         slots["total_current"] = Slot(
             lambda: float(sum(currents)),
@@ -83,6 +85,10 @@ def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
         return [module.registerCurrentCallback(i, lambda *_: fire(), False) for i in range(CHANNELS)]
 
     return LiveDict(path, build)
+
+
+def _currents(stored: bytes) -> list[float]:
+    return memoryview(stored).cast("d").tolist()  # type: ignore[return-value]
 
 
 class ModuleDict(LiveDict):
@@ -130,7 +136,7 @@ class Modules:
         self._pcm_compressor = lru_cache(None)(
             lambda n: group(join("pcm_compressor", n), self._pcm_sim(n), PCM_COMPRESSOR)
         )
-        distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), self._power_sim(n)))
+        distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), n, self._power_sim(n)))
         self.ph = ModuleDict("ph", self._has_hub, self._hub_solenoids)
         self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either, early=0)
         self.ph_compressor = ModuleDict("ph_compressor", self._has_hub, self._hub_compressor)

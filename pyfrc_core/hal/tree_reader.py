@@ -7,6 +7,7 @@ joysticks and of the event are read only after their bytes have changed.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
@@ -20,6 +21,9 @@ from .devices import KINDS
 from .modules import Modules
 from .paths import join
 from .sim_device_list import Signature
+
+#: How many versions are kept for readers that do not look at each of them.
+_KEPT_VERSIONS = 16
 
 
 class TreeReader:
@@ -55,7 +59,8 @@ class TreeReader:
         #: Where each part begins in `paths`, and how far the bridged values lie behind their place in `_live`.
         self._begins: list[int] = []
         self._shift = 0
-        self._recent: dict[int, int] = {}
+        #: The positions that each of the last versions has changed.
+        self._recent: deque[list[int]] = deque(maxlen=_KEPT_VERSIONS)
         self.paths: list[str] = []
         self.values: list[Any] = []
         self.version = 0
@@ -87,32 +92,39 @@ class TreeReader:
         if moved or _PATHS in changed:
             self._assemble()
             return
-        now: list[tuple[int, Any]] = []
-        here, live = len(self._here), self._live
-        for place in sorted(live.look()):
-            now.append((place if place < here else place + self._shift, live.values[place]))
+        now, values, live = [], self.values, self._live.values
+        here, shift = len(self._here), self._shift
+        for place in self._live.look():
+            position = place if place < here else place + shift
+            values[position] = live[place]
+            now.append(position)
         if _VALUES in changed:
             for part, begin, change in zip(self._parts, self._begins, changed, strict=True):
                 if change == _VALUES:
-                    now += enumerate(part.values, begin)
-        self._note(now)
+                    now += self._update(begin, part.values)
+            now.sort()
+        if now:
+            self.version += 1
+            self._recent.append(now)
 
     def changed_since(self, version: int) -> list[int]:
-        """Return the positions of the values that have changed since a version with the same `paths`, in order."""
-        found = []
-        for position in reversed(self._recent):
-            if self._recent[position] <= version:
-                break
-            found.append(position)
-        return sorted(found)
+        """Return the positions of values that may have changed since a version with the same `paths`, in order.
 
-    def _note(self, now: list[tuple[int, Any]]) -> None:
-        now = [(position, value) for position, value in now if not same(self.values[position], value)]
-        self.version += bool(now)
-        for position, value in now:
-            self.values[position] = value
-            self._recent.pop(position, None)  # so that the last ones in it are always the latest
-            self._recent[position] = self.version
+        Values that have changed back are among them, and after many versions all values.
+        """
+        recent, versions = self._recent, self.version - version
+        if versions == 1:
+            return recent[-1]
+        if versions > len(recent):
+            return list(range(len(self.values)))
+        return sorted(set().union(*(recent[-back] for back in range(1, versions + 1))))
+
+    def _update(self, begin: int, now: list[Any]) -> Iterator[int]:
+        """Update values from a position on; yield the positions of those that have changed."""
+        for position, value in enumerate(now, begin):
+            if not same(self.values[position], value):
+                self.values[position] = value
+                yield position
 
     def _find_live(self) -> None:
         """Build the list of the devices' values."""

@@ -41,6 +41,8 @@ class Clock:
         #: Delivers a packet. A run delivers it over its connection, which may be lost.
         self.deliver_packet: Action = deliver_packet
         self._recurring: list[tuple[int, int, Action]] = []
+        #: How many actions have been called.
+        self.actions = 0
         #: The first number is the time in microseconds. It may be memory that another process reads.
         self.moment: MutableSequence[int] | memoryview = array("q", [0])
         self.initialize()
@@ -141,6 +143,7 @@ class Clock:
         due_us, _, _, action = heappop(self._queue)
         if due_us > self.now_us:  # most of what is due falls together with a packet
             self._move_to(due_us)
+        self.actions += 1
         action()
 
     def _move_to(self, time_us: int) -> None:

@@ -12,16 +12,14 @@ import hashlib
 import json
 from typing import IO, TYPE_CHECKING, Any
 
-from ..compat.real_time_devices import is_real_time
+from ..compat.real_time_devices import is_real_time, real_time_libraries
 from ..hal.change_reader import MISSING
+from .trace_lines import REAL_TIME, TraceLines
 
 if TYPE_CHECKING:
     from ..hal import HalData
 
 FORMAT = "pyfrc-trace 1"
-
-#: The key of a line's values that do not repeat.
-REAL_TIME = "real_time"
 
 
 class Trace:
@@ -36,6 +34,7 @@ class Trace:
         self._out = out
         #: The paths whose values do not repeat.
         self._real_time: set[str] = set()
+        self._lines = TraceLines()
         self._hash = hashlib.sha256()
         if out is not None:
             out.write(json.dumps({"format": FORMAT}) + "\n")
@@ -46,13 +45,16 @@ class Trace:
         changed = {path: new for path, old, new in found if old != new}
         if not changed and not gone:
             return
-        self._real_time.update(path for path, old, _ in found if old is MISSING and is_real_time(path))
-        change: dict[str, Any] = {"t": round(now, 6), "set": changed} | ({"gone": gone} if gone else {})
+        if real_time_libraries():
+            self._real_time.update(path for path, old, _ in found if old is MISSING and is_real_time(path))
+        marked = {}
         if self._real_time:
-            marked = {path: changed.pop(path) for path in sorted(changed) if path in self._real_time}
-            change |= {REAL_TIME: marked} if marked else {}
-        line = json.dumps(change, sort_keys=True)
-        self._hash.update(hashed_part(line).encode())
+            marked = {path: changed.pop(path) for path in list(changed) if path in self._real_time}
+        line = self._lines.format(round(now, 6), changed, gone, marked)
+        if not marked:
+            self._hash.update(line.encode())
+        elif changed or gone:
+            self._hash.update(self._lines.format(round(now, 6), changed, gone, {}).encode())
         if self._out is not None:
             self._out.write(line + "\n")
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from pyfrc_core.hal.change_reader import ChangeReader
 from pyfrc_core.runtime.trace import FORMAT, Trace
+from pyfrc_core.runtime.trace_lines import TraceLines
 
 
 class Tree:
@@ -101,3 +102,27 @@ def test_a_trace_without_a_file_has_the_same_hash() -> None:
         trace.look(0.0199999999)
     assert json.loads(out.getvalue().splitlines()[1]) == {"t": 0.02, "set": {"a": 1.5}}
     assert quiet.finish() == written.finish()
+
+
+def test_lines_are_as_json_has_them() -> None:
+    lines = TraceLines()
+    values: dict[str, Any] = {
+        'CAN["b"].x': 1.5,
+        'CAN["a"].x': 1.5,
+        "robot.\u00e9\n": -0.0,
+        "pwm[10].value": 0.0,
+        "pwm[9].value": math.nan,
+        "custom.far": math.inf,
+        "custom.deep": {"b": [1e16, -math.inf], "a": None},
+        "custom.text": "\u00e9",
+        "dio[0].value": True,
+        "encoder[0].count": 2**40,
+        "time.remaining": 1e-05,
+    }
+    for number in range(len(values) + 1):  # paths come, and paths are known
+        some = dict(list(values.items())[:number])
+        for gone, marked in (([], {}), (["x"], {}), ([], {"CAN.z": 1.0, "CAN.y": 1.0})):
+            change: dict[str, Any] = {"t": 0.02, "set": some}
+            change |= {"gone": gone} if gone else {}
+            change |= {"real_time": marked} if marked else {}
+            assert lines.format(0.02, some, gone, marked) == json.dumps(change, sort_keys=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -13,12 +13,21 @@ from .script import trace_beside
 
 
 @contextmanager
-def traced(run: RobotRun, file: Path) -> Iterator[Trace]:
-    """Write down what the robot does while this lasts. The run is open, and not started."""
+def traced(run: RobotRun, file: Path, then: Callable[[], object] | None = None) -> Iterator[Trace]:
+    """Write down what the robot does while this lasts. The run is open, and not started.
+
+    :param then: called after each look
+    """
     file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("w", encoding="utf-8") as out:
         trace = Trace(run.hal_data, out)
-        run.observe(trace.look)
+
+        def look(now: float) -> None:
+            trace.look(now)
+            if then is not None:
+                then()
+
+        run.observe(look)
         yield trace
         trace.finish()
 
@@ -27,7 +36,7 @@ def traced(run: RobotRun, file: Path) -> Iterator[Trace]:
 def recorded(run: RobotRun, file: Path, robot: str, seed: int) -> Iterator[None]:
     """Record a run while this lasts: its script, and its trace beside that. The run is open, and not started."""
     recorder = Recorder(run)
-    with traced(run, trace_beside(file)) as trace:
+    with traced(run, trace_beside(file), recorder.on_look) as trace:
         try:
             yield
         finally:

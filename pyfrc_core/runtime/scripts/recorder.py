@@ -9,6 +9,7 @@ from importlib.metadata import version
 from typing import Any
 
 import ntcore
+from hal.simulation import getNextNotifierTimeout
 
 from ...compat.real_time_devices import is_real_time
 from ...hal import modes
@@ -41,6 +42,7 @@ class Recorder:
         self._network = _Network()
         self._mode = ""
         self._sticks: dict[str, Any] = {}
+        self._counts: list[tuple[int, int, int]] = []
         self._left = 0.0
         self._steps: list[Step] = []
         self._forgotten = 0
@@ -49,7 +51,9 @@ class Recorder:
         self._start_us = 0
         #: When the step that is being taken from outside began, if one is.
         self._stepping_since: int | None = None
-        self._look()
+        #: How many actions the clock had called at the trace's last look; None: native code may run after it.
+        self._looked_at: int | None = None
+        self._skip()
         run.recorder = self
 
     def begin_outside(self, stepping: bool = False) -> None:
@@ -59,7 +63,15 @@ class Recorder:
         """
         if stepping:
             self._stepping_since = self._run.clock.now_us
-        self._look()
+        # Nothing has changed if the clock has called only the packet since the look. What code between two calls of the
+        # clock has done, was looked at when it ended.
+        self._skip(refresh=not stepping or self._looked_at != self._run.clock.actions - 1)
+
+    def on_look(self) -> None:
+        """Note that the trace has just looked at everything, for the external writes of the next packet."""
+        clock = self._run.clock
+        calm = getNextNotifierTimeout() > clock.next_packet_us
+        self._looked_at = clock.actions if calm else None
 
     def on_packet_out_of_turn(self) -> None:
         """Deliver a packet with the external writes up to now."""
@@ -103,6 +115,17 @@ class Recorder:
         del self._steps[: index - self._forgotten]
         self._forgotten = index
 
+    def _skip(self, refresh: bool = True) -> None:
+        """Look at everything, to know what changes from now on.
+
+        :param refresh: False if `hal_data` is as it was when it was last looked at
+        """
+        self._mode = modes.mode_name()
+        self._changes.skip(refresh)
+        self._left = self._hal_data["time"]["remaining"]
+        list(self._look_at_sticks())
+        self._network.skip()
+
     def _look(self) -> list[Change]:
         """Return what has changed since the last look, in the order in which a script has it."""
         found = []
@@ -118,9 +141,12 @@ class Recorder:
 
     def _look_at_sticks(self) -> Iterator[Change]:
         """Return which joysticks were plugged in or unplugged, and have other numbers of controls."""
+        counts = [stick.counts() for stick in self._hal_data["joysticks"]]
+        if counts == self._counts:
+            return
+        self._counts = counts
         before, self._sticks = self._sticks, {}
-        for port, stick in enumerate(self._hal_data["joysticks"]):
-            axes, buttons, povs = stick.counts()
+        for port, (axes, buttons, povs) in enumerate(counts):
             there = self._sticks[plugged(port)] = bool(axes or buttons or povs)
             if there:
                 path = f"joysticks[{port}]"
@@ -205,16 +231,9 @@ class _Network:
     def look(self) -> list[Change]:
         """Return the entries that have changed since the last look, in the order in which they were first heard of."""
         before: dict[str, Any] = {}
-        for event in self._news.readQueue():
-            news = event.data
-            if isinstance(news, ntcore.TopicInfo):
-                self._hear(before, NETWORK + news.name, MISSING)
-            elif isinstance(news, ntcore.ValueEventData):
-                value = news.value.value()
-                is_plain = isinstance(value, _PLAIN) or (
-                    isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)
-                )
-                self._hear(before, NETWORK + news.topic.getName(), value if is_plain else MISSING)
+        for target, value in self._heard():
+            before.setdefault(target, self._found.get(target, MISSING))
+            self._hear(target, value)
         changed = [target for target in before if target in self._found]
         if len(changed) > 1:
             places = {target: place for place, target in enumerate(self._found)}
@@ -225,8 +244,25 @@ class _Network:
             if not same(before[target], self._found[target])
         ]
 
-    def _hear(self, before: dict[str, Any], target: str, value: Any) -> None:
-        before.setdefault(target, self._found.get(target, MISSING))
+    def skip(self) -> None:
+        """Look without finding what has changed."""
+        for target, value in self._heard():
+            self._hear(target, value)
+
+    def _heard(self) -> Iterator[tuple[str, Any]]:
+        """Return the news since the last look: targets, with their plain values or `MISSING`."""
+        for event in self._news.readQueue():
+            news = event.data
+            if isinstance(news, ntcore.ValueEventData):
+                value = news.value.value()
+                is_plain = isinstance(value, _PLAIN) or (
+                    isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)
+                )
+                yield NETWORK + news.topic.getName(), value if is_plain else MISSING
+            elif isinstance(news, ntcore.TopicInfo):
+                yield NETWORK + news.name, MISSING
+
+    def _hear(self, target: str, value: Any) -> None:
         if value is MISSING:
             self._found.pop(target, None)
         else:

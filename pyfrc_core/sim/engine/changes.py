@@ -15,7 +15,7 @@ from itertools import islice
 from types import MappingProxyType
 from typing import Any
 
-from ...runtime.trace import REAL_TIME
+from ...runtime.trace_lines import REAL_TIME
 from .history import History
 
 

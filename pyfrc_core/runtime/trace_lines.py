@@ -1,0 +1,64 @@
+"""Formats the lines of a trace: the text of ``json.dumps(..., sort_keys=True)``, made in half the time.
+
+Hand-written, because a trace has hundreds of megabytes an hour: the paths are the same from packet to packet, and
+robots have many equal numbers in a packet, such as the voltage at each motor. `json` formats and sorts them all again.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+#: The key of a line's values that do not repeat.
+REAL_TIME = "real_time"
+
+#: How JSON has the numbers that are not finite.
+_NOT_FINITE = {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}
+
+
+class TraceLines:
+    """Formats lines whose paths repeat."""
+
+    def __init__(self) -> None:
+        #: The rank of each path in the order of the paths, and its beginning of an item.
+        self._ranks: dict[str, int] = {}
+        self._keys: dict[str, str] = {}
+
+    def format(self, now: float, changed: dict[str, Any], gone: list[str], marked: dict[str, Any]) -> str:
+        """Return the line of one packet.
+
+        :param now: the robot time, rounded
+        :param changed: the values by path
+        :param gone: the paths that no longer exist
+        :param marked: the values that do not repeat, by path
+        """
+        start = f'"gone": {json.dumps(gone)}, ' if gone else ""
+        if marked:
+            start += f'"{REAL_TIME}": {self._object(marked)}, '
+        return f'{{{start}"set": {self._object(changed)}, "t": {now!r}}}'
+
+    def _object(self, values: dict[str, Any]) -> str:
+        try:
+            ordered = sorted(values, key=self._ranks.__getitem__)
+        except KeyError:
+            self._learn(values)
+            ordered = sorted(values, key=self._ranks.__getitem__)
+        keys = self._keys
+        texts: dict[float, str] = {}
+        items = []
+        for path in ordered:
+            value = values[path]
+            if type(value) is not float:
+                text = json.dumps(value, sort_keys=True)
+            elif value in texts and value:  # 0.0 equals -0.0
+                text = texts[value]
+            else:
+                text = repr(value)
+                texts[value] = text = _NOT_FINITE.get(text, text)
+            items.append(keys[path] + text)
+        return f"{{{', '.join(items)}}}"
+
+    def _learn(self, paths: dict[str, Any]) -> None:
+        for path in paths:
+            self._keys[path] = json.dumps(path) + ": "
+        self._ranks = {path: rank for rank, path in enumerate(sorted(self._keys))}
