@@ -256,6 +256,21 @@ class RobotProject:
         return self.run(*args, cwd=cwd, env=env, program="pytest")
 
 
+#: Where the length of a match is not the point: less than a real one, for the sake of the suite's time.
+SHORT_MATCH = """
+[tool.pyfrc.match]
+autonomous = 2
+pause = 1
+teleop = 5
+"""
+
+
+def add_settings(directory: Path, text: str) -> None:
+    """Append this text to the ``pyproject.toml`` of the project in this directory."""
+    with (directory / "pyproject.toml").open("a", encoding="utf-8") as pyproject:
+        pyproject.write(text)
+
+
 MakeProject = Callable[[Mapping[str, str]], RobotProject]
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import click
 import pytest
+from conftest import SHORT_MATCH, add_settings
 
 from pyfrc_cli.main import COMMANDS, cli
 from pyfrc_core.config.settings import FuzzSettings
@@ -46,16 +47,8 @@ def commands(document: str) -> list[str]:
     return [line.removeprefix("$ ") for block in blocks(document, "console") for line in block.splitlines()]
 
 
-#: Where a page says nothing of how long matches are: less than the real ones, for the sake of the suite's time.
-SHORT_MATCHES = """
-[tool.pyfrc.match]
-autonomous = 2
-pause = 1
-teleop = 5
-
-[tool.pyfrc.fuzz]
-match_seconds = 5
-"""
+#: Where a page says nothing of how long matches are.
+SHORT_MATCHES = SHORT_MATCH + "\n[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"
 
 
 @pytest.fixture
@@ -73,14 +66,12 @@ def project(new_project):
     return new_project
 
 
-def add_settings(project: Path, text: str) -> None:
-    with (project / "pyproject.toml").open("a", encoding="utf-8") as pyproject:
-        pyproject.write(text)
-
-
 def test_the_examples_in_the_testing_guide_pass(new_project) -> None:
     new_project.write(files("docs/testing.md"))
     (settings,) = blocks("docs/testing.md", "toml")
+    for real, short in (("autonomous = 15", "autonomous = 2"), ("teleop = 135", "teleop = 5")):
+        assert real in settings
+        settings = settings.replace(real, short)
     add_settings(new_project.path, settings)
     result = new_project.run("test", "--", "-v")
     assert result.code == 0, result.output
@@ -129,9 +120,10 @@ def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
     robot = project.path / "robot.py"
     robot.write_text(robot.read_text("utf-8").replace("270: -0.5}", "270: -0.5, 315: -0.3}"), "utf-8")
     project.write({"pyproject.toml": blocks(document, "toml")[0]})
+    add_settings(project.path, SHORT_MATCH)
     assert len(campaigns) == 2
     for command in ["pyfrc test", *campaigns]:
-        result = project.run(*shlex.split(re.sub(r"--time \d+", "--time 1", command))[1:])
+        result = project.run(*shlex.split(re.sub(r"--time \d+", "--time 0.1", command))[1:])
         assert result.code == 0, result.output
 
 
@@ -157,7 +149,9 @@ COMING_FROM = ("docs/from_pyfrc_2019.md", "docs/from_todays_pyfrc.md")
 
 @pytest.mark.parametrize("document", COMING_FROM)
 def test_the_project_of_those_who_come_from_elsewhere_works_as_it_is(document: str, make_project) -> None:
+    """But for the length of teleop; autonomous is as long as the way that the robot is to drive in it."""
     project = make_project(files(document) | json_files(document))
+    add_settings(project.path, "[tool.pyfrc.match]\nteleop = 5\n")
     for command in commands(document):
         result = project.run(*shlex.split(command)[1:])
         assert result.code == 0, result.output

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from conftest import MakeProject, RobotProject
+from conftest import SHORT_MATCH, MakeProject, RobotProject, add_settings
 from roborio import Roborio, require_roborio
 
 from pyfrc_cli.main import COMMANDS
@@ -82,8 +82,7 @@ def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp
     """
     installing, *rest = workflow(project)
     shorter = shutil.copytree(project.path, tmp_path / "shorter")
-    with (shorter / "pyproject.toml").open("a", encoding="utf-8") as pyproject:
-        pyproject.write("\n[tool.pyfrc.match]\nteleop = 30\n")
+    add_settings(shorter, SHORT_MATCH)
     assert installing == INSTALLING
     assert rest[-1] == ["pyfrc", "test", "--coverage", "--fail-under", "80"]
     for program, *arguments in rest:

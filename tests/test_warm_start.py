@@ -164,6 +164,21 @@ def test_a_module_of_the_users_is_found_before_one_of_its_name(make_project: Mak
     assert project.run("-s", program="pytest").stdout == f"{project.path / 'coverage.py'}\n"
 
 
+def test_a_module_of_a_package_has_another_name(make_project: MakeProject) -> None:
+    """It hides nothing that is imported already, so the command starts warm."""
+    conftest = """
+        import os
+        import numbers
+        import parts.numbers
+
+        print(open(f"/proc/{os.getppid()}/cmdline").read().split("\\0")[1].endswith("/warm_start.py"))
+        print(parts.numbers.__file__, hasattr(numbers, "Number"), flush=True)
+        os._exit(0)
+        """
+    project = make_project({"conftest.py": conftest, "parts/__init__.py": "", "parts/numbers.py": ""})
+    assert project.run("-s", program="pytest").stdout == f"True\n{project.path / 'parts/numbers.py'} True\n"
+
+
 def test_it_ends_with_the_tests_that_wait_for_it(tmp_path: Path, make_project: MakeProject) -> None:
     os.mkfifo(tmp_path / "began")
     os.mkfifo(tmp_path / "never")

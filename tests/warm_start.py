@@ -119,8 +119,12 @@ class WarmStarts:
             return False
         # The user's modules come before others of their names; here, the others are imported already.
         first = self._modules | _IMPORTED_AT_START
-        files = (path for place in (directory, *_search_path(environment)) for path in place.rglob("*"))
-        return not any(path.stem in first for path in files if path.suffix in ("", ".py"))
+        places = (directory, *_search_path(environment))
+        return not any(
+            path.stem in first and (path.parent in places or not (path.parent / "__init__.py").exists())
+            for path in (path for place in places for path in place.rglob("*"))
+            if path.suffix in ("", ".py")  # modules of packages have longer names
+        )
 
     def run(
         self,
