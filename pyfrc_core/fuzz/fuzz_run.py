@@ -42,8 +42,9 @@ class FuzzRun:
 
     def on_packet(self, now: float) -> bool:
         """Write the inputs of the next packet; return whether the match continues."""
-        self.write()
         now_us = self._run.clock.now_us
+        if now_us >= self._generator.next_us:
+            self.write()
         self._targets.count_down(now_us)
         return not self._generator.over(now_us)
 

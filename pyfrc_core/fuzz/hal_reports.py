@@ -23,13 +23,14 @@ class HalReports:
     """
 
     def __init__(self, file: IO[bytes]) -> None:
-        self._file = file
+        self._descriptor = file.fileno()
         self._read = 0
 
     def error(self) -> str | None:
         """Return the first error since the last call, from complete lines only; None if there was none."""
-        descriptor = self._file.fileno()
-        size = os.fstat(descriptor).st_size
+        descriptor = self._descriptor
+        # All writers share the position of this file with standard error, and it costs less than the file's size.
+        size = os.lseek(descriptor, 0, os.SEEK_CUR)
         if size == self._read:
             return None
         new = os.pread(descriptor, size - self._read, self._read) if hasattr(os, "pread") else self._read_again(size)
@@ -42,7 +43,7 @@ class HalReports:
 
     def _read_again(self, size: int) -> bytes:
         """Read from a file with a single position for reading and writing, as on Windows."""
-        descriptor = self._file.fileno()
+        descriptor = self._descriptor
         os.lseek(descriptor, self._read, os.SEEK_SET)
         new = os.read(descriptor, size - self._read)
         os.lseek(descriptor, 0, os.SEEK_END)

@@ -13,7 +13,7 @@ from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.targets import MODE
 from .dashboard_generator import DashboardGenerator, find_dashboard
 from .gamepads import find_gamepads
-from .inputs import Input, find_controls, find_sensors
+from .inputs import Input, SensorFinder, find_controls
 from .joystick_generator import JoystickGenerator
 from .match_plan import plan_match
 from .sensor_generator import SensorGenerator
@@ -68,6 +68,7 @@ class InputGenerator:
         self._planned = 0
         self._sticks = JoystickGenerator(rng)
         self._sensors = SensorGenerator(rng, self._hal_data)
+        self._sensor_finder = SensorFinder(self._hal_data)
         self._dashboard = DashboardGenerator(rng)
         self._driven = set(physics_inputs)
         self._sensors.paused = not physics_inputs and _is_simulated(run)
@@ -75,7 +76,8 @@ class InputGenerator:
         self._enabled_us = 0
         self._attached = True
         self._find_us = self._check_us = PACKET_US
-        self._next_us = 0
+        #: `writes` returns nothing before this time.
+        self.next_us = 0
 
     @property
     def driven_by_physics(self) -> frozenset[str]:
@@ -89,7 +91,7 @@ class InputGenerator:
     def writes(self, now_us: int) -> Mapping[str, Value]:
         """Return what to write before the packet of this time, by target; often nothing."""
         found: dict[str, Value] = {}
-        if now_us < self._next_us:
+        if now_us < self.next_us:
             return found
         while self._planned < len(self._plan) and self._plan[self._planned].at_us <= now_us:
             self._apply_event(now_us, self._plan[self._planned].writes, found)
@@ -107,7 +109,7 @@ class InputGenerator:
             if part.next_us <= now_us:
                 part.write(now_us, found)
         plan = self._plan[self._planned].at_us if self._planned < len(self._plan) else self._end_us
-        self._next_us = min(self._find_us, self._check_us, plan, *(part.next_us for part in parts))
+        self.next_us = min(self._find_us, self._check_us, plan, *(part.next_us for part in parts))
         return found
 
     def _apply_event(self, now_us: int, event: Mapping[str, Value], found: dict[str, Value]) -> None:
@@ -135,7 +137,7 @@ class InputGenerator:
             controls = list(find_controls(self._hal_data, gamepads))
             self._sticks.set_controls(controls, gamepads)
             self._remember(controls)
-        sensors = sorted(find_sensors(self._hal_data))
+        sensors = self._sensor_finder.find()
         self._remember(sensors)
         self._sensors.set_inputs(sensors)
         self._sensors.excluded = {each.device for each in sensors if each.target in self._driven}

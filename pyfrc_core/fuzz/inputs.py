@@ -6,12 +6,16 @@ Inputs from the dashboard are in `dashboard_generator`.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
 
 from wpilib.simulation import SimDeviceSim
 
 from ..hal import HalData, format_path
+from ..hal.devices import KINDS
+from ..hal.sim_device_list import Signature
 from .gamepads import TRIGGERS
 from .values import InputKind
 
@@ -77,19 +81,71 @@ _NAMED: tuple[tuple[str, InputKind], ...] = (
 )
 
 
+class SensorFinder:
+    """Finds what the robot's sensors measure; searches again only after a device was created or removed."""
+
+    def __init__(self, hal_data: HalData) -> None:
+        self._hal_data = hal_data
+        self._seen: object = None
+        self._found: list[Input] = []
+
+    def find(self) -> list[Input]:
+        """Return the sensors' values in order: the same list until the robot's devices change."""
+        there = self._devices()
+        if there != self._seen:
+            self._seen = there
+            self._found = sorted(find_sensors(self._hal_data))
+        return self._found
+
+    def _devices(self) -> _Devices:
+        hal_data = self._hal_data
+        modules = tuple([tuple(hal_data[key]) for key in _MODULES])
+        return _Devices(_used(), modules, hal_data["accelerometer"]["active"], hal_data["CAN"].signature())
+
+
+class _Devices(NamedTuple):
+    """The devices that exist: those of the roboRIO that have a sensor, and all others."""
+
+    channels: tuple[tuple[str, int], ...]
+    modules: tuple[tuple[int, ...], ...]
+    accelerometer: bool
+    sim_devices: Signature
+
+
+@cache
+def _channels() -> list[tuple[tuple[str, int], Callable[[], bool]]]:
+    """Return the roboRIO's channels for sensors, each with a function that returns whether the robot uses it."""
+    return [
+        ((kind.name, number), slot.get)
+        for kind in KINDS
+        if kind.name in _DEVICES
+        for number, slot in enumerate(kind.initialized())
+    ]
+
+
+def prepare_sensor_search() -> None:
+    """Prepare a search for sensors: forks of this process then find it prepared."""
+    _channels()
+
+
+def _used() -> tuple[tuple[str, int], ...]:
+    """Return the roboRIO's channels for sensors that the robot uses."""
+    return tuple([channel for channel, exists in _channels() if exists()])
+
+
 def find_sensors(hal_data: HalData) -> Iterator[Input]:
     """Return what the robot's sensors measure; outputs of SimDevices are left out."""
+    channels = _used()
     yield Input("power.vin_voltage", "battery", "power")
     yield Input("fpga_button", "switch", "fpga_button")
     if hal_data["accelerometer"]["active"]:
         for axis in "xyz":
             yield Input(f"accelerometer.{axis}", "acceleration", "accelerometer")
-    wired = _wired(hal_data)
-    for key, values in _DEVICES.items():
-        for number, device in enumerate(hal_data[key]):
-            if device["initialized"] and device.get("is_input", True) and (key, number) not in wired:
-                for value, kind in values:
-                    yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
+    wired = _wired(hal_data, channels)
+    for key, number in channels:
+        if hal_data[key][number].get("is_input", True) and (key, number) not in wired:
+            for value, kind in _DEVICES[key]:
+                yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
     for key, values in _MODULES.items():
         for number in hal_data[key]:
             for value, kind in values:
@@ -98,12 +154,11 @@ def find_sensors(hal_data: HalData) -> Iterator[Input]:
         yield from _of_sim_device(name)
 
 
-def _wired(hal_data: HalData) -> set[tuple[str, int | None]]:
+def _wired(hal_data: HalData, channels: Iterable[tuple[str, int]]) -> set[tuple[str, int | None]]:
     """Return the channels that encoders and gyros use; they are not sensors of their own."""
-    encoders = [encoder["config"] for encoder in hal_data["encoder"] if encoder["initialized"]]
-    gyros = [number for number, gyro in enumerate(hal_data["analog_gyro"]) if gyro["initialized"]]
-    return {("dio", wire) for channels in encoders for wire in channels.values()} | {
-        ("analog_in", number) for number in gyros
+    encoders = [hal_data[key][number]["config"] for key, number in channels if key == "encoder"]
+    return {("dio", wire) for config in encoders for wire in config.values()} | {
+        ("analog_in", number) for key, number in channels if key == "analog_gyro"
     }
 
 

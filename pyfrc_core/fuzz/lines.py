@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from types import CodeType, FrameType, FunctionType
 from typing import Any
 
+from ..compat import line_probes
 from ..project.robot_files import RobotFiles
 
 #: A file, relative to the project, and the number of a line.
@@ -30,9 +31,12 @@ class RobotLines:
 
     def __init__(self, files: RobotFiles) -> None:
         self._by_code: dict[CodeType, dict[int, Line]] = {}
+        self._functions: list[FunctionType] = []
+        self._probes = LineProbes()
         for thing in gc.get_objects():
             # Not `isinstance`, which reads `__class__`: lazy proxies import their module when it is read.
             if type(thing) is FunctionType and files.is_robot_code(thing.__code__.co_filename):
+                self._functions.append(thing)
                 self._add(thing.__code__, files)
 
     def _add(self, code: CodeType, files: RobotFiles) -> None:
@@ -55,15 +59,106 @@ class RobotLines:
 
         Before Python 3.12, code that another tool traces is not observed.
         """
+        wanted = self._wanted(known)
+        if line_probes.SUPPORTED and sys.gettrace() is None:
+            with self._probes.inserted(self._functions, wanted, now_us) as reached:
+                yield reached
+            return
+        reached = {}
+        watch = _monitored if sys.version_info >= (3, 12) else _traced
+        with watch(wanted, reached, now_us):
+            yield reached
+
+    def prepare(self, known: frozenset[Line]) -> None:
+        """Prepare `watched` with these known lines: forks of this process then find it prepared."""
+        if line_probes.SUPPORTED:
+            self._probes.prepare(self._wanted(known))
+
+    def _wanted(self, known: frozenset[Line]) -> dict[CodeType, dict[int, Line]]:
         wanted = {
             code: {number: line for number, line in lines.items() if line not in known}
             for code, lines in self._by_code.items()
         }
-        wanted = {code: lines for code, lines in wanted.items() if lines}
-        reached: dict[Line, int] = {}
-        watch = _monitored if sys.version_info >= (3, 12) else _traced
-        with watch(wanted, reached, now_us):
-            yield reached
+        return {code: lines for code, lines in wanted.items() if lines}
+
+
+class _Reached(dict[int, None]):
+    """The lines that were reached, by their index in `lines`: a number is found sooner than a `Line`.
+
+    The first lookup of a line adds it.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.lines: list[Line] = []
+        self.times: dict[Line, int] = {}
+        self.now_us: Callable[[], int] = lambda: 0
+
+    def __missing__(self, index: int) -> None:
+        self[index] = None
+        self.times.setdefault(self.lines[index], self.now_us())
+
+    # Code objects are hashed with their constants.
+    __hash__ = object.__hash__  # type: ignore[assignment]
+
+
+class LineProbes:
+    """Functions' code with probes for unknown lines, for Python 3.11."""
+
+    def __init__(self) -> None:
+        self._reached = _Reached()
+        #: The code with probes of each code object, and the lines that have one.
+        self._made: dict[CodeType, tuple[dict[int, Line], CodeType]] = {}
+
+    def prepare(self, wanted: Mapping[CodeType, dict[int, Line]]) -> None:
+        """Make the code with probes for these lines. Only functions whose lines have changed are made anew."""
+        for code in wanted:
+            self._with_probes(code, wanted)
+
+    @contextmanager
+    def inserted(
+        self,
+        functions: Iterable[FunctionType],
+        wanted: Mapping[CodeType, dict[int, Line]],
+        now_us: Callable[[], int],
+    ) -> Iterator[dict[Line, int]]:
+        """Give the functions their code with probes until the context ends."""
+        reached = self._reached
+        reached.clear()
+        reached.times, reached.now_us = {}, now_us
+        before = [(function, function.__code__) for function in functions]
+        for function, code in before:
+            function.__code__ = self._with_probes(code, wanted)
+        try:
+            yield reached.times
+        finally:
+            for function, code in before:
+                function.__code__ = code
+
+    def _with_probes(self, code: CodeType, wanted: Mapping[CodeType, dict[int, Line]]) -> CodeType:
+        lines = self._all_lines(code, wanted)
+        if not lines:
+            return code
+        made = self._made.get(code)
+        if made is None or made[0] != lines:
+            parts = [self._with_probes(part, wanted) if isinstance(part, CodeType) else part for part in code.co_consts]
+            whole = code.replace(co_consts=tuple(parts))
+            keys = {number: self._index(line) for number, line in wanted.get(code, {}).items()}
+            made = lines, line_probes.with_probes(whole, keys, self._reached)
+            self._made[code] = made
+        return made[1]
+
+    def _index(self, line: Line) -> int:
+        self._reached.lines.append(line)
+        return len(self._reached.lines) - 1
+
+    def _all_lines(self, code: CodeType, wanted: Mapping[CodeType, dict[int, Line]]) -> dict[int, Line]:
+        """Return the wanted lines of a code object and of those inside it."""
+        found = dict(wanted.get(code, {}))
+        for part in code.co_consts:
+            if isinstance(part, CodeType):
+                found |= self._all_lines(part, wanted)
+        return found
 
 
 @contextmanager

@@ -120,6 +120,7 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
     seconds = project.settings.fuzz.match_seconds
     rng = task.schedule.rng()
     before_us = 0
+    reseed_until_us = task.schedule.seeds[-1][0] + PACKET_US
     with _robot(project, log, ROBOT_SEED) as run, ExitStack() as closing:
         generator = InputGenerator(
             rng,
@@ -132,8 +133,10 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
 
         def step(now: float) -> None:
             nonlocal before_us
-            task.schedule.reseed(rng, before_us, run.clock.now_us)
-            before_us = run.clock.now_us
+            now_us = run.clock.now_us
+            if now_us <= reseed_until_us:
+                task.schedule.reseed(rng, before_us, now_us)
+            before_us = now_us
             if not fuzz_run.on_packet(now):
                 run.clock.halted = True
 

@@ -29,6 +29,7 @@ from ..runtime.fork_obstacles import reasons_not_to_fork
 from ..runtime.scripts.script import InputScript
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .fuzz_run import read_journal
+from .inputs import prepare_sensor_search
 from .lines import Line
 from .match import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task, play, robot_lines
 
@@ -188,9 +189,12 @@ class ForkedMatchExecutor(MatchExecutor):
 
         # In a separate process first: an import cannot be undone.
         imports_late, self._lines = self._do(survey)
-        if not imports_late:
+        self._imported = not imports_late
+        if self._imported:
             robot_lines(project)
-        devices_exist()  # each match asks; the first call prepares the answer, and forks inherit what it has made
+        # Each match asks for these; the first call prepares the answer, and forks inherit what it has made.
+        devices_exist()
+        prepare_sensor_search()
         gc.freeze()  # a garbage collection in a fork would copy the memory of all objects
 
     @property
@@ -229,6 +233,8 @@ class ForkedMatchExecutor(MatchExecutor):
             work.close()
 
     def _begin(self, task: Task) -> ForkedCall[MatchResult]:
+        if self._imported and isinstance(task, FuzzTask):
+            robot_lines(self.project).prepare(task.known)
         work = ForkedCall(lambda log: play(self.project, task, log))
         self._running.append(work)
         return work

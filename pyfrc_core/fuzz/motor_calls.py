@@ -82,6 +82,8 @@ def _drive(real: Callable[..., Any], name: str, on_motor_call: OnMotorCall) -> C
 
 
 def _numbers(args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[float, ...]:
+    if len(args) == 1 and type(args[0]) is float and not kwargs:  # nearly always
+        return args
     return tuple(
         each for each in (*args, *kwargs.values()) if isinstance(each, float | int) and not isinstance(each, bool)
     )

@@ -15,8 +15,10 @@ from types import FrameType
 from ..compat.cpython_private import current_frames, get_frame
 from ..config.settings import FuzzSettings
 from ..hal import modes
+from ..hal.driver_station import program_state
 from ..project import Project
 from ..project.robot_files import RobotFiles
+from ..runtime.clock import Clock
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript
 from ..runtime.timed_loop import Periodic
@@ -32,6 +34,8 @@ _LEAVES_WITHIN_US = 3_000_000
 _ROUNDING = 1e-6
 #: Powers up to this one do not move a motor.
 _NEGLIGIBLE_POWER = 0.02
+
+_CLOCK_RUNS = Clock.run_until.__code__
 
 
 @contextmanager
@@ -68,6 +72,8 @@ class _Oracle:
         self._mode_since_us = 0
         #: When the robot was last in the selected mode.
         self._agreed_us = 0
+        #: A call of the clock that no robot code has made, directly or not.
+        self._clock_frame: FrameType | None = None
         #: The line at which robot code was waiting when a packet came during its loop.
         self._waiting_at = ("", "")
 
@@ -117,7 +123,7 @@ class _Oracle:
 
     def after_packet(self, now: float) -> None:
         """Check the run after a packet; robot code may be in the middle of a longer call."""
-        frame = user_frame(get_frame(1), self._files)
+        frame = self._waiting_frame(get_frame(1))
         if frame is not None:
             self._waiting_at = place_of(frame, self._files)
         if self._reports is not None and (report := self._reports.error()) is not None:
@@ -125,12 +131,31 @@ class _Oracle:
         if self._settings.stuck_modes:
             self._check_mode(frame)
 
+    def _waiting_frame(self, frame: FrameType | None) -> FrameType | None:
+        """Return the frame of robot code that waits for this packet, if there is one.
+
+        Between two turns of the robot's loop, the clock is in the same call of `run_until` for many packets. What
+        has made this call is looked at once.
+        """
+        clock_frame = None
+        while frame is not None:
+            if frame is self._clock_frame:
+                return None
+            code = frame.f_code
+            if self._files.is_robot_code(code.co_filename):
+                return frame
+            if code is _CLOCK_RUNS:
+                clock_frame = clock_frame or frame
+            frame = frame.f_back
+        self._clock_frame = clock_frame
+        return None
+
     def _check_mode(self, frame: FrameType | None) -> None:
         run = self._run
         if run.started and not run.alive:
             self._misbehaved("the robot program has ended by itself", "stuck_modes", ("", ""))
             return
-        state = run.hal_data["user_program_state"]
+        state = program_state()
         if state == self._mode or state not in modes.MODES or modes.is_stopped():
             self._agreed_us = run.clock.now_us
         elif run.clock.now_us - self._agreed_us > _LEAVES_WITHIN_US:

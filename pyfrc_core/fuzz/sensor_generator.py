@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Iterator
+from typing import Any
 
 from ..hal import HalData
+from ..hal.paths import Segment
 from ..runtime.clock import PACKET_US
 from .inputs import Input
 from .values import SPANS, Value, can_be, draw, nearest
@@ -37,6 +39,8 @@ class SensorGenerator:
         #: The value of each input when it was last written or read, by target.
         self._known: dict[str, Value] = {}
         self._inputs: list[Input] = []
+        #: Where `hal_data` has each input.
+        self._places: dict[str, tuple[Any, Segment]] = {}
         self._devices: dict[str, list[Input]] = {}
         self._names: list[str] = []
         self._weights: list[float] = []
@@ -46,6 +50,8 @@ class SensorGenerator:
 
     def set_inputs(self, inputs: list[Input]) -> None:
         """Set the inputs to generate values for."""
+        if inputs == self._inputs:
+            return
         self._inputs, self._devices = inputs, {}
         for each in inputs:
             self._devices.setdefault(each.device, []).append(each)
@@ -82,7 +88,10 @@ class SensorGenerator:
             # Rates follow from other values.
             if each.kind == "rate" or each.device in self.excluded:
                 continue
-            now = self._hal_data.read(each.target)
+            place = self._places.get(each.target)
+            if place is None:
+                place = self._places[each.target] = self._hal_data.locate(each.target)
+            now = place[0][place[1]]
             if now and known.get(each.target, now) != now:
                 yield each
             known[each.target] = now

@@ -123,6 +123,19 @@ class HalData(LiveDict):
         """
         return self._walk(parse_path(path))
 
+    def locate(self, path: str) -> tuple[Any, Segment]:
+        """Return the dict or list that contains the value at a path, and its key or index there.
+
+        It is the same object as long as the robot removes no device: keep it to read or write a value often.
+
+        :raises ValueError: as `read`
+        :raises LookupError: as `read`, for the parts before the last one
+        """
+        *parents, last = parse_path(path)
+        place = self._walk(tuple(parents))
+        self._has_parts(place, tuple(parents), last)
+        return place, last
+
     def write(self, path: str, value: Any) -> None:
         """Write the value at a path.
 
@@ -130,9 +143,7 @@ class HalData(LiveDict):
         :raises LookupError: as `read`
         :raises PyfrcError: when the value cannot be written there
         """
-        *parents, last = parse_path(path)
-        place = self._walk(tuple(parents))
-        self._has_parts(place, tuple(parents), last)
+        place, last = self.locate(path)
         place[last] = value
 
     def can_write(self, path: str) -> bool:

@@ -67,7 +67,7 @@ class TreeReader:
 
     def any_exist(self) -> bool:
         """Return whether any device exists, or any thread of WPILib that waits for an alarm."""
-        created = any(self._devices.created_now()) or bool(self._tree["CAN"].signature())
+        created = self._devices.any_created() or bool(self._tree["CAN"].signature())
         return created or hal.simulation.getNumNotifiers() > 0
 
     def existing(self) -> list[str]:
@@ -265,6 +265,10 @@ class CreatedDevices:
         """Return the same, also after a reset of the HAL, which ends all watches without a report."""
         self._changed = True
         return self.created()
+
+    def any_created(self) -> bool:
+        """Return whether any device was created, also after a reset of the HAL."""
+        return any(slot.get() for slot in self._slots)
 
     def _note(self) -> None:
         self._changed = True

@@ -30,6 +30,7 @@ REMAINING = "time.remaining"
 #: Rooms of `hal_data` that hold what robots make, by names or numbers that they choose.
 _COMES_WITH_THE_ROBOT = {"CAN", "robot", "custom", "pcm", "ph", "compressor", "pcm_compressor", "ph_compressor", "pdp"}
 
+_CONTROL = re.compile(r"joysticks\[\d+\]\.(?:axes|buttons|povs)\[\d+\]$")
 _PLUGGED = re.compile(r"joysticks\[([0-5])\]\.plugged")
 
 
@@ -66,6 +67,8 @@ class Targets:
         self._hal_data = hal_data
         self._deliver = deliver
         self._entries: dict[str, ntcore.NetworkTableEntry] = {}
+        #: The list and the index of each joystick's control that was written: most writes of fuzz go to these.
+        self._controls: dict[str, tuple[Any, Any]] = {}
         self._countdown = Countdown()
 
     def write(self, target: str, value: Any, now_us: int) -> None:
@@ -73,7 +76,11 @@ class Targets:
 
         :raises PyfrcError: when there is no such target, or it cannot have this value
         """
-        if target == MODE:
+        control = self._controls.get(target)
+        if control is not None:
+            values, index = control
+            values[index] = value
+        elif target == MODE:
             modes.set_mode_named(value)
         elif target == MATCH_TIME:
             if isinstance(value, bool) or not isinstance(value, int | float):
@@ -90,7 +97,10 @@ class Targets:
         else:
             if target == REMAINING:
                 self._countdown.stop()
-            self._hal_data.write(target, value)
+            place, key = self._hal_data.locate(target)
+            place[key] = value
+            if _CONTROL.match(target):
+                self._controls[target] = place, key
 
     def check(self, target: str) -> None:
         """See that there is such a target, or may be when the robot has made its devices.
