@@ -395,3 +395,35 @@ def test_a_robot_without_a_fault_passes_and_leaves_nothing(make_project) -> None
     assert result.outcomes()["tests/pyfrc_test.py::test_fuzz"] == "PASSED"
     left = {path.name for path in (project.path / ".pyfrc").iterdir()}
     assert left == {".gitignore", "passes.json"}, "what every run of the tests writes"
+
+
+def test_sensors_of_vendors_have_plausible_ranges(make_project) -> None:
+    """A SPARK's temperature is not any number, and the voltage of its analog sensor not that of a battery."""
+    robot = """
+        import hal
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.spark = hal.SimDevice("SPARK MAX [3]")
+                self.analog = hal.SimDevice("SPARK MAX [3] ANALOG SENSOR")
+                measured = hal.SimDevice.Direction.kInput
+                self.values = [
+                    self.spark.createInt("Motor Temperature", measured, 25),
+                    self.spark.createDouble("Bus Voltage", measured, 12.0),
+                    self.analog.createDouble("Voltage", measured, 0.0),
+                ]
+    """
+    test = """
+        from pyfrc_core.fuzz.inputs import find_sensors
+
+        def test_it(control, hal_data, robot):
+            with control.run_robot():
+                control.step_timing(seconds=0.1, autonomous=False, enabled=False)
+                kinds = {each.target: each.kind for each in find_sensors(hal_data)}
+            assert kinds['CAN["SPARK MAX [3]"]["Motor Temperature"]'] == "celsius"
+            assert kinds['CAN["SPARK MAX [3]"]["Bus Voltage"]'] == "battery"
+            assert kinds['CAN["SPARK MAX [3] ANALOG SENSOR"].Voltage'] == "volts"
+    """
+    result = make_project({"robot.py": robot, "tests/test_inputs.py": test}).run("test")
+    assert result.code == 0, result.output

@@ -177,6 +177,8 @@ def _of_sim_device(name: str) -> Iterator[Input]:
         elif sort == "DOUBLE":
             kind = next((kind for pattern, kind in _NAMED if re.search(pattern, value, re.IGNORECASE)), "turns")
         else:
-            kind = "whole"
+            kind = "celsius" if re.search("temperature", value, re.IGNORECASE) else "whole"
+        if kind == "battery" and name.endswith("ANALOG SENSOR"):
+            kind = "volts"
         if kind != "option" or options:
             yield Input(format_path(("CAN", name, value)), kind, format_path(("CAN", name)), options)

@@ -12,7 +12,8 @@ from typing import Any, Literal, TypeAlias
 #: The value of an input.
 Value: TypeAlias = bool | int | float | str
 
-#: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes.
+#: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes, degrees
+#: Celsius.
 InputKind = Literal[
     "axis",
     "trigger",
@@ -31,6 +32,7 @@ InputKind = Literal[
     "turns",
     "acceleration",
     "amperes",
+    "celsius",
     "hertz",
     "range",
     "whole",
@@ -76,6 +78,8 @@ SPANS: dict[InputKind, Span] = {
     "turns": Span(0, 1, (0.0, 0.0, 0.25, 0.5, 0.75, 0.999, 1.0)),
     "acceleration": Span(-2, 2, (0.0, 1.0, -1.0, 2.0, -2.0)),
     "amperes": Span(0, 120, (0.0, 2.0, 40.0, 120.0)),
+    # Motor controllers and what protects motors act at 60 to 100 °C.
+    "celsius": Span(0, 120, (25, 25, 60, 80, 100), whole=True),
     "hertz": Span(0, 1000, (0, 244, 975), whole=True),
     "range": Span(0, 200, (0.0, 1.0, 200.0)),
     "whole": Span(0, 100, (0, 1, 100), whole=True),
