@@ -21,6 +21,9 @@ from wpimath.system.plant import DCMotor
 _OPEN_LOOP = (0, 2)
 _CLOSED_LOOP_STEPS = 5
 
+#: How often a CTRE device is asked for its settings: on a busy machine, an answer may be late.
+_ATTEMPTS = 5
+
 
 class Controller(Protocol):
     """A motor controller with its motor and gears."""
@@ -161,7 +164,9 @@ class Talon:
 def read_settings(device: Any, kind: Callable[[], Any]) -> Any:
     """Return the settings of one kind, a class in `phoenix6.configs`, that a device has."""
     settings = kind()
-    device.configurator.refresh(settings)
+    for _ in range(_ATTEMPTS):
+        if device.configurator.refresh(settings).is_ok():
+            break
     return settings
 
 
