@@ -15,7 +15,7 @@ def copy_robot(name: str, directory: Path, settings: str) -> Path:
 
     :param settings: added to its pyproject.toml
     """
-    left_out = shutil.ignore_patterns("__pycache__", ".pyfrc", "ctre_sim")
+    left_out = shutil.ignore_patterns("__pycache__", ".pyfrc", "ctre_sim", "logs")
     project = Path(shutil.copytree(_ROBOTS / name, directory / name, ignore=left_out))
     with (project / "pyproject.toml").open("a") as file:
         file.write(settings)
