@@ -33,9 +33,7 @@ def run_test(project: RobotProject, code: str) -> None:
 def competition_robot(make_project: MakeProject, name: str) -> RobotProject:
     """Return a robot without its own physics."""
     project = make_project({})
-    project.copy(COMPETITION / name)
-    (project.path / "physics.py").unlink()
-    shutil.rmtree(project.path / "sim", ignore_errors=True)
+    project.copy(COMPETITION / name, "physics.py", "sim")
     return project
 
 

@@ -91,12 +91,20 @@ class _Reached(dict[int, None]):
     def __init__(self) -> None:
         super().__init__()
         self.lines: list[Line] = []
+        self._indices: dict[Line, int] = {}
         self.times: dict[Line, int] = {}
         self.now_us: Callable[[], int] = lambda: 0
 
     def __missing__(self, index: int) -> None:
         self[index] = None
         self.times.setdefault(self.lines[index], self.now_us())
+
+    def index_of(self, line: Line) -> int:
+        """Return the index of a line in `lines`, which it joins if it is new."""
+        index = self._indices.setdefault(line, len(self.lines))
+        if index == len(self.lines):
+            self.lines.append(line)
+        return index
 
     # Code objects are hashed with their constants.
     __hash__ = object.__hash__  # type: ignore[assignment]
@@ -111,7 +119,7 @@ class LineProbes:
         self._made: dict[CodeType, tuple[dict[int, Line], CodeType]] = {}
 
     def prepare(self, wanted: Mapping[CodeType, dict[int, Line]]) -> None:
-        """Make the code with probes for these lines. Only functions whose lines have changed are made anew."""
+        """Make the code with probes for these lines, only of functions whose lines have changed."""
         for code in wanted:
             self._with_probes(code, wanted)
 
@@ -143,14 +151,10 @@ class LineProbes:
         if made is None or made[0] != lines:
             parts = [self._with_probes(part, wanted) if isinstance(part, CodeType) else part for part in code.co_consts]
             whole = code.replace(co_consts=tuple(parts))
-            keys = {number: self._index(line) for number, line in wanted.get(code, {}).items()}
+            keys = {number: self._reached.index_of(line) for number, line in wanted.get(code, {}).items()}
             made = lines, line_probes.with_probes(whole, keys, self._reached)
             self._made[code] = made
         return made[1]
-
-    def _index(self, line: Line) -> int:
-        self._reached.lines.append(line)
-        return len(self._reached.lines) - 1
 
     def _all_lines(self, code: CodeType, wanted: Mapping[CodeType, dict[int, Line]]) -> dict[int, Line]:
         """Return the wanted lines of a code object and of those inside it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from wpimath.kinematics import SwerveDrive4Kinematics
 
@@ -111,10 +111,7 @@ def _measured(run: RobotRun, modules: list[Module], assumptions: list[str]) -> l
         )
         return modules
     # A wheel that is nearly there has not come to rest yet.
-    return [
-        Module(module.drive, module.steer, module.x, module.y, round(ahead, 2) % 1)
-        for module, ahead in zip(modules, seen, strict=True)
-    ]
+    return [replace(module, ahead=round(ahead, 2) % 1) for module, ahead in zip(modules, seen, strict=True)]
 
 
 def _speed(motor: CanMotor) -> float:
