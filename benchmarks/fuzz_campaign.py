@@ -80,9 +80,9 @@ def failing(project: Path, kept: Path) -> int:
     """How many of the replays fail in the same way as the first."""
     script = load_script(kept)
     with open_match_executor(find_project(project), JOBS) as executor:
-        failures = [executor.replay(script).failure for _ in range(REPLAYS)]
-    first = failures[0]
-    return sum(first is not None and first.same_as(each) for each in failures)
+        results = [[each.failure for each in executor.replay(script).each_failure()] for _ in range(REPLAYS)]
+    first = next(iter(results[0]), None)
+    return sum(first is not None and any(first.same_as(each) for each in failures) for failures in results)
 
 
 if __name__ == "__main__":

@@ -105,7 +105,7 @@ class FuzzSettings:
     #: A motor command with the value NaN.
     not_a_number: bool = True
     #: A motor command greater than 1 or less than -1.
-    out_of_range: bool = True
+    out_of_range: bool = False
     #: An error that the HAL reports.
     hal_errors: bool = True
     #: A robot that does not leave a mode, or a program that ends.

@@ -152,8 +152,9 @@ class _Runner:
         scripts = list(self._corpus.all())
         with closing(self._executor.play(ReplayTask(entry.script) for entry in scripts)) as results:
             for entry, played in zip(scripts, results, strict=True):
-                if played.failure is not None and self._is_new(played.failure):
-                    self._report(FuzzFinding(played.failure, story_of(entry.script, played.failure), entry, known=True))
+                for each in played.each_failure():
+                    if each.failure is not None and self._is_new(each.failure):
+                        self._report(FuzzFinding(each.failure, story_of(entry.script, each.failure), entry, known=True))
 
     def run(self) -> None:
         """Run batch after batch."""
@@ -185,9 +186,10 @@ class _Runner:
                 progress.matches += 1
                 progress.simulated += played.script.end_us / 1e6
                 progress.covered = share(self._reached, self._all_lines) if self._reached else None
-                if played.failure is not None and self._is_new(played.failure):
-                    self._waiting.append(played)
-                    progress.crashes = len(self._failures)
+                for each in played.each_failure():
+                    if each.failure is not None and self._is_new(each.failure):
+                        self._waiting.append(each)
+                        progress.crashes = len(self._failures)
                 self._listener.on_progress(progress)
                 if self._over(0):
                     return

@@ -19,7 +19,11 @@ WAITS = "loop_waits"
 #: Kind of a failure: the process ended.
 PROCESS_ENDED = "process_ended"
 
+#: Failures that are reported once for a robot, wherever its code has more of them.
+_ONCE = ("motors_while_disabled",)
+
 _ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]+")
+_NUMBER = re.compile(r"\d+")
 
 
 class MisbehaviorError(NamesItsPlace):
@@ -53,7 +57,13 @@ class FuzzFailure:
 
     def same_as(self, other: FuzzFailure | None) -> bool:
         """Return whether both failures have the same cause."""
-        return other is not None and (self.kind, self.place) == (other.kind, other.place)
+        return other is not None and self._cause() == other._cause()
+
+    def _cause(self) -> tuple[str, str]:
+        if self.kind in _ONCE:
+            return self.kind, ""
+        # Errors of the HAL have no line of the robot's, but different texts.
+        return self.kind, _NUMBER.sub("0", self.text) if self.kind == "hal_errors" else self.place
 
 
 def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, nullcontext
-from dataclasses import dataclass, field
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,6 +27,7 @@ from .fuzz_run import FuzzRun
 from .input_generator import InputGenerator
 from .inputs import Input
 from .lines import Line, RobotLines
+from .misbehavior_notes import MisbehaviorNotes, NotedFailure
 from .oracle import attach_oracle
 from .seed_schedule import SeedSchedule
 
@@ -57,10 +58,12 @@ class ReplayTask:
     """Run the robot with the inputs of a script.
 
     :param use_oracle: whether misbehavior without an exception is a failure
+    :param ends_with: misbehavior that ends the run; other misbehavior is noted
     """
 
     script: InputScript
     use_oracle: bool = True
+    ends_with: FuzzFailure | None = None
 
 
 Task = FuzzTask | ReplayTask
@@ -70,11 +73,12 @@ Task = FuzzTask | ReplayTask
 class MatchResult:
     """Result of a match.
 
-    :param failure: the failure, if there was one
-    :param script: the inputs until then
+    :param failure: the failure that ended the match, if there was one
+    :param script: the inputs until the end
     :param reached: the lines that were reached for the first time, and when, in microseconds
     :param inputs: the robot's inputs, by target
     :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
+    :param noted: the failures after which the match went on
     """
 
     failure: FuzzFailure | None
@@ -82,6 +86,16 @@ class MatchResult:
     reached: dict[Line, int] = field(default_factory=dict)
     inputs: dict[str, Input] = field(default_factory=dict)
     real_time: tuple[str, ...] = ()
+    noted: tuple[NotedFailure, ...] = ()
+
+    def each_failure(self) -> Iterator[MatchResult]:
+        """Return a result for each failure, in order, with the inputs until it."""
+        for failure, end_us in self.noted:
+            steps = tuple(step for step in self.script.steps if step.at_us < end_us)
+            script = replace(self.script, steps=steps, end_us=min(end_us, self.script.end_us))
+            yield replace(self, failure=failure, script=script, noted=())
+        if self.failure is not None:
+            yield replace(self, noted=())
 
 
 def play(project: Project, task: Task, log: CrashLog) -> MatchResult:
@@ -121,7 +135,7 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
     rng = task.schedule.rng()
     before_us = 0
     reseed_until_us = task.schedule.seeds[-1][0] + PACKET_US
-    with _robot(project, log, ROBOT_SEED) as run, ExitStack() as closing:
+    with _robot(project, log, ROBOT_SEED) as (run, notes), ExitStack() as closing:
         generator = InputGenerator(
             rng,
             run,
@@ -155,12 +169,12 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
                 failure = failure_of(error, project.files)
         script = fuzz_run.script(project.main_file.name, ROBOT_SEED)
         real_time = run.hal_data["CAN"].real_time_devices()
-        return MatchResult(failure, script, dict(reached), generator.inputs, real_time)
+        return MatchResult(failure, script, dict(reached), generator.inputs, real_time, tuple(notes.found))
 
 
 def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:
     script = task.script
-    with _robot(project, log, script.seed, task.use_oracle) as run:
+    with _robot(project, log, script.seed, task.use_oracle, task.ends_with) as (run, notes):
         failure = None
         try:
             construct(project, run, load(project))
@@ -173,11 +187,14 @@ def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:
             failure = failure_of(error, project.files)
         end_us = run.clock.now_us + PACKET_US
         steps = tuple(step for step in script.steps if step.at_us < end_us)
-        return MatchResult(failure, InputScript(steps, end_us, robot=script.robot, seed=script.seed))
+        played = InputScript(steps, end_us, robot=script.robot, seed=script.seed)
+        return MatchResult(failure, played, noted=tuple(notes.found))
 
 
 @contextmanager
-def _robot(project: Project, log: CrashLog, seed: int, use_oracle: bool = True) -> Iterator[RobotRun]:
+def _robot(
+    project: Project, log: CrashLog, seed: int, use_oracle: bool = True, ends_with: FuzzFailure | None = None
+) -> Iterator[tuple[RobotRun, MisbehaviorNotes]]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
     load(project)  # before robot time begins
     run = RobotRun()
@@ -187,6 +204,9 @@ def _robot(project: Project, log: CrashLog, seed: int, use_oracle: bool = True) 
         run.open()
         CrashMoment(log, run)
         LoopLimit(run, project.files, project.settings)
-        with attach_oracle(run, project.files, settings) if use_oracle else nullcontext():
+        notes = MisbehaviorNotes(run.clock, project.files, ends_with)
+        with ExitStack() as closing:
+            if use_oracle:
+                closing.enter_context(attach_oracle(run, project.files, settings, notes.ends_run))
             seed_generators(seed)
-            yield run
+            yield run, notes

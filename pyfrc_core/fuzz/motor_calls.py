@@ -15,10 +15,12 @@ import wpilib.interfaces
 
 from ..runtime.patch_table import Patch, PatchTable
 
-#: Called with the function's name, its numeric arguments, and whether they are powers from -1 to 1.
-OnMotorCall = Callable[[str, tuple[float, ...], bool], None]
+#: Called with the motor controller or drive, the function's name, its numeric arguments, and whether they are powers
+#: from -1 to 1.
+OnMotorCall = Callable[[Any, str, tuple[float, ...], bool], None]
 
-_DRIVES = (
+#: The class of each drive, and its functions that set its motors.
+DRIVES = (
     (wpilib.drive.DifferentialDrive, ("arcadeDrive", "curvatureDrive", "tankDrive")),
     (wpilib.drive.MecanumDrive, ("driveCartesian", "drivePolar")),
 )
@@ -41,7 +43,7 @@ def _patches(on_motor_call: OnMotorCall) -> Iterator[Patch]:
         for name, wrap in (("set", _set), ("setVoltage", _set_voltage)):
             if name in vars(owner):
                 yield Patch(owner, name, wrap(vars(owner)[name], on_motor_call))
-    for drive, names in _DRIVES:
+    for drive, names in DRIVES:
         for name in names:
             yield Patch(drive, name, _drive(vars(drive)[name], name, on_motor_call))
 
@@ -59,7 +61,7 @@ def _with_derived(base: type[Any]) -> Iterator[type[Any]]:
 
 def _set(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callable[..., Any]:
     def set(self: Any, *args: Any, **kwargs: Any) -> Any:
-        on_motor_call("set", _numbers(args, kwargs), True)
+        on_motor_call(self, "set", _numbers(args, kwargs), True)
         return real(self, *args, **kwargs)
 
     return set
@@ -67,7 +69,7 @@ def _set(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callable[..., 
 
 def _set_voltage(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callable[..., Any]:
     def setVoltage(self: Any, *args: Any, **kwargs: Any) -> Any:
-        on_motor_call("setVoltage", _numbers(args, kwargs), False)
+        on_motor_call(self, "setVoltage", _numbers(args, kwargs), False)
         return real(self, *args, **kwargs)
 
     return setVoltage
@@ -75,7 +77,7 @@ def _set_voltage(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callab
 
 def _drive(real: Callable[..., Any], name: str, on_motor_call: OnMotorCall) -> Callable[..., Any]:
     def drive(self: Any, *args: Any, **kwargs: Any) -> Any:
-        on_motor_call(name, _numbers(args, kwargs), False)
+        on_motor_call(self, name, _numbers(args, kwargs), False)
         return real(self, *args, **kwargs)
 
     return drive

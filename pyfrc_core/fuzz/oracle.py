@@ -1,16 +1,17 @@
 """The oracle: the checks of `pyfrc fuzz` that detect misbehavior without an exception.
 
-A check calls `_misbehaved`, which ends the run as an exception would. It passes the name of the setting in
-`FuzzSettings` that disables the check. Checks look at the run once in each packet, at each call of a periodic function,
-or at each call of a motor (`motor_calls`). Only at a call do they know the user's line that makes it, and see a value
-that changes back before the next packet.
+A check calls `_misbehaved` with the name of the setting in `FuzzSettings` that disables the check. Then `ends_run`
+decides whether that ends the run, as an exception would, or is only noted. Checks look at the run once in each packet,
+at each call of a periodic function, or at each call of a motor (`motor_calls`). Only at a call do they know the user's
+line that makes it, and see a value that changes back before the next packet.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from types import FrameType
+from typing import Any
 
 from ..compat.cpython_private import current_frames, get_frame
 from ..config.settings import FuzzSettings
@@ -24,6 +25,8 @@ from ..runtime.scripts.script import InputScript
 from ..runtime.timed_loop import Periodic
 from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
+from .inert_motors import InertMotors
+from .misbehavior_notes import LastMisbehavior
 from .motor_calls import intercept_motor_calls
 
 #: How long after it was disabled a robot may still command its motors: its loop has to come round.
@@ -38,13 +41,19 @@ _NEGLIGIBLE_POWER = 0.02
 _CLOCK_RUNS = Clock.run_until.__code__
 
 
+#: Called with each misbehavior; returns whether the run ends with it.
+EndsRun = Callable[[MisbehaviorError], bool]
+
+
 @contextmanager
-def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings) -> Iterator[None]:
+def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends_run: EndsRun) -> Iterator[None]:
     """Watch a run, which is open and has not started, until the context ends."""
     with ExitStack() as closing:
-        oracle = _Oracle(run, files, settings, closing.enter_context(hal_reports()) if settings.hal_errors else None)
+        reports = closing.enter_context(hal_reports()) if settings.hal_errors else None
+        oracle = _Oracle(run, files, settings, reports, ends_run)
         if settings.not_a_number or settings.out_of_range or settings.motors_while_disabled:
             closing.enter_context(intercept_motor_calls(oracle.on_motor_call))
+            closing.enter_context(oracle.inert_motors.watched())
         if settings.slow_loops:
             run.timed_loop.after_call = oracle.after_call
         run.clock.before_packet.append(oracle.before_packet)
@@ -58,16 +67,27 @@ def oracle_if_fuzzed(run: RobotRun, project: Project, script: InputScript) -> It
     if not script.story:
         yield
         return
-    with attach_oracle(run, project.files, project.settings.fuzz):
+    last = LastMisbehavior(run.clock, run.threads, script.end_us)
+    with attach_oracle(run, project.files, project.settings.fuzz, last.ends_run):
+        run.observe(last.after_packet)
         yield
 
 
 class _Oracle:
-    def __init__(self, run: RobotRun, files: RobotFiles, settings: FuzzSettings, reports: HalReports | None) -> None:
+    def __init__(
+        self,
+        run: RobotRun,
+        files: RobotFiles,
+        settings: FuzzSettings,
+        reports: HalReports | None,
+        ends_run: EndsRun,
+    ) -> None:
         self._run = run
         self._files = files
         self._settings = settings
         self._reports = reports
+        self._ends_run = ends_run
+        self.inert_motors = InertMotors(run.hal_data)
         self._mode = ""
         self._mode_since_us = 0
         #: When the robot was last in the selected mode.
@@ -81,11 +101,13 @@ class _Oracle:
         threads = self._run.threads
         if threads.failure is None and not threads.ending:
             where = f"\n  (Disable this check with {kind} = false under [tool.pyfrc.fuzz] in pyproject.toml.)"
-            threads.fail(MisbehaviorError(what + where, kind, *place))
+            error = MisbehaviorError(what + where, kind, *place)
+            if self._ends_run(error):
+                threads.fail(error)
 
     # -- motors ------------------------------------------------------------------------------------------------
 
-    def on_motor_call(self, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
+    def on_motor_call(self, motor: Any, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
         """Check a call of a motor controller or a drive."""
         settings = self._settings
         for number in numbers:
@@ -96,12 +118,14 @@ class _Oracle:
                 if settings.out_of_range:
                     what = f"{name}() was called with a power of {'more than 1' if number > 0 else 'less than -1'}"
                     self._misbehaved(what, "out_of_range", self._caller())
-            elif abs(number) > _NEGLIGIBLE_POWER and settings.motors_while_disabled and self._is_long_disabled():
-                self._misbehaved(
-                    f"{name}() commands a motor to move while the robot is disabled",
-                    "motors_while_disabled",
-                    self._caller(),
-                )
+            elif (
+                abs(number) > _NEGLIGIBLE_POWER
+                and settings.motors_while_disabled
+                and self._is_long_disabled()
+                and not self.inert_motors.is_inert(motor)
+            ):
+                what = f"{name}() commands a motor to move while the robot is disabled"
+                self._misbehaved(what, "motors_while_disabled", self._caller())
 
     def _is_long_disabled(self) -> bool:
         return (

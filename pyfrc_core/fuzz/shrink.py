@@ -137,7 +137,7 @@ class Shrinker:
         return None
 
     def _follow(self, writes: Sequence[_Write], end_us: int) -> ReplayTask:
-        return ReplayTask(self._script(writes, end_us), self._use_oracle)
+        return ReplayTask(self._script(writes, end_us), self._use_oracle, self.failure)
 
     def _script(self, writes: Sequence[_Write], end_us: int) -> InputScript:
         steps = tuple(
