@@ -25,6 +25,7 @@ from competition import SECONDS, bare_loop
 from competition_robots import NAMES, copy_robot
 from test_speed import write_robot
 
+from pyfrc_core.fuzz.goals import Goal
 from pyfrc_core.fuzz.match import FuzzTask
 from pyfrc_core.fuzz.match_executor import open_match_executor
 from pyfrc_core.fuzz.seed_schedule import SeedSchedule
@@ -77,7 +78,7 @@ def measure(directory: Path, matches: int) -> tuple[float, float]:
     """Play matches one after the other, as a campaign does, in which the lines of earlier ones are known."""
     project = find_project(directory)
     times: list[float] = []
-    known = frozenset[tuple[str, int]]()
+    known = frozenset[Goal]()
     with open_match_executor(project, 1) as executor:
         before = cpu_seconds()
         for number in range(matches):

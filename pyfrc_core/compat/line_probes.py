@@ -1,7 +1,7 @@
-"""Add probes to code objects of CPython 3.11: instructions that look up a line in a dict when the line runs.
+"""Add probes to code objects of CPython 3.11: instructions that look up a key in a dict when a line or a branch runs.
 
 A trace function slows down all Python code of a thread, also libraries' that it ignores: a match of a competition robot
-took 1.6 times as long. Probes cost something only on the lines that have one. From Python 3.12, `sys.monitoring` does
+took 1.6 times as long. Probes cost something only at the places that have one. From Python 3.12, `sys.monitoring` does
 that. The format of 3.11's code objects is described in CPython's ``Objects/locations.md`` and
 ``Objects/exception_handling_notes.txt``, and fixed for that version.
 """
@@ -27,6 +27,18 @@ _NO_PROBE_BEFORE = frozenset(
     dis.opmap[name] for name in ("RESUME", "MAKE_CELL", "COPY_FREE_VARS", "RETURN_GENERATOR") if name in dis.opmap
 )
 
+_CONDITIONAL = frozenset(
+    number
+    for name, number in dis.opmap.items()
+    if name.startswith(("POP_JUMP_", "JUMP_IF_")) and number in _WITH_TARGET
+)
+#: The forward version of each conditional jump: a jump to a branch's probe goes to the end of the code.
+_FORWARD = {number: dis.opmap[dis.opname[number].replace("BACKWARD", "FORWARD")] for number in _CONDITIONAL}
+
+#: Where a probe is: a line's number; or where a conditional jump begins, in units of two bytes, with whether it jumps,
+#: or with None for the comparison before it.
+Place = int | tuple[int, bool | None]
+
 _Position = tuple["int | None", "int | None", "int | None", "int | None"]
 
 
@@ -49,47 +61,111 @@ class _Instruction:
         return self.prefixes + 1 + _CACHES[self.code]
 
 
-def with_probes(code: CodeType, keys: Mapping[int, object], found: Mapping[Any, Any]) -> CodeType:
-    """Return the code with a probe where one of these lines begins to run: it evaluates ``found[key]``.
+def with_probes(code: CodeType, keys: Mapping[Place, Any], found: Mapping[Any, Any]) -> CodeType:
+    """Return the code with a probe at each of these places.
 
-    :param keys: the keys of the lines by their numbers; keys can be hashed
-    :param found: can be hashed; its lookup must not raise an error
+    The probe of a line or a branch evaluates ``found[key]`` when it runs, that of a comparison ``key[left, right]``.
+
+    :param keys: the keys of the places; keys can be hashed
+    :param found: can be hashed; lookups must not raise errors
     """
-    instructions, by_begin = _parse(code)
-    table = [
-        (by_begin[start], by_begin[end], by_begin[target], depth)
-        for start, end, target, depth in _exception_table(code)
-    ]
-    targets = {id(each.target) for each in instructions if each.target} | {id(target) for _, _, target, _ in table}
-    constants: list[object] = [*code.co_consts, found]
-    places: dict[int, int] = {}
-    new: list[_Instruction] = []
-    line_before: int | None = None
-    for each in instructions:
-        line = each.position[0]
-        if line in keys and (line != line_before or id(each) in targets) and each.code not in _NO_PROBE_BEFORE:
-            assert line is not None
-            if line not in places:
-                places[line] = len(constants)
-                constants.append(keys[line])
-            probe = [
-                _Instruction(dis.opmap["LOAD_CONST"], len(code.co_consts), each.position),
-                _Instruction(dis.opmap["LOAD_CONST"], places[line], each.position),
-                _Instruction(dis.opmap["BINARY_SUBSCR"], 0, each.position),
-                _Instruction(dis.opmap["POP_TOP"], 0, each.position),
-            ]
-            each.probe = probe[0]
-            new += probe
-        new.append(each)
-        line_before = line
-    _arrange(new)
-    return code.replace(
-        co_code=b"".join(_bytes_of(each) for each in new[:-1]),
-        co_consts=tuple(constants),
-        co_linetable=b"".join(_locations(new, code.co_firstlineno)),
-        co_exceptiontable=b"".join(_exceptions(table)),
-        co_stacksize=code.co_stacksize + 2,
-    )
+    return _Prober(code, keys, found).code()
+
+
+def conditional_jumps(code: CodeType) -> Iterator[tuple[int, int, bool]]:
+    """Return where each conditional jump begins, its line, and whether it depends on the comparison just before it."""
+    before = None
+    for each in _parse(code)[0]:
+        if each.code in _CONDITIONAL and each.position[0] is not None:
+            yield each.begin, each.position[0], before == dis.opmap["COMPARE_OP"]
+        before = each.code
+
+
+class _Prober:
+    def __init__(self, code: CodeType, keys: Mapping[Place, Any], found: Mapping[Any, Any]) -> None:
+        self._code = code
+        self._keys = keys
+        self._constants: list[object] = [*code.co_consts, found]
+        self._indices: dict[Place, int] = {}
+        self._new: list[_Instruction] = []
+        #: Probes of branches that jump, which continue with the jump's target.
+        self._detours: list[_Instruction] = []
+
+    def code(self) -> CodeType:
+        instructions, by_begin = _parse(self._code)
+        table = [
+            (by_begin[start], by_begin[end], by_begin[target], depth)
+            for start, end, target, depth in _exception_table(self._code)
+        ]
+        targets = {id(each.target) for each in instructions if each.target} | {id(target) for _, _, target, _ in table}
+        line_before: int | None = None
+        for each, following in zip(instructions, [*instructions[1:], None], strict=True):
+            line = each.position[0]
+            begins = line != line_before or id(each) in targets
+            if line is not None and line in self._keys and begins and each.code not in _NO_PROBE_BEFORE:
+                self._add_before(each, self._lookup(line, each.position))
+            if following is not None and following.code in _CONDITIONAL and (following.begin, None) in self._keys:
+                self._add_before(each, self._measurement((following.begin, None), each.position))
+            self._new.append(each)
+            if each.code in _CONDITIONAL:
+                self._add_branches(each)
+            line_before = line
+        new = self._new
+        if self._detours:  # behind the end of the exception table's last entry
+            new = [*new, *self._detours, _Instruction(dis.opmap["NOP"], 0, (None, None, None, None))]
+        _arrange(new)
+        return self._code.replace(
+            co_code=b"".join(_bytes_of(each) for each in new[:-1]),
+            co_consts=tuple(self._constants),
+            co_linetable=b"".join(_locations(new, self._code.co_firstlineno)),
+            co_exceptiontable=b"".join(_exceptions(table)),
+            co_stacksize=self._code.co_stacksize + 3,
+        )
+
+    def _add_before(self, each: _Instruction, probe: list[_Instruction]) -> None:
+        each.probe = each.probe or probe[0]
+        self._new += probe
+
+    def _add_branches(self, jump: _Instruction) -> None:
+        if (jump.begin, False) in self._keys:
+            self._new += self._lookup((jump.begin, False), jump.position)
+        if (jump.begin, True) in self._keys:
+            detour = self._lookup((jump.begin, True), jump.position)
+            # Only loops need to be interruptible.
+            back = "JUMP_BACKWARD" if jump.code in _BACKWARD else "JUMP_BACKWARD_NO_INTERRUPT"
+            detour.append(_Instruction(dis.opmap[back], 0, jump.position, jump.target))
+            self._detours += detour
+            jump.code, jump.target = _FORWARD[jump.code], detour[0]
+
+    def _constant(self, place: Place) -> int:
+        if place not in self._indices:
+            self._indices[place] = len(self._constants)
+            self._constants.append(self._keys[place])
+        return self._indices[place]
+
+    def _lookup(self, place: Place, position: _Position) -> list[_Instruction]:
+        return _instructions(
+            position,
+            ("LOAD_CONST", len(self._code.co_consts)),
+            ("LOAD_CONST", self._constant(place)),
+            ("BINARY_SUBSCR", 0),
+            ("POP_TOP", 0),
+        )
+
+    def _measurement(self, place: Place, position: _Position) -> list[_Instruction]:
+        return _instructions(
+            position,
+            ("LOAD_CONST", self._constant(place)),
+            ("COPY", 3),
+            ("COPY", 3),
+            ("BUILD_TUPLE", 2),
+            ("BINARY_SUBSCR", 0),
+            ("POP_TOP", 0),
+        )
+
+
+def _instructions(position: _Position, *parts: tuple[str, int]) -> list[_Instruction]:
+    return [_Instruction(dis.opmap[name], argument, position) for name, argument in parts]
 
 
 def _parse(code: CodeType) -> tuple[list[_Instruction], dict[int, _Instruction]]:

@@ -41,6 +41,12 @@ SET_STACK_TRACE_HOOK = PrivateName(
 SUBSYSTEMS = PrivateName(
     "commands2:CommandScheduler._subsystems", "runtime.simulation_periodic finds the robot's subsystems by it"
 )
+SCHEDULED_COMMANDS = PrivateName(
+    "commands2:CommandScheduler._scheduledCommands", "fuzz.states finds the commands that run by it"
+)
+STATE_OF_MACHINE = PrivateName(
+    "magicbot.state_machine:_StateData", "fuzz.states finds the states of magicbot's state machines by it"
+)
 NATIVE_HAL = PrivateName(
     "native.wpihal._init_robotpy_native_wpihal:__lib",
     "hal_data shows the channels of an encoder by it, and compat.hal_callbacks has the HAL report SimDevices by it",
@@ -55,6 +61,7 @@ NAMES = (
     MAGIC_SIMULATION_PERIODIC,
     STACK_TRACE_HOOK,
     SET_STACK_TRACE_HOOK,
+    STATE_OF_MACHINE,
     NATIVE_HAL,
 )
 
@@ -85,6 +92,22 @@ def registered_subsystems() -> Iterable[Any]:
 
     subsystems: Iterable[Any] = SUBSYSTEMS.of(commands2.CommandScheduler.getInstance())
     return subsystems
+
+
+def scheduled_commands() -> tuple[Any, ...]:
+    """Return the commands that run, in the order in which they began; commands2 must have been imported.
+
+    Without this private name of commands2, return none.
+    """
+    import commands2
+
+    return tuple(getattr(commands2.CommandScheduler.getInstance(), SCHEDULED_COMMANDS.name, ()))
+
+
+def is_state_of_machine(thing: object) -> bool:
+    """Return whether this is a state of one of magicbot's state machines."""
+    kind = type(thing)
+    return kind.__name__ == STATE_OF_MACHINE.name and kind.__module__ == "magicbot.state_machine"
 
 
 def show_stack(lines: Callable[[], str]) -> None:

@@ -16,7 +16,7 @@ from ..runtime.scripts.script import InputScript
 from .corpus import Corpus, CorpusEntry
 from .describe import story_of
 from .failure import FuzzFailure
-from .lines import Line, share
+from .goals import Goal, share
 from .match import FuzzTask, MatchResult, ReplayTask
 from .match_executor import MatchExecutor, open_match_executor
 from .seed_schedule import SeedScheduler
@@ -141,7 +141,7 @@ class _Runner:
         self._corpus = Corpus(executor.project)
         self._scheduler = SeedScheduler(options.seed)
         self._all_lines = executor.lines
-        self._reached: frozenset[Line] = frozenset()
+        self._reached: frozenset[Goal] = frozenset()
         self._failures: list[FuzzFailure] = []
         #: Failures that are not shrunk yet.
         self._waiting: list[MatchResult] = []

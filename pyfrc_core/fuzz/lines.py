@@ -1,7 +1,7 @@
-"""Observe which of the robot's lines a match is the first to reach. This guides a campaign.
+"""Observe which of the robot's lines and branches a match is the first to reach. This guides a campaign.
 
-`coverage` measures whole processes for reports. Here only lines that no match has reached yet are of interest, and when
-they were reached; known lines cost nothing. Only lines in functions count: all others run on import.
+`coverage` measures whole processes for reports. Here only what no match has reached yet is of interest, and when it was
+reached; known lines cost nothing. Only code in functions counts: all other code runs on import.
 """
 
 from __future__ import annotations
@@ -15,95 +15,124 @@ from types import CodeType, FrameType, FunctionType
 from typing import Any
 
 from ..compat import line_probes
+from ..compat.line_probes import Place
 from ..project.robot_files import RobotFiles
-
-#: A file, relative to the project, and the number of a line.
-Line = tuple[str, int]
+from .goals import BRANCH, NEAR, Goal, Line
+from .nearness import Nearness
 
 #: One of the tool numbers that `sys.monitoring` leaves unassigned; debuggers and coverage have their own.
 _TOOL = 4
 
+_Wanted = Mapping[CodeType, Mapping[Place, Goal]]
+
 
 class RobotLines:
-    """The lines of the robot's functions. Create it after the robot's modules were imported, and before `gc.freeze` is
-    called.
+    """The lines and branches of the robot's functions. Create it after the robot's modules were imported, and before
+    `gc.freeze` is called.
     """
 
     def __init__(self, files: RobotFiles) -> None:
-        self._by_code: dict[CodeType, dict[int, Line]] = {}
+        self._files = files
+        self._by_code: dict[CodeType, dict[Place, Goal]] = {}
+        self._lines: set[Line] = set()
         self._functions: list[FunctionType] = []
         self._probes = LineProbes()
+        self._last: tuple[frozenset[Goal], _Wanted] | None = None
         for thing in gc.get_objects():
             # Not `isinstance`, which reads `__class__`: lazy proxies import their module when it is read.
             if type(thing) is FunctionType and files.is_robot_code(thing.__code__.co_filename):
                 self._functions.append(thing)
-                self._add(thing.__code__, files)
+                self._add(thing.__code__)
 
-    def _add(self, code: CodeType, files: RobotFiles) -> None:
+    def _add(self, code: CodeType) -> None:
         if code not in self._by_code:
-            name = files.relative(code.co_filename)
-            self._by_code[code] = {line: (name, line) for _, _, line in code.co_lines() if line}
+            name = self._files.relative(code.co_filename)
             # The first line is that of `def`: it runs with every call, and holds no code.
-            self._by_code[code].pop(code.co_firstlineno, None)
+            lines = {line for _, _, line in code.co_lines() if line and line != code.co_firstlineno}
+            self._lines |= {(name, line) for line in lines}
+            places: dict[Place, Goal] = {line: (name, line) for line in lines}
+            if line_probes.SUPPORTED:
+                for at, line, compares in line_probes.conditional_jumps(code):
+                    places |= {(at, jumps): (BRANCH, name, line, at, int(jumps)) for jumps in (False, True)}
+                    if compares:
+                        places[at, None] = (NEAR, name, line, at)
+            self._by_code[code] = places
             for constant in code.co_consts:
                 if isinstance(constant, CodeType):
-                    self._add(constant, files)
+                    self._add(constant)
 
     def all(self) -> frozenset[Line]:
         """Return all lines."""
-        return frozenset(line for lines in self._by_code.values() for line in lines.values())
+        return frozenset(self._lines)
 
     @contextmanager
-    def watched(self, known: frozenset[Line], now_us: Callable[[], int]) -> Iterator[dict[Line, int]]:
-        """Record which unknown lines are reached and when, until the context ends.
+    def watched(self, known: frozenset[Goal], now_us: Callable[[], int]) -> Iterator[dict[Goal, int]]:
+        """Record which unknown lines and branches are reached and when, until the context ends.
 
-        Before Python 3.12, code that another tool traces is not observed.
+        Before Python 3.12, code that another tool traces is not observed. Python 3.10 observes only lines. Only Python
+        3.11 measures how near comparisons are to another result.
         """
-        wanted = self._wanted(known)
         if line_probes.SUPPORTED and sys.gettrace() is None:
-            with self._probes.inserted(self._functions, wanted, now_us) as reached:
+            with self._probes.inserted(self._functions, self._wanted(known), known, now_us) as reached:
                 yield reached
             return
         reached = {}
-        watch = _monitored if sys.version_info >= (3, 12) else _traced
-        with watch(wanted, reached, now_us):
-            yield reached
+        if sys.version_info >= (3, 12):
+            with _monitored(self._by_code, known, self._files, reached, now_us):
+                yield reached
+        else:
+            with _traced(_only_lines(self._wanted(known)), reached, now_us):
+                yield reached
 
-    def prepare(self, known: frozenset[Line]) -> None:
-        """Prepare `watched` with these known lines: forks of this process then find it prepared."""
+    def prepare(self, known: frozenset[Goal]) -> None:
+        """Prepare `watched` with these known goals: forks of this process then find it prepared."""
         if line_probes.SUPPORTED:
             self._probes.prepare(self._wanted(known))
 
-    def _wanted(self, known: frozenset[Line]) -> dict[CodeType, dict[int, Line]]:
-        wanted = {
-            code: {number: line for number, line in lines.items() if line not in known}
-            for code, lines in self._by_code.items()
-        }
-        return {code: lines for code, lines in wanted.items() if lines}
+    def _wanted(self, known: frozenset[Goal]) -> _Wanted:
+        if self._last is None or self._last[0] != known:
+            found: dict[CodeType, Mapping[Place, Goal]] = {}
+            for code, places in self._by_code.items():
+                wanted = {place: goal for place, goal in places.items() if goal not in known}
+                # Only a comparison with one known result can come nearer to the other one.
+                for place in [place for place in wanted if isinstance(place, tuple) and place[1] is None]:
+                    if ((place[0], False) in wanted) == ((place[0], True) in wanted):
+                        del wanted[place]
+                if wanted:
+                    found[code] = wanted
+            self._last = known, found
+        return self._last[1]
+
+
+def _only_lines(wanted: _Wanted) -> dict[CodeType, dict[int, Goal]]:
+    return {
+        code: {place: goal for place, goal in places.items() if isinstance(place, int)}
+        for code, places in wanted.items()
+    }
 
 
 class _Reached(dict[int, None]):
-    """The lines that were reached, by their index in `lines`: a number is found sooner than a `Line`.
+    """The goals that were reached, by their index in `goals`: a number is found sooner than a `Goal`.
 
-    The first lookup of a line adds it.
+    The first lookup of a goal adds it.
     """
 
     def __init__(self) -> None:
         super().__init__()
-        self.lines: list[Line] = []
-        self._indices: dict[Line, int] = {}
-        self.times: dict[Line, int] = {}
+        self.goals: list[Goal] = []
+        self._indices: dict[Goal, int] = {}
+        self.times: dict[Goal, int] = {}
         self.now_us: Callable[[], int] = lambda: 0
 
     def __missing__(self, index: int) -> None:
         self[index] = None
-        self.times.setdefault(self.lines[index], self.now_us())
+        self.times.setdefault(self.goals[index], self.now_us())
 
-    def index_of(self, line: Line) -> int:
-        """Return the index of a line in `lines`, which it joins if it is new."""
-        index = self._indices.setdefault(line, len(self.lines))
-        if index == len(self.lines):
-            self.lines.append(line)
+    def index_of(self, goal: Goal) -> int:
+        """Return the index of a goal in `goals`, which it joins if it is new."""
+        index = self._indices.setdefault(goal, len(self.goals))
+        if index == len(self.goals):
+            self.goals.append(goal)
         return index
 
     # Code objects are hashed with their constants.
@@ -111,15 +140,16 @@ class _Reached(dict[int, None]):
 
 
 class LineProbes:
-    """Functions' code with probes for unknown lines, for Python 3.11."""
+    """Functions' code with probes for unknown goals, for Python 3.11."""
 
     def __init__(self) -> None:
         self._reached = _Reached()
-        #: The code with probes of each code object, and the lines that have one.
-        self._made: dict[CodeType, tuple[dict[int, Line], CodeType]] = {}
+        self._nearness = Nearness()
+        #: The code with probes of each code object, and the places that have one.
+        self._made: dict[CodeType, tuple[Mapping[Any, Goal], CodeType]] = {}
 
-    def prepare(self, wanted: Mapping[CodeType, dict[int, Line]]) -> None:
-        """Make the code with probes for these lines, only of functions whose lines have changed."""
+    def prepare(self, wanted: _Wanted) -> None:
+        """Make the code with probes for these goals, only of functions whose goals have changed."""
         for code in wanted:
             self._with_probes(code, wanted)
 
@@ -127,9 +157,10 @@ class LineProbes:
     def inserted(
         self,
         functions: Iterable[FunctionType],
-        wanted: Mapping[CodeType, dict[int, Line]],
+        wanted: _Wanted,
+        known: frozenset[Goal],
         now_us: Callable[[], int],
-    ) -> Iterator[dict[Line, int]]:
+    ) -> Iterator[dict[Goal, int]]:
         """Give the functions their code with probes until the context ends."""
         reached = self._reached
         reached.clear()
@@ -137,50 +168,78 @@ class LineProbes:
         before = [(function, function.__code__) for function in functions]
         for function, code in before:
             function.__code__ = self._with_probes(code, wanted)
+        self._nearness.begin(known, now_us)
         try:
             yield reached.times
         finally:
+            reached.times |= self._nearness.reached()
             for function, code in before:
                 function.__code__ = code
 
-    def _with_probes(self, code: CodeType, wanted: Mapping[CodeType, dict[int, Line]]) -> CodeType:
-        lines = self._all_lines(code, wanted)
-        if not lines:
+    def _with_probes(self, code: CodeType, wanted: _Wanted) -> CodeType:
+        places = self._all_places(code, wanted)
+        if not places:
             return code
         made = self._made.get(code)
-        if made is None or made[0] != lines:
+        if made is None or made[0] != places:
             parts = [self._with_probes(part, wanted) if isinstance(part, CodeType) else part for part in code.co_consts]
             whole = code.replace(co_consts=tuple(parts))
-            keys = {number: self._reached.index_of(line) for number, line in wanted.get(code, {}).items()}
-            made = lines, line_probes.with_probes(whole, keys, self._reached)
+            keys = {place: self._key(place, goal) for place, goal in wanted.get(code, {}).items()}
+            made = places, line_probes.with_probes(whole, keys, self._reached)
             self._made[code] = made
         return made[1]
 
-    def _all_lines(self, code: CodeType, wanted: Mapping[CodeType, dict[int, Line]]) -> dict[int, Line]:
-        """Return the wanted lines of a code object and of those inside it."""
-        found = dict(wanted.get(code, {}))
+    def _key(self, place: Place, goal: Goal) -> object:
+        if isinstance(place, tuple) and place[1] is None:
+            return self._nearness.comparison(goal)
+        return self._reached.index_of(goal)
+
+    def _all_places(self, code: CodeType, wanted: _Wanted) -> dict[Any, Goal]:
+        """Return the wanted places of a code object and of those inside it."""
+        found: dict[Any, Goal] = dict(wanted.get(code, {}))
         for part in code.co_consts:
             if isinstance(part, CodeType):
-                found |= self._all_lines(part, wanted)
+                found |= {(part, place): goal for place, goal in self._all_places(part, wanted).items()}
         return found
 
 
 @contextmanager
 def _monitored(
-    wanted: Mapping[CodeType, Mapping[int, Line]], reached: dict[Line, int], now_us: Callable[[], int]
+    codes: _Wanted,
+    known: frozenset[Goal],
+    files: RobotFiles,
+    reached: dict[Goal, int],
+    now_us: Callable[[], int],
 ) -> Iterator[None]:
     monitoring: Any = sys.monitoring  # type: ignore[attr-defined,unused-ignore]
+    events = monitoring.events
+    #: Where each branch has gone to.
+    gone: dict[tuple[CodeType, int], set[int]] = {}
+    # From Python 3.14, each way of a branch has an event of its own.
+    both = 2 if not hasattr(events, "BRANCH_LEFT") else 1
 
     def on_line(code: CodeType, number: int) -> Any:
-        line = wanted[code].get(number)
-        if line is not None:
-            reached.setdefault(line, now_us())
+        goal = codes[code].get(number)
+        if goal is not None and goal not in known:
+            reached.setdefault(goal, now_us())
         return monitoring.DISABLE
 
+    def on_branch(code: CodeType, offset: int, destination: int) -> Any:
+        ways = gone.setdefault((code, offset), set())
+        if destination not in ways:
+            ways.add(destination)
+            goal = (BRANCH, files.relative(code.co_filename), code.co_firstlineno, offset, destination)
+            if goal not in known:
+                reached.setdefault(goal, now_us())
+        return monitoring.DISABLE if len(ways) >= both else None
+
+    branches = [events.BRANCH] if both == 2 else [events.BRANCH_LEFT, events.BRANCH_RIGHT]
     monitoring.use_tool_id(_TOOL, "pyfrc fuzz")
-    monitoring.register_callback(_TOOL, monitoring.events.LINE, on_line)
-    for code in wanted:
-        monitoring.set_local_events(_TOOL, code, monitoring.events.LINE)
+    monitoring.register_callback(_TOOL, events.LINE, on_line)
+    for event in branches:
+        monitoring.register_callback(_TOOL, event, on_branch)
+    for code in codes:
+        monitoring.set_local_events(_TOOL, code, events.LINE | sum(branches))
     try:
         yield
     finally:
@@ -189,7 +248,7 @@ def _monitored(
 
 @contextmanager
 def _traced(
-    wanted: Mapping[CodeType, Mapping[int, Line]], reached: dict[Line, int], now_us: Callable[[], int]
+    wanted: Mapping[CodeType, Mapping[int, Goal]], reached: dict[Goal, int], now_us: Callable[[], int]
 ) -> Iterator[None]:
     if sys.gettrace() is not None or not wanted:
         yield
@@ -218,8 +277,3 @@ def _traced(
     finally:
         sys.settrace(None)
         threading.settrace(None)  # type: ignore[arg-type, unused-ignore]
-
-
-def share(reached: Iterable[Line], all_lines: frozenset[Line]) -> float:
-    """Return the share of the lines that was reached, from 0 to 1."""
-    return len(all_lines.intersection(reached)) / len(all_lines) if all_lines else 1.0

@@ -24,12 +24,14 @@ from ..runtime.scripts.script import InputScript, ScriptError
 from ..runtime.seeds import seed_generators
 from .failure import FuzzFailure, failure_of
 from .fuzz_run import FuzzRun
+from .goals import Goal
 from .input_generator import InputGenerator
 from .inputs import Input
-from .lines import Line, RobotLines
+from .lines import RobotLines
 from .misbehavior_notes import MisbehaviorNotes, NotedFailure
 from .oracle import attach_oracle
 from .seed_schedule import SeedSchedule
+from .states import RobotStates
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
@@ -44,12 +46,12 @@ class FuzzTask:
     """Run a match with generated inputs.
 
     :param schedule: the random seeds
-    :param known: the lines that were reached before
+    :param known: the goals that were reached before
     :param journal: a file for the inputs, in case the process ends before it can return them
     """
 
     schedule: SeedSchedule
-    known: frozenset[Line] = frozenset()
+    known: frozenset[Goal] = frozenset()
     journal: Path | None = None
 
 
@@ -75,7 +77,7 @@ class MatchResult:
 
     :param failure: the failure that ended the match, if there was one
     :param script: the inputs until the end
-    :param reached: the lines that were reached for the first time, and when, in microseconds
+    :param reached: the goals that were reached for the first time, and when, in microseconds
     :param inputs: the robot's inputs, by target
     :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
     :param noted: the failures after which the match went on
@@ -83,7 +85,7 @@ class MatchResult:
 
     failure: FuzzFailure | None
     script: InputScript
-    reached: dict[Line, int] = field(default_factory=dict)
+    reached: dict[Goal, int] = field(default_factory=dict)
     inputs: dict[str, Input] = field(default_factory=dict)
     real_time: tuple[str, ...] = ()
     noted: tuple[NotedFailure, ...] = ()
@@ -145,12 +147,15 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
         )
         fuzz_run = FuzzRun(run, generator, closing.enter_context(task.journal.open("wb", 0)) if task.journal else None)
 
+        states = RobotStates(run, project.files, task.known)
+
         def step(now: float) -> None:
             nonlocal before_us
             now_us = run.clock.now_us
             if now_us <= reseed_until_us:
                 task.schedule.reseed(rng, before_us, now_us)
             before_us = now_us
+            states.after_packet(now_us)
             if not fuzz_run.on_packet(now):
                 run.clock.halted = True
 
@@ -169,7 +174,9 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
                 failure = failure_of(error, project.files)
         script = fuzz_run.script(project.main_file.name, ROBOT_SEED)
         real_time = run.hal_data["CAN"].real_time_devices()
-        return MatchResult(failure, script, dict(reached), generator.inputs, real_time, tuple(notes.found))
+        return MatchResult(
+            failure, script, dict(reached) | states.reached, generator.inputs, real_time, tuple(notes.found)
+        )
 
 
 def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:

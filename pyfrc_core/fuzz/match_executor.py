@@ -29,8 +29,8 @@ from ..runtime.fork_obstacles import reasons_not_to_fork
 from ..runtime.scripts.script import InputScript
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .fuzz_run import read_journal
+from .goals import Line
 from .inputs import prepare_sensor_search
-from .lines import Line
 from .match import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task, play, robot_lines
 
 Answer = TypeVar("Answer")

@@ -1,19 +1,23 @@
-"""The random seeds of a campaign's matches, derived from its seed, a match's number and the lines reached before."""
+"""The random seeds of a campaign's matches, derived from its seed, a match's number and the goals reached before."""
 
 from __future__ import annotations
 
 import random
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..runtime.clock import PACKET_US
-from .lines import Line
+from .goals import BRANCH, LINE, NEAR, STATE, Goal, kind_of
 
 #: The share of matches that continue an earlier one, when there are any worth continuing.
 _CONTINUED = 0.5
-#: A match that continues another equals it for at most this long after that one first reached a line.
+#: A match that continues another equals it for at most this long after that one first reached a goal.
 _SAME_FOR_US = 1_000_000
-#: How many matches worth continuing are remembered: the latest, which have reached the lines that are hardest to reach.
+#: How many matches worth continuing are remembered for each kind of goal: the latest, which have reached the goals that
+#: are hardest to reach.
 _MOST_REMEMBERED = 64
+#: How often each kind of goal is continued from, relative to the others.
+_WEIGHTS = {LINE: 4, BRANCH: 3, STATE: 3, NEAR: 2}
 
 
 @dataclass(frozen=True)
@@ -47,30 +51,35 @@ class _Worthwhile:
 
 
 class SeedScheduler:
-    """Chooses the seeds of a campaign's matches: the same choices for the same seed and the same lines, reported in the
+    """Chooses the seeds of a campaign's matches: the same choices for the same seed and the same goals, reported in the
     same order.
     """
 
     def __init__(self, seed: int) -> None:
         self._seed = seed
-        self._worthwhile: list[_Worthwhile] = []
+        self._worthwhile: dict[str, list[_Worthwhile]] = {kind: [] for kind in _WEIGHTS}
 
     def schedule(self, number: int) -> SeedSchedule:
         """Return the seeds of the match with this number."""
         own = f"fuzz {self._seed} {number}"
         rng = random.Random(f"recipe {own}")
-        if not self._worthwhile or rng.random() >= _CONTINUED:
+        kinds = [kind for kind, worthwhile in self._worthwhile.items() if worthwhile]
+        if not kinds or rng.random() >= _CONTINUED:
             return SeedSchedule(((0, own),))
-        base = rng.choice(self._worthwhile)
+        (kind,) = rng.choices(kinds, [_WEIGHTS[kind] for kind in kinds])
+        base = rng.choice(self._worthwhile[kind])
         from_us = rng.choice(base.reached_us) + rng.randrange(0, _SAME_FOR_US, PACKET_US)
         before = tuple(turn for turn in base.schedule.seeds if turn[0] < from_us)
         return SeedSchedule((*before, (from_us, own)))
 
-    def learn(self, schedule: SeedSchedule, reached: dict[Line, int]) -> None:
-        """Note the lines that a match was the first to reach.
+    def learn(self, schedule: SeedSchedule, reached: Mapping[Goal, int]) -> None:
+        """Note the goals that a match was the first to reach.
 
-        :param reached: when it reached each line, in microseconds
+        :param reached: when it reached each goal, in microseconds
         """
-        if reached:
-            moments = tuple(sorted(set(reached.values())))
-            self._worthwhile = [*self._worthwhile, _Worthwhile(schedule, moments)][-_MOST_REMEMBERED:]
+        moments: dict[str, set[int]] = {}
+        for goal, at_us in reached.items():
+            moments.setdefault(kind_of(goal), set()).add(at_us)
+        for kind, times in moments.items():
+            remembered = [*self._worthwhile[kind], _Worthwhile(schedule, tuple(sorted(times)))]
+            self._worthwhile[kind] = remembered[-_MOST_REMEMBERED:]
