@@ -15,6 +15,8 @@ from types import FrameType
 from typing import Any
 
 from .errors import PyfrcError, RobotCodeError
+from .invariants.load import load_invariants
+from .invariants.watch import watch_invariants
 from .physics.construct import construct
 from .project import Project
 from .runtime.clock import to_us
@@ -74,7 +76,8 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     :param until: an earlier end, in seconds of robot time; then the trace is compared up to there only
     :param trace: where to write the trace
     :raises ScriptError: when the script is not valid, or does not fit the robot
-    :raises RobotCodeError: when the robot's code cannot be imported
+    :raises InvariantError: when a rule cannot be called
+    :raises RobotCodeError: when the robot's code, or a file with rules, cannot be imported
     """
     from .fuzz.oracle import oracle_if_fuzzed
 
@@ -83,6 +86,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
         return ReplayResult(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
     patches.install(project.files)
     robot_class = load_robot(project)
+    rules = load_invariants(project)
     until_us = None if until is None else to_us(until)
     with TemporaryDirectory() as temporary:
         written = trace or Path(temporary, "trace.jsonl")
@@ -94,6 +98,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
             run.open()
             LoopLimit(run, project.files, settings)
             try:
+                watch_invariants(run, project.files, rules)
                 seed_generators(script.seed)
                 with oracle_if_fuzzed(run, project, script), traced(run, written) as recorder:
                     with _collected(failures, project):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
 
 from ..errors import text_of
+from ..invariants.watch import BrokenInvariantError
 from ..project.robot_files import RobotFiles
 from ..runtime.exceptions import TestFroze
 from ..runtime.failures import NamesItsPlace, headline
@@ -68,8 +69,8 @@ class FuzzFailure:
 
 def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
     """Return the failure that this error stands for."""
-    if isinstance(error, MisbehaviorError):
-        return FuzzFailure(error.kind, error.place, error.function, str(error))
+    if isinstance(error, MisbehaviorError | BrokenInvariantError):
+        return FuzzFailure(error.kind, error.place, error.function, _ADDRESS.sub("", str(error)))
     if isinstance(error, LoopWaitsError):  # the line that waits varies
         return FuzzFailure(WAITS, error.begins_at, error.function, str(error))
     code, line = _innermost(error.__traceback__, files)

@@ -9,6 +9,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..invariants.load import Invariant, load_invariants
+from ..invariants.watch import BrokenInvariantError, watch_invariants
 from ..physics.construct import construct
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
@@ -118,9 +120,10 @@ def robot_lines(project: Project) -> RobotLines:
 
 
 def load(project: Project) -> type[Any]:
-    """Import the robot program and its physics.
+    """Import the robot program, its physics and its rules.
 
     :raises RobotCodeError: when its code fails
+    :raises InvariantError: when a rule cannot be called
     """
     patches.install(project.files)
     robot_class = load_robot(project)
@@ -128,7 +131,14 @@ def load(project: Project) -> type[Any]:
         from ..physics.engine import load_physics
 
         load_physics(project)
+    invariants_of(project)
     return robot_class
+
+
+@lru_cache(maxsize=1)
+def invariants_of(project: Project) -> tuple[Invariant, ...]:
+    """Return the project's rules, which the first call imports."""
+    return load_invariants(project)
 
 
 def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
@@ -215,5 +225,11 @@ def _robot(
         with ExitStack() as closing:
             if use_oracle:
                 closing.enter_context(attach_oracle(run, project.files, settings, notes.ends_run))
+
+            def on_broken(error: BrokenInvariantError) -> None:
+                if not use_oracle or notes.ends_run(error):
+                    run.threads.fail(error)
+
+            watch_invariants(run, project.files, invariants_of(project), on_broken)
             seed_generators(seed)
             yield run, notes

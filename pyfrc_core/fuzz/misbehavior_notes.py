@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ..invariants.watch import BrokenInvariantError
 from ..project.robot_files import RobotFiles
 from ..runtime.clock import PACKET_US, Clock
 from ..runtime.threads import RobotThreads
@@ -35,8 +36,8 @@ class MisbehaviorNotes:
         self._files = files
         self._ends_with = ends_with
 
-    def ends_run(self, error: MisbehaviorError) -> bool:
-        """Note a misbehavior; return whether the run ends with it."""
+    def ends_run(self, error: MisbehaviorError | BrokenInvariantError) -> bool:
+        """Note a misbehavior or a broken rule; return whether the run ends with it."""
         failure = failure_of(error, self._files)
         if error.kind in _ENDS_A_MATCH or failure.same_as(self._ends_with):
             return True

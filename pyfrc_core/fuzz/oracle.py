@@ -55,7 +55,7 @@ def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends
             closing.enter_context(intercept_motor_calls(oracle.on_motor_call))
             closing.enter_context(oracle.inert_motors.watched())
         if settings.slow_loops:
-            run.timed_loop.after_call = oracle.after_call
+            run.timed_loop.after_calls.append(oracle.after_call)
         run.clock.before_packet.append(oracle.before_packet)
         run.observe(oracle.after_packet)
         yield

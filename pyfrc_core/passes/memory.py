@@ -57,7 +57,8 @@ class Passes:
         self._written = list(written)
         self._file = project.root / _FILE
         self._begin = read_contents(project, self._written)
-        self._basis = _basis_of(self._begin, [seed, builtin, project.main_file.name, project.class_name])
+        rules = [project.files.relative(str(file)) for file in project.invariant_files]
+        self._basis = _basis_of(self._begin, [seed, builtin, project.main_file.name, project.class_name, rules])
         self._kept = _load(self._file)
         self._blocks = cache(lambda path: blocks_of((project.root / path).read_bytes()))
         self._hash_elsewhere = cache(lambda file: hash_of_file(Path(file)))
@@ -144,7 +145,7 @@ class Passes:
 def _basis_of(contents: Contents, conditions: list[object]) -> str:
     """Return a hash of what every test depends on: packages, conditions, other files, and which sources exist.
 
-    A new file with tests changes no other test, since nothing imports it.
+    A new file with tests changes no other test, since nothing imports it. A file with rules concerns all tests.
     """
     names = [path for path in contents.sources if not any(map(PurePath(path).match, TEST_FILES))]
     facts = [environment(), *conditions, sorted(names), sorted(contents.others.items())]

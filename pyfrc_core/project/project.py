@@ -92,9 +92,25 @@ class Project:
         """The possible directories of tests, in search order."""
         return self.root / "tests", self.root.parent / "tests"
 
+    @cached_property
+    def invariant_files(self) -> tuple[Path, ...]:
+        """The files among the project's tests that may have rules (`pyfrc.invariant`)."""
+        tests = self.find_tests()
+        directories = self.test_directories if tests is None else (tests,)
+        found = (tuple(filter(_may_have_rules, sorted(directory.rglob("*.py")))) for directory in directories)
+        return next(filter(None, found), ())
+
     def find_tests(self) -> Path | None:
         """Return the directory of the project's tests, or None if there are no test files."""
         for directory in self.test_directories:
             if any(any(directory.rglob(pattern)) for pattern in TEST_FILES):
                 return directory
         return None
+
+
+def _may_have_rules(file: Path) -> bool:
+    try:
+        text = file.read_bytes()
+    except OSError:
+        return False
+    return b"pyfrc" in text and b"invariant" in text

@@ -26,8 +26,9 @@ DEFAULT_TIME_LIMIT = 500.0
 KICKOFF = int(CURRENT.kickoff.timestamp())
 
 # Actions that are due at the same microsecond are called in this order: scripts write inputs, the driver station's
-# packet is delivered, threads and notifiers wake up, the robot's loop runs, physics runs, observers look at the result.
-INPUT, PACKET, WAKE_UP, ROBOT_LOOP, PHYSICS, OBSERVE = range(6)
+# packet is delivered, threads and notifiers wake up, the robot's loop runs, rules are checked, physics runs, observers
+# look at the result.
+INPUT, PACKET, WAKE_UP, ROBOT_LOOP, CHECK, PHYSICS, OBSERVE = range(7)
 
 Action = Callable[[], None]
 

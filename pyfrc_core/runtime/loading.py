@@ -32,12 +32,13 @@ def load_robot(project: Project) -> type[Any]:
     return choose_robot_class(project, import_file(project, project.main_file))
 
 
-def import_file(project: Project, file: Path) -> ModuleType:
-    """Import one of the program's files, as the module of its name.
+def import_file(project: Project, file: Path, name: str | None = None) -> ModuleType:
+    """Import one of the project's files.
 
+    :param name: the module's name; by default that of the file
     :raises RobotCodeError: when the import fails, naming the user's line
     """
-    name, where = file.stem, file.name
+    name, where = name or file.stem, file.name
     loaded = sys.modules.get(name)
     if loaded is not None and getattr(loaded, "__file__", None) == str(file):
         return loaded  # a test file has imported it already

@@ -66,8 +66,10 @@ class TimedLoop:
         self._turns_on_own_thread = False
         self._alarm_us = _NEVER
         self.stopped = False
-        #: Called after each callback, to measure how long it took: it began at `loop_start_us`.
-        self.after_call: Callable[[Periodic], None] | None = None
+        #: Called after each callback, which began at `loop_start_us`.
+        self.after_calls: list[Callable[[Periodic], None]] = []
+        #: The callback that is WPILib's loop; None until `robotInit` is over.
+        self.main: Periodic | None = None
         #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
         self.loop_start_us = 0
 
@@ -91,7 +93,8 @@ class TimedLoop:
         self._on_initialized()
         hal.observeUserProgramStarting()
         self.add(LOOP_FUNCTION.of(robot), robot.getPeriod())
-        self._callbacks.insert(0, self._callbacks.pop())  # WPILib schedules it before all others
+        self.main = self._callbacks.pop()
+        self._callbacks.insert(0, self.main)  # WPILib schedules it before all others
 
     def run_in_place(self) -> None:
         """Let the clock call what is due from now on."""
@@ -135,8 +138,8 @@ class TimedLoop:
             callback.call()
             if clock.now_us != self.loop_start_us:
                 self._look_for_overrun(callback)
-            if self.after_call is not None:
-                self.after_call(callback)
+            for listener in self.after_calls:
+                listener(callback)
             callback.move_on(woken_us)
             callback = self._next()
         return callback

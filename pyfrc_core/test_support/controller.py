@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeVar, cast, overload
 
 from ..config.settings import MatchSettings
 from ..hal import modes
+from ..invariants.watch import watch_invariants
 from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
 from ..runtime.match import MatchPeriods
@@ -19,6 +20,7 @@ from ..runtime.seeds import seed_generators
 from .fake_time import FakeTime
 
 if TYPE_CHECKING:
+    from ..invariants.load import Invariant
     from ..project import Project
 
 OnStep: TypeAlias = Callable[[float], object]
@@ -43,8 +45,17 @@ class TestController:
 
     __test__ = False  # pytest: not a test class, despite its name
 
-    def __init__(self, fake_time_inst: FakeTime, project: Project | None = None, seed: int = 0) -> None:
+    def __init__(
+        self,
+        fake_time_inst: FakeTime,
+        project: Project | None = None,
+        seed: int = 0,
+        invariants: Sequence[Invariant] = (),
+    ) -> None:
         self._time = fake_time_inst
+        self._invariants = invariants
+        #: Whether the rules of the project (`pyfrc.invariant`) are checked. Set it before the robot runs.
+        self.check_invariants = True
         self._run = fake_time_inst.run
         self.project = project
         #: The random seed of this test.
@@ -240,6 +251,8 @@ class TestController:
                 f"{how}(): the robot has run already in this test. It can only run once; "
                 "write a second test, or do everything in one run."
             )
+        if self.check_invariants and self.project is not None:
+            watch_invariants(self._run, self.project.files, self._invariants)
 
 
 def _until_false(on_step: OnStep) -> OnStep:

@@ -19,6 +19,7 @@ import pytest
 from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, PyfrcError
 from ..hal import HalData
+from ..invariants.load import Invariant, load_invariants
 from ..project import Project
 from ..runtime.crash_moment import CrashMoment
 from ..runtime.data_logs import TEST_LOGS, LogPlace
@@ -106,12 +107,17 @@ class PyFrcPlugin:
 
         return load_physics(self.project)
 
+    @cached_property
+    def invariants(self) -> tuple[Invariant, ...]:
+        """The project's rules. Read it after pytest has imported the test files, which may have some of them."""
+        return load_invariants(self.project)
+
     # -- fixtures ----------------------------------------------------------------------------------------------
 
     @pytest.fixture
     def control(self, fake_time: FakeTime, robot: Any) -> TestController:
         """Control over the robot."""
-        return TestController(fake_time, self.project, self.options.seed)
+        return TestController(fake_time, self.project, self.options.seed, self.invariants)
 
     @pytest.fixture
     def fake_time(self, _robot_run: RobotRun) -> FakeTime:
@@ -165,6 +171,7 @@ class PyFrcPlugin:
         """One run of the robot, which ends with the test."""
         __tracebackhide__ = True
         self.robot_class()  # imports the robot's modules before robot time begins
+        self.invariants  # noqa: B018 - likewise
         name = _file_name(request.node.nodeid).removesuffix(".jsonl")
         run = RobotRun(LogPlace.of_test(self.project.root, name))
         hang_detector = HangDetector(run, self.project.files, self.options.hang_seconds, self.crash_log)

@@ -123,7 +123,7 @@ def test_callbacks_of_one_turn_follow_each_other_and_one_that_sleeps_is_not_inte
 
     loop = make_loop(timeline, turn)
     loop.add(lambda: timeline.note("often"), 0.005)
-    loop.after_call = lambda callback: timeline.note(f"after {callback.period_us}")
+    loop.after_calls.append(lambda callback: timeline.note(f"after {callback.period_us}"))
     timeline.at(23, PHYSICS, "physics")
     timeline.run_until(19)
     timeline.log.clear()

@@ -141,6 +141,7 @@ class IsolatedTests:
         else:
             with contextlib.suppress(Exception):  # each test that needs it reports it
                 self._plugin.robot_class()
+                self._plugin.invariants  # noqa: B018
         reasons = "; ".join(reasons_not_to_fork())
         if not reasons:
             return True

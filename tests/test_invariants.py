@@ -1,0 +1,335 @@
+"""`pyfrc.invariant`: rules of a team, checked by `pyfrc fuzz`, `pyfrc test` and `pyfrc replay`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import pyfrc
+from pyfrc_core.invariants.load import load_invariants
+from pyfrc_core.runtime.scripts.script import load_script
+
+RULES = "tests/rules.py"
+
+#: With the left bumper held, button B drives the elevator below 0: the bug.
+ELEVATOR = """
+    import wpilib
+
+    class Elevator:
+        def __init__(self):
+            self.motor = wpilib.PWMSparkMax(0)
+            self.height = 0.5
+
+        def move(self, power):
+            self.motor.set(power)
+            self.height += 0.02 * power
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.gamepad = wpilib.XboxController(0)
+            self.elevator = Elevator()
+            self.arm_is_in = True
+
+        def autonomousPeriodic(self):
+            self.elevator.move(0.1)
+
+        def teleopPeriodic(self):
+            self.arm_is_in = not self.gamepad.getAButton()
+            power = -0.5 if self.gamepad.getBButton() else 0.5 * self.gamepad.getRightTriggerAxis()
+            if self.elevator.height > 0.01 or power > 0 or self.gamepad.getLeftBumper():
+                self.elevator.move(power)
+            else:
+                self.elevator.move(0)
+    """
+
+RULE = """
+    import pyfrc
+
+    @pyfrc.invariant
+    def elevator_is_up_while_the_arm_is_in(robot):
+        assert robot.elevator.height > -0.005 or not robot.arm_is_in
+    """
+
+SETTINGS = """
+    [tool.pyfrc.fuzz]
+    match_seconds = 10
+    [tool.pyfrc.match]
+    autonomous = 2
+    teleop = 3
+    """
+
+READY_MADE = "from pyfrc.tests import test_autonomous, test_operator_control, test_practice\n"
+
+
+def rule(body: str, head: str = "def it_holds(robot, hal_data):") -> str:
+    """The text of a file with one rule, whose body is in line 5."""
+    return f"import pyfrc\n\n@pyfrc.invariant\n{head}\n    {body}\n"
+
+
+@pytest.fixture
+def project(make_project: Any) -> Any:
+    """A robot with a bug that no exception shows."""
+    return make_project({"robot.py": ELEVATOR, "pyproject.toml": SETTINGS})
+
+
+def test_a_broken_rule_is_found_shrunk_explained_and_replayed(project) -> None:
+    project.write({RULES: RULE})
+    result = project.run("fuzz", "--seed", "1", "--runs", "16")
+    assert result.code == 1, result.output
+    file = "tests/fuzz/invariant-tests-rules-elevator_is_up_while_the_arm_is_in.jsonl"
+    script = load_script(project.path / file)
+    (step,) = script.steps
+    assert step.writes == {"mode": "teleop", "joysticks[0].buttons[2]": True, "joysticks[0].buttons[5]": True}
+    first, last = script.story
+    assert first == "at 0.00 s teleoperated begins: joystick 0 button 2 pressed, joystick 0 button 5 pressed"
+    place = project.place(RULES, "assert")
+    broken = f"{place}: the rule elevator_is_up_while_the_arm_is_in() is broken: robot.elevator.height is -0.01, "
+    moment, _, what = last.partition(": ")
+    assert what == f"{broken}robot.arm_is_in is True"
+    assert f"{what}\n  {moment} of robot time, in teleop mode\n" in result.stdout
+    for command in ("replay", file), ("test",):
+        again = project.run(*command)
+        assert again.code == 1
+        assert broken in again.output
+
+    robot = project.path / "robot.py"
+    robot.write_text(robot.read_text().replace(" or self.gamepad.getLeftBumper()", ""))
+    for command in ("replay", file), ("test",), ("fuzz", "--seed", "1", "--runs", "4"):
+        repaired = project.run(*command)
+        assert repaired.code == 0, repaired.output
+
+
+def test_the_same_finding_in_new_processes(project) -> None:
+    """A rule in a package of tests, with a neighbor that it imports; each match imports all of it."""
+    project.write(
+        {
+            "tests/__init__.py": "",
+            "tests/limits.py": "LOWEST = 0.4\n",
+            RULES: "from .limits import LOWEST\n" + rule("assert robot.elevator.height > LOWEST"),
+            "pyproject.toml": SETTINGS + "    [tool.pyfrc.test]\n    isolation = 'spawn'\n",
+        }
+    )
+    script = '{"format": "pyfrc-input 1", "robot": "robot.py", "seed": 0, "end": 1}\n'
+    script += '{"t": 0, "set": {"mode": "teleop", "joysticks[0].buttons[2]": true}}\n'
+    project.write({"down.jsonl": script, "tests/test_down.py": "def test_down(control, robot):\n    pass\n"})
+    result = project.run("fuzz", "--seed", "1", "--runs", "1")
+    assert (result.code, "LOWEST is 0.4" in result.stdout) == (1, True), result.output
+    assert f"then {RULES}:6: the rule it_holds() is broken: " in project.run("replay", "down.jsonl").output
+
+
+def test_ready_made_and_own_tests_check_the_rules(project) -> None:
+    project.write(
+        {
+            RULES: rule("return robot.elevator.height < 0.511", "def it_is_low(robot):"),
+            "tests/test_robot.py": READY_MADE
+            + "\n".join(
+                [
+                    "def test_steps(control, robot):",
+                    "    with control.run_robot():",
+                    "        control.step_timing(seconds=1, autonomous=True, enabled=True)",
+                    "def test_without_rules(control, robot):",
+                    "    control.check_invariants = False",
+                    "    with control.run_robot():",
+                    "        control.step_timing(seconds=1, autonomous=True, enabled=True)",
+                ]
+            ),
+        }
+    )
+    result = project.run("test", "--", "-v")
+    outcomes = {test.partition("::")[2]: outcome for test, outcome in result.outcomes().items()}
+    assert outcomes == {
+        "test_practice": "FAILED",
+        "test_autonomous[]": "FAILED",
+        "test_operator_control": "PASSED",
+        "test_steps": "FAILED",
+        "test_without_rules": "PASSED",
+    }
+    text = f"{RULES}:4: the rule it_is_low() is broken: robot.elevator.height is 0.512"
+    assert f"{text}\n  at 0.12 s of robot time, in autonomous mode" in result.output
+
+
+def test_a_rule_that_holds_changes_nothing(make_shared_project) -> None:
+    traces = []
+    for rules in ("", rule("assert hal_data['pwm'][0]['value'] <= 1\n    return robot.elevator.height > -100")):
+        project = make_shared_project(
+            {"robot.py": ELEVATOR, "pyproject.toml": SETTINGS, "tests/test_it.py": READY_MADE}
+        )
+        project.write({RULES: rules})
+        assert project.run("fuzz", "--seed", "1", "--runs", "4").code == 0
+        result = project.run("test", "--trace", "traces")
+        assert result.code == 0, result.output
+        traces.append({file.name: file.read_bytes() for file in (project.path / "traces").iterdir()})
+    assert traces[0] == traces[1]
+
+
+#: Mistakes in a rule: its head, its body, and what is said of it.
+WRONG = {
+    "parameter": (
+        "def it_holds(robots):",
+        "pass",
+        "tests/rules.py:4: the rule it_holds() has the parameter 'robots'\n"
+        "  A rule can have the parameters hal_data and robot: did you mean 'robot'?",
+    ),
+    "async": ("async def it_holds():", "pass", "tests/rules.py:4: the rule it_holds() must be a plain function"),
+    "import": ("def it_holds():", "pass\nimport no_such_module", "tests/rules.py:6: ModuleNotFoundError"),
+}
+
+
+@pytest.mark.parametrize("mistake", WRONG)
+def test_a_file_that_is_wrong_is_named_by_each_command(mistake: str, project) -> None:
+    head, body, message = WRONG[mistake]
+    script = '{"format": "pyfrc-input 1", "robot": "robot.py", "seed": 0, "end": 1}\n'
+    project.write({RULES: rule(body, head), "tests/test_it.py": READY_MADE, "script.jsonl": script})
+    for command in ("fuzz", "--runs", "1"), ("replay", "script.jsonl"), ("test",):
+        result = project.run(*command)
+        assert result.code != 0
+        assert message in result.output, result.output
+
+
+#: Errors of a rule while the robot runs: its body, and what is said of it.
+ERRORS = {
+    "robot.elevater": "the rule it_holds() raised AttributeError: 'MyRobot' object has no attribute 'elevater'",
+    "return 0": "the rule it_holds() returned 0: return True or False, or use assert",
+    "robot.elevator.move('up')": "the rule it_holds() raised TypeError: ",
+}
+
+
+@pytest.mark.parametrize("body", ERRORS)
+def test_an_error_of_a_rule_names_its_line(body: str, project) -> None:
+    project.write({RULES: rule(body), "tests/test_it.py": READY_MADE})
+    line = 4 if body.startswith("return") else 5
+    for command in ("fuzz", "--runs", "1"), ("test",):
+        result = project.run(*command)
+        assert result.code == 1
+        assert f"{RULES}:{line}: {ERRORS[body]}" in result.output, result.output
+    if "move" in body:
+        assert f"(at {project.place('robot.py', 'self.motor.set(power)')})" in result.output
+
+
+def test_rules_are_checked_after_the_loop_and_before_physics(make_shared_project) -> None:
+    """The robot stops at the switch in the same packet; physics, which runs later, presses it again and again."""
+    robot = """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def __init__(self):
+                super().__init__({period})
+                self.switch = wpilib.DigitalInput(0)
+                self.motor = wpilib.PWMSparkMax(0)
+
+            def teleopPeriodic(self):
+                self.motor.set(0.5 if self.switch.get() else 0)
+        """
+    physics = """
+        class PhysicsEngine:
+            def __init__(self, physics_controller):
+                pass
+
+            def update_sim(self, hal_data, now, tm_diff):
+                hal_data["dio"][0]["value"] = int(now * 10) % 2 == 0
+        """
+    test = "def test_it(control, robot):\n    control.set_operator_control()\n    control.run_test(lambda tm: tm < 1)\n"
+    for period in (0.02, 0.005):
+        project = make_shared_project(
+            {"robot.py": robot.format(period=period), "physics.py": physics, "tests/test_it.py": test}
+        )
+        project.write({RULES: rule("assert hal_data['dio'][0]['value'] or hal_data['pwm'][0]['value'] == 0")})
+        result = project.run("test")
+        assert result.code == 0, result.output
+
+
+def test_robots_with_a_loop_of_their_own(make_shared_project) -> None:
+    robot = """
+        import wpilib
+
+        class MyRobot(wpilib.RobotBase):
+            def startCompetition(self):
+                self.loops = 0
+                while not self.done:
+                    self.loops += 1
+                    wpilib.wait(0.02)
+
+            done = False
+
+            def endCompetition(self):
+                self.done = True
+        """
+    magic = """
+        import magicbot
+        import time
+
+        class MyRobot(magicbot.MagicRobot):
+            def createObjects(self):
+                time.sleep(0.1)
+                self.loops = 0
+
+            def disabledPeriodic(self):
+                self.loops += 1
+        """
+    test = "def test_it(control, robot):\n    control.set_autonomous(False)\n    control.run_test(lambda tm: tm < 1)\n"
+    for text in (robot, magic):
+        project = make_shared_project(
+            {"robot.py": text, "tests/test_it.py": test, RULES: rule("assert robot.loops < 9")}
+        )
+        result = project.run("test")
+        assert f"{RULES}:5: the rule it_holds() is broken: robot.loops is 9" in result.output, result.output
+
+
+def test_rules_in_test_files_and_values_that_are_shown(project) -> None:
+    """pytest rewrites the asserts of test files: the explanation is the same."""
+    test = """
+        import pyfrc
+
+        LIMIT = 0.505
+
+        def below(height):
+            assert height < LIMIT, "too high"
+
+        @pyfrc.invariant
+        def first(hal_data, robot):
+            below(abs(robot.elevator.height))
+
+        @pyfrc.invariant
+        def second(hal_data):
+            assert hal_data["pwm"][0]["value"] == 0 or hal_data["time"]["remaining"] is None
+
+        def test_it(control, robot):
+            control.set_autonomous()
+            control.run_test(lambda tm: tm < 1)
+        """
+    for file in ("tests/test_rules.py", RULES):
+        project.write({file: test})
+        first, second = project.place(file, "too high"), project.place(file, "remaining")
+        broken = [
+            f"{first}: the rule first() is broken: too high (height is 0.506, LIMIT is 0.505)",
+            f"{second}: the rule second() is broken: hal_data['pwm'][0]['value'] is 0.0996016, hal_data['time']['rem",
+        ]
+        result = project.run("fuzz", "--runs", "2")
+        assert any(text in result.output for text in broken), result.output
+        if file != RULES:
+            result = project.run("test")
+            assert any(text in result.output for text in broken), result.output
+        (project.path / file).unlink()
+
+
+def test_a_new_rule_concerns_tests_that_have_passed(project) -> None:
+    project.write({"tests/test_it.py": READY_MADE})
+    assert project.run("test", "--changed").code == 0
+    assert "passed before" in project.run("test", "--changed").output
+    for file in (RULES, "tests/test_more.py"):
+        project.write({file: rule("assert robot.elevator.height < 0.51")})
+        assert project.run("test", "--changed").code == 1
+        (project.path / file).unlink()
+
+
+def test_the_decorator_returns_the_function_and_needs_no_wpilib(project) -> None:
+    def holds(robot: object) -> bool:
+        return True
+
+    assert pyfrc.invariant(holds) is holds
+    project.write({RULES: "import sys\n" + rule("assert 'pytest' not in sys.modules")})
+    from pyfrc_core.project import Project
+
+    (found,) = load_invariants(Project(project.path / "robot.py"))
+    assert (found.name, found.parameters, found.place) == ("it_holds", ("robot", "hal_data"), f"{RULES}:5")
