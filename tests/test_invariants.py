@@ -105,17 +105,17 @@ def test_the_same_finding_in_new_processes(project) -> None:
     project.write(
         {
             "tests/__init__.py": "",
-            "tests/limits.py": "LOWEST = 0.4\n",
-            RULES: "from .limits import LOWEST\n" + rule("assert robot.elevator.height > LOWEST"),
+            "tests/limits.py": "HIGHEST = 0.51\n",
+            RULES: "from .limits import HIGHEST\n" + rule("assert robot.elevator.height < HIGHEST"),
             "pyproject.toml": SETTINGS + "    [tool.pyfrc.test]\n    isolation = 'spawn'\n",
         }
     )
     script = '{"format": "pyfrc-input 1", "robot": "robot.py", "seed": 0, "end": 1}\n'
-    script += '{"t": 0, "set": {"mode": "teleop", "joysticks[0].buttons[2]": true}}\n'
-    project.write({"down.jsonl": script, "tests/test_down.py": "def test_down(control, robot):\n    pass\n"})
+    script += '{"t": 0, "set": {"mode": "autonomous"}}\n'
+    project.write({"up.jsonl": script})
     result = project.run("fuzz", "--seed", "1", "--runs", "1")
-    assert (result.code, "LOWEST is 0.4" in result.stdout) == (1, True), result.output
-    assert f"then {RULES}:6: the rule it_holds() is broken: " in project.run("replay", "down.jsonl").output
+    assert (result.code, "HIGHEST is 0.51" in result.stdout) == (1, True), result.output
+    assert f"then {RULES}:6: the rule it_holds() is broken: " in project.run("replay", "up.jsonl").output
 
 
 def test_ready_made_and_own_tests_check_the_rules(project) -> None:

@@ -7,6 +7,7 @@ from hal.simulation import stepTiming
 from wpilib import RobotController
 
 from pyfrc_core.runtime.clock import (
+    CHECK,
     INPUT,
     OBSERVE,
     PACKET,
