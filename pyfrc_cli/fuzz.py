@@ -80,6 +80,8 @@ def command(
     printer.end(campaign.progress)
     if campaign.real_time:
         hint(explain_real_time(campaign.real_time))
+    if campaign.always_fails:
+        click.echo("The robot fails at its start in every match: the campaign ends until this is repaired.")
     if campaign.interrupted:
         click.echo("interrupted")
     if not campaign.findings:

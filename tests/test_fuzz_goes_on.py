@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 import pytest
 
-from pyfrc_core.runtime.scripts.script import load_script
+from pyfrc_core.fuzz.avoidance import without
+from pyfrc_core.fuzz.seed_schedule import SeedScheduler
+from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
 SHORT_MATCHES = "[tool.pyfrc.fuzz]\nmatch_seconds = {}\n"
 
@@ -99,3 +102,63 @@ def test_pwm_controllers_are_not(created: str, disabled: str, make_project) -> N
     project = make(make_project, created=created, disabled=disabled, seconds=20)
     result = project.run("fuzz", "--seed", "1", "--runs", "1")
     assert "commands a motor to move while the robot is disabled" in result.stdout, result.output
+
+
+# -- known failures ----------------------------------------------------------------------------------------------------
+
+
+def test_later_matches_find_what_is_behind_a_known_failure(make_project) -> None:
+    teleop = """
+            1 / int(abs(self.gamepad.getLeftY()) < 0.1)
+            self.presses = getattr(self, "presses", 0) + self.gamepad.getBButtonPressed()
+            ([0] * 6)[self.presses]
+        """
+    project = make(make_project, teleop=teleop.strip(), seconds=12)
+    result = project.run("fuzz", "--seed", "1", "--runs", "64")
+    assert f"{project.place('robot.py', '1 / int(')}: ZeroDivisionError" in result.stdout, result.output
+    assert f"{project.place('robot.py', '([0] * 6)')}: IndexError" in result.stdout
+
+
+def test_a_robot_that_always_fails_at_its_start_ends_the_campaign(make_project) -> None:
+    project = make(make_project, disabled="raise RuntimeError('no')")
+    for _ in range(2):  # the second time, the failure is known
+        result = project.run("fuzz", "--time", "300")
+        assert result.code == 1
+        assert f"{project.place('robot.py', 'raise')}: RuntimeError: no" in result.stdout
+        assert "The robot fails at its start in every match" in result.stdout
+        assert "1 match, " in result.stdout
+
+
+def script_of(*writes: dict[str, Any]) -> InputScript:
+    steps = tuple(Step(number * 20_000, each) for number, each in enumerate(writes))
+    return InputScript(steps, 1_000_000, robot="robot.py", seed=0)
+
+
+def test_most_matches_leave_out_an_input_of_each_known_failure() -> None:
+    scheduler = SeedScheduler(1)
+    scheduler.avoid(script_of({"mode": "teleop", "joysticks[0].buttons[1]": True}, {"dio[0].value": False}))
+    scheduler.avoid(script_of({"mode": "autonomous"}, {"mode": "disabled"}, {"mode": "autonomous"}))
+    chosen = Counter(frozenset(scheduler.schedule(number).left_out_at(5_000_000)) for number in range(400))
+    button, switch, mode = "joysticks[0].buttons[1]", "dio[0].value", "mode=autonomous"
+    assert {frozenset({button, mode}), frozenset({switch, mode}), frozenset({button}), frozenset({mode})} < set(chosen)
+    assert 100 < chosen[frozenset({button, mode})] < 250
+    assert sum(count for left_out, count in chosen.items() if left_out) > 380
+
+
+def test_a_match_that_continues_another_leaves_out_more_only_from_then_on() -> None:
+    scheduler = SeedScheduler(1)
+    scheduler.learn(scheduler.schedule(0), {("robot.py", 1): 4_000_000})
+    scheduler.avoid(script_of({"mode": "teleop"}))
+    (continued, *_) = (each for each in map(scheduler.schedule, range(1, 50)) if len(each.seeds) == 2)
+    assert not continued.left_out_at(3_999_999)
+    assert continued.left_out_at(5_000_000) == {"mode=teleop"}
+
+
+def test_what_a_match_leaves_out_is_not_written_but_may_be_let_go() -> None:
+    button, pov, switch = "joysticks[0].buttons[1]", "joysticks[0].povs[0]", "dio[0].value"
+    left_out = frozenset({button, pov, switch, "joysticks[0].plugged", "mode=teleop"})
+    pressed = {button: True, pov: 90, switch: True, "joysticks[0].plugged": False, "joysticks[0].axes[1]": 0.5}
+    assert without(left_out, pressed) == {"joysticks[0].axes[1]": 0.5}
+    assert without(left_out, {button: False, pov: -1, switch: False}) == {button: False, pov: -1}
+    assert without(left_out, {"mode": "teleop", "match_time": 9.0}) == {"mode": "disabled", "match_time": 9.0}
+    assert without(left_out, {"mode": "autonomous"}) == {"mode": "autonomous"}

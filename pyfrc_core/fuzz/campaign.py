@@ -24,6 +24,9 @@ from .shrink import MOST_RUNS, Shrinker
 
 _BATCH = 32
 
+#: A robot that fails within this time without any input fails in every match.
+_START_US = 2_000_000
+
 #: The maximum number of runs to shrink a script of a robot that does not repeat: runs that fail by chance prove little.
 _MOST_REAL_TIME_RUNS = 50
 
@@ -94,12 +97,14 @@ class Campaign:
     :param findings: the failures that it found
     :param interrupted: whether the user interrupted it
     :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
+    :param always_fails: whether it ended because the robot fails at its start in every match
     """
 
     progress: CampaignProgress = field(default_factory=CampaignProgress)
     findings: list[FuzzFinding] = field(default_factory=list)
     interrupted: bool = False
     real_time: tuple[str, ...] = ()
+    always_fails: bool = False
 
 
 class CampaignListener(Protocol):
@@ -159,14 +164,31 @@ class _Runner:
     def run(self) -> None:
         """Run batch after batch."""
         number = 0
+        if self._fails_at_start():
+            return
         while not self._over(number):
             size = _BATCH if self._options.runs is None else min(_BATCH, self._options.runs - number)
             self._play(range(number, number + size))
             number += size
-            while self._waiting:
-                self._shrink(self._waiting[0])
-                self._waiting.pop(0)
-            self.campaign.progress.doing = ""
+            self._shrink_waiting()
+
+    def _shrink_waiting(self) -> None:
+        while self._waiting:
+            self._shrink(self._waiting[0])
+            self._waiting.pop(0)
+        self.campaign.progress.doing = ""
+
+    def _fails_at_start(self) -> bool:
+        """Return whether the robot fails at its start without any input, as it would in every match; report it."""
+        played = self._executor.replay(InputScript((), _START_US, robot=self._executor.project.main_file.name))
+        if played.failure is None:
+            return False
+        self.campaign.always_fails = True
+        self.campaign.progress.matches = 1
+        if self._is_new(played.failure):
+            self._waiting.append(played)
+            self._shrink_waiting()
+        return True
 
     def _over(self, number: int) -> bool:
         if self._deadline is not None and time.monotonic() >= self._deadline:
@@ -216,6 +238,8 @@ class _Runner:
         shrinker.shrink()
         if shrinker.repeats and shrinker.play_again():
             self._save(shrinker.script, shrinker.failure, shrinker.runs)
+            if not played.went_on:
+                self._scheduler.avoid(shrinker.script)
         else:
             self._save(played.script, played.failure, shrinker.runs, repeats=False)
         self._shrinking = None

@@ -11,6 +11,7 @@ from ..compat.wpilib_private import simulation_periodic_of
 from ..config.settings import MatchSettings
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.targets import MODE
+from .avoidance import LeftOut, without
 from .dashboard_generator import DashboardGenerator, find_dashboard
 from .gamepads import find_gamepads
 from .inputs import Input, SensorFinder, find_controls
@@ -76,6 +77,8 @@ class InputGenerator:
         self._enabled_us = 0
         self._attached = True
         self._find_us = self._check_us = PACKET_US
+        #: What the match does without from now on.
+        self.left_out: LeftOut = frozenset()
         #: `writes` returns nothing before this time.
         self.next_us = 0
 
@@ -94,7 +97,7 @@ class InputGenerator:
         if now_us < self.next_us:
             return found
         while self._planned < len(self._plan) and self._plan[self._planned].at_us <= now_us:
-            self._apply_event(now_us, self._plan[self._planned].writes, found)
+            self._apply_event(now_us, without(self.left_out, self._plan[self._planned].writes), found)
             self._planned += 1
         if now_us == 0:  # the robot has not been started
             return found
@@ -108,6 +111,8 @@ class InputGenerator:
         for part in parts:
             if part.next_us <= now_us:
                 part.write(now_us, found)
+        if self.left_out:
+            found = without(self.left_out, found)
         plan = self._plan[self._planned].at_us if self._planned < len(self._plan) else self._end_us
         self.next_us = min(self._find_us, self._check_us, plan, *(part.next_us for part in parts))
         return found

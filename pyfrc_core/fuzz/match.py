@@ -83,6 +83,7 @@ class MatchResult:
     :param inputs: the robot's inputs, by target
     :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
     :param noted: the failures after which the match went on
+    :param went_on: whether the match went on after this failure
     """
 
     failure: FuzzFailure | None
@@ -91,13 +92,14 @@ class MatchResult:
     inputs: dict[str, Input] = field(default_factory=dict)
     real_time: tuple[str, ...] = ()
     noted: tuple[NotedFailure, ...] = ()
+    went_on: bool = False
 
     def each_failure(self) -> Iterator[MatchResult]:
         """Return a result for each failure, in order, with the inputs until it."""
         for failure, end_us in self.noted:
             steps = tuple(step for step in self.script.steps if step.at_us < end_us)
             script = replace(self.script, steps=steps, end_us=min(end_us, self.script.end_us))
-            yield replace(self, failure=failure, script=script, noted=())
+            yield replace(self, failure=failure, script=script, noted=(), went_on=True)
         if self.failure is not None:
             yield replace(self, noted=())
 
@@ -155,6 +157,7 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
             settings=project.settings.match,
             game_messages=project.game_specific_messages,
         )
+        generator.left_out = task.schedule.left_out_at(0)
         fuzz_run = FuzzRun(run, generator, closing.enter_context(task.journal.open("wb", 0)) if task.journal else None)
 
         states = RobotStates(run, project.files, task.known)
@@ -164,6 +167,7 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
             now_us = run.clock.now_us
             if now_us <= reseed_until_us:
                 task.schedule.reseed(rng, before_us, now_us)
+                generator.left_out = task.schedule.left_out_at(now_us)
             before_us = now_us
             states.after_packet(now_us)
             if not fuzz_run.on_packet(now):

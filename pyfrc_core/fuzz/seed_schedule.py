@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..runtime.clock import PACKET_US
+from ..runtime.scripts.script import InputScript
+from .avoidance import KnownFailures, LeftOut
 from .goals import BRANCH, LINE, NEAR, STATE, Goal, kind_of
 
 #: The share of matches that continue an earlier one, when there are any worth continuing.
@@ -25,9 +27,11 @@ class SeedSchedule:
     """The random seeds of one match.
 
     :param seeds: pairs of a time in microseconds and the seed that holds from then on; the first time is 0
+    :param left_out: pairs of a time in microseconds and the inputs that the match does without from then on
     """
 
     seeds: tuple[tuple[int, str], ...]
+    left_out: tuple[tuple[int, LeftOut], ...] = ()
 
     def rng(self) -> random.Random:
         """Return the random number generator for the start of the match; `reseed` keeps it up to date."""
@@ -42,6 +46,10 @@ class SeedSchedule:
         for at_us, seed in self.seeds[1:]:
             if before_us < at_us <= now_us:
                 rng.seed(seed)
+
+    def left_out_at(self, now_us: int) -> LeftOut:
+        """Return the inputs that the match does without at this time."""
+        return next((left_out for at_us, left_out in reversed(self.left_out) if at_us <= now_us), frozenset())
 
 
 @dataclass(frozen=True)
@@ -58,19 +66,26 @@ class SeedScheduler:
     def __init__(self, seed: int) -> None:
         self._seed = seed
         self._worthwhile: dict[str, list[_Worthwhile]] = {kind: [] for kind in _WEIGHTS}
+        self._known = KnownFailures()
 
     def schedule(self, number: int) -> SeedSchedule:
         """Return the seeds of the match with this number."""
         own = f"fuzz {self._seed} {number}"
         rng = random.Random(f"recipe {own}")
+        left_out = self._known.left_out(random.Random(f"left out {own}"))
         kinds = [kind for kind, worthwhile in self._worthwhile.items() if worthwhile]
         if not kinds or rng.random() >= _CONTINUED:
-            return SeedSchedule(((0, own),))
+            return SeedSchedule(((0, own),), ((0, left_out),))
         (kind,) = rng.choices(kinds, [_WEIGHTS[kind] for kind in kinds])
         base = rng.choice(self._worthwhile[kind])
         from_us = rng.choice(base.reached_us) + rng.randrange(0, _SAME_FOR_US, PACKET_US)
         before = tuple(turn for turn in base.schedule.seeds if turn[0] < from_us)
-        return SeedSchedule((*before, (from_us, own)))
+        left_out_before = tuple(turn for turn in base.schedule.left_out if turn[0] < from_us)
+        return SeedSchedule((*before, (from_us, own)), (*left_out_before, (from_us, left_out)))
+
+    def avoid(self, script: InputScript) -> None:
+        """Leave out what this shortest script of a failure needs, in most of the matches that follow."""
+        self._known.add(script)
 
     def learn(self, schedule: SeedSchedule, reached: Mapping[Goal, int]) -> None:
         """Note the goals that a match was the first to reach.
