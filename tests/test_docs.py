@@ -118,7 +118,14 @@ def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
             told = [line for line in lines if not re.match(r"[\d,]+ match", line)]  # how far it was by then
             assert "\n".join([*told, last]) in blocks(document, "text")[0], result.output
     robot = project.path / "robot.py"
-    robot.write_text(robot.read_text("utf-8").replace("270: -0.5}", "270: -0.5, 315: -0.3}"), "utf-8")
+    repaired = robot.read_text("utf-8").replace("270: -0.5}", "270: -0.5, 315: -0.3}")
+    robot.write_text(repaired.rpartition("        else:\n")[0], "utf-8")
+    result = project.run("fuzz", "--seed", "1", "--runs", "8")
+    broken = re.sub(r"-?\d+[.]\d+", "N", blocks(document, "text")[1])  # another seed, another POV
+    assert broken in re.sub(r"-?\d+[.]\d+", "N", result.stdout), result.output
+    for file in (project.path / "tests/fuzz").glob("invariant-*"):
+        file.unlink()
+    robot.write_text(repaired, "utf-8")
     project.write({"pyproject.toml": blocks(document, "toml")[0]})
     add_settings(project.path, SHORT_MATCH)
     assert len(campaigns) == 2
