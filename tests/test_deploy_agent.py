@@ -21,7 +21,8 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_
 
 from pyfrc_core.deploy import agent
 from pyfrc_core.deploy.agent import console, wire
-from pyfrc_core.deploy.agent_client import COMMAND, DeployRequest, Watched, agent_package
+from pyfrc_core.deploy.agent_client import DeployRequest, Watched
+from pyfrc_core.deploy.agent_package import COMMAND, agent_package
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
 
 SOURCES = sorted(Path(agent.__file__).parent.glob("*.py"))

@@ -285,7 +285,7 @@ def main() -> None:
     _import_plugins_of_pytest()
     from pyfrc_cli import main as commands
     from pyfrc_cli import start
-    from pyfrc_core.deploy.agent_client import agent_package
+    from pyfrc_core.deploy.agent_package import agent_package
 
     for module, _ in commands.COMMANDS.values():
         importlib.import_module(module)

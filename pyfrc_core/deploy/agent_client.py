@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import getpass
-import json
-import re
 import socket
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
-from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from . import recovery_hints
 from .agent import start_monitor, wire
-from .agent_stream import PYTHON, AgentStream, Channel, TimeLimits
+from .agent_package import COMMAND, agent_hash, agent_package
+from .agent_stream import AgentStream, Channel, TimeLimits
 from .errors import ConnectionFailedError, DeployError, LockedError
 from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
 from .responses import Fields, ResponseError
@@ -30,54 +27,13 @@ __all__ = ["AgentClient", "DeployRequest", "Deployed", "Plan", "RobotFacts", "Ro
 
 #: Placeholder for a start command written by this deploy.
 _ANY = "any"
+#: The maximum number of files in the first message, whose response has a short time limit.
+_MOST_FILES_AT_ONCE = 1000
 #: Characters of a program's output that a watch keeps.
 _OUTPUT_KEPT = 1 << 16
 
 OnProgress = Callable[[str, int, int], None]
 T = TypeVar("T")
-
-# The only program in the command line. It reads a length and that many bytes: the agent's modules.
-_BOOTSTRAP = """
-import json,sys,types,zlib
-r=open(0,"rb",0)
-def g(n):
- b=b""
- while len(b)<n:
-  c=r.read(n-len(b))
-  if not c:sys.exit("the agent has not arrived")
-  b+=c
- return b
-for n,s in json.loads(zlib.decompress(g(int(g(8))))):
- m=sys.modules[n]=types.ModuleType(n)
- m.__package__="pyfrc_core.deploy.agent"
- exec(compile(s,n,"exec"),m.__dict__)
-m.main(r)
-"""
-COMMAND = f"{PYTHON} -X utf8 -u -c '{_BOOTSTRAP}'"
-#: In the order of their imports. The bootstrap calls `main` of the last one.
-_MODULES = (
-    "__init__",
-    "system",
-    "wire",
-    "disk",
-    "imports",
-    "robot_paths",
-    "virtual",
-    "inventory",
-    "activity",
-    "releases",
-    "compiling",
-    "content_index",
-    "transaction",
-    "console",
-    "start_monitor",
-    "host",
-    "program",
-    "serve",
-)
-_DOCSTRING = re.compile(r'^( *)""".*?"""$', re.MULTILINE | re.DOTALL)
-_COMMENT = re.compile(r"(?:^ *|  )#[: ].*", re.MULTILINE)
-_INDENTATION = re.compile(r"^ +", re.MULTILINE)
 
 
 class CommandRunner(Protocol):
@@ -86,29 +42,6 @@ class CommandRunner(Protocol):
     address: Address
 
     def open(self, command: str) -> Channel: ...
-
-
-@cache
-def agent_package() -> bytes:
-    """Return the agent's modules in the format that the bootstrap reads."""
-    package = wire.__name__.rpartition(".")[0]
-    directory = Path(wire.__file__).parent
-    names = {each: package if each == "__init__" else f"{package}.{each}" for each in _MODULES}
-    modules = [[name, _minified((directory / f"{each}.py").read_text("utf-8"))] for each, name in names.items()]
-    packed = zlib.compress(json.dumps(modules).encode(), 9)
-    return b"%08d" % len(packed) + packed
-
-
-def _minified(source: str) -> str:
-    """Return a module's source without docstrings and comments, and with one space for each level of indentation.
-
-    This saves time on a slow link. Lines keep their numbers for tracebacks. Regular expressions are used because
-    `ast.unparse` takes 0.1 s for the agent. They rely on a property of the agent's modules: only a docstring begins a
-    line with three quotes.
-    """
-    source = _DOCSTRING.sub(lambda found: f'{found[1]}""' + "\n" * found[0].count("\n"), source)
-    source = _COMMENT.sub("", source)
-    return _INDENTATION.sub(lambda found: " " * (len(found[0]) // 4), source)
 
 
 class AgentClient:
@@ -121,6 +54,7 @@ class AgentClient:
     def __init__(self, stream: AgentStream) -> None:
         self._stream = stream
         self._planned: Manifest | None = None
+        self._has_sent_package = False
         #: Whether the old program survived the kill script at the last restart, and was ended by a signal.
         self.program_survived = False
         self._current: int | None = None
@@ -143,15 +77,45 @@ class AgentClient:
         :param hello: fields for the first message: ``modules`` to look for in the robot's Python; in tests, ``root``,
             the directory with the robot's files
         """
+        client = cls.open(connection, limits)
+        client.begin(hello)
+        return client
+
+    @classmethod
+    def open(cls, connection: CommandRunner, limits: TimeLimits | None = None) -> AgentClient:
+        """Start the agent on the robot, without waiting for it. `begin` must follow."""
         client = cls(AgentStream(connection.open(COMMAND), str(connection.address), limits or TimeLimits()))
         try:
-            client._stream.start(agent_package() + wire.message_frame({"who": _user_and_host(), **(hello or {})}))
-            client.facts = client._stream.read_response(RobotFacts.of, silence=client._stream.limits.start)
-            client._current, client._command = client.facts.current, client.facts.command
+            client._stream.start(agent_hash())
         except BaseException:
             client.close()
             raise
         return client
+
+    def begin(self, hello: Mapping[str, Any] | None = None, manifest: Manifest | None = None) -> None:
+        """Send the agent if the robot has not kept it, and read the robot's facts.
+
+        :param hello: see `start`
+        :param manifest: the files of the deploy that follows, which then need not be sent later
+        """
+        if manifest is not None and len(manifest.entries) <= _MOST_FILES_AT_ONCE:
+            hello, self._planned = {**(hello or {}), "files": _as_lists(manifest)}, manifest
+        first = wire.message_frame({"who": _user_and_host(), **(hello or {})})
+        try:
+            self._stream.start(b"%08d" % len(first) + first)
+            self.facts = self._stream.read_response(
+                RobotFacts.of, self._send_package, silence=self._stream.limits.start
+            )
+            self._current, self._command = self.facts.current, self.facts.command
+        except BaseException:
+            self.close()
+            raise
+
+    def _send_package(self, message: Fields) -> None:
+        if self._has_sent_package or "need" not in message or message.text("need") != "agent":
+            raise ResponseError("it sent a message that is not a response")
+        self._has_sent_package = True
+        self._stream.start(agent_package())
 
     def close(self) -> None:
         """Close the connection to the agent, which then ends."""

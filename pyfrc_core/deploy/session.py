@@ -28,8 +28,10 @@ from .starting import go_back, start
 from .target_connection import (
     RobotChoice,
     choose_target,
+    connect_early,
     connected,
     connected_agent,
+    connected_early,
     console_address,
     find,
     running_agent,
@@ -75,38 +77,36 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     refuse_other_main_files(project, options.nonstandard)
     target = choose_target(project, options.choice, talk.ask)
     importing = None if options.dry_run else _check_program(project, options, talk)
-    with progress.phase("files") as phase:
-        manifest = build_manifest(project.root, project.settings.deploy.exclude, options.large)
-        phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
-    packages = load_robot_packages(project.pyproject)
-    imports = ImportSearch(manifest, project.root, project.main_file.name)
-    found = find(target, options.choice, progress)
-    with (
-        connected(project, target, found, options.choice, progress) as connection,
-        running_agent(connection, progress, imports.modules()) as robot,
-    ):
-        if robot.facts.other_languages:
-            progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
-        refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
-        check_packages(imports, packages, robot.facts, talk, dry_run=options.dry_run, refuse=options.check_versions)
-        if importing is not None:
-            _refuse_unimportable(importing, talk)
-        if options.dry_run:
-            with progress.phase("compare") as phase:
-                plan = robot.plan(manifest, phase.work)
-            progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), requested=True)
-            return connection.address
-        memory = MemorySaver(robot.facts, connection)
-        deployed = _upload(robot, project, manifest, options, talk, imports.program())
-        verdict = None
-        try:
-            if not options.in_place:
-                verdict = start(robot, talk, deployed.fallback, options.auto_rollback)
-        finally:
-            if robot.program_survived:
-                replace_kill_script(connection, progress)
-            memory.report(progress)  # last, since a failing login as administrator may take half a minute
-        _report_deployed(deployed, verdict, connection, options, talk)
+    with connect_early(project, target, options.choice) as early:
+        with progress.phase("files") as phase:
+            manifest = build_manifest(project.root, project.settings.deploy.exclude, options.large)
+            phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
+        packages = load_robot_packages(project.pyproject)
+        imports = ImportSearch(manifest, project.root, project.main_file.name)
+        connection = connected_early(early, progress)
+        with running_agent(connection, progress, imports.modules(), early.agent, manifest) as robot:
+            if robot.facts.other_languages:
+                progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
+            refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
+            check_packages(imports, packages, robot.facts, talk, dry_run=options.dry_run, refuse=options.check_versions)
+            if importing is not None:
+                _refuse_unimportable(importing, talk)
+            if options.dry_run:
+                with progress.phase("compare") as phase:
+                    plan = robot.plan(manifest, phase.work)
+                progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), requested=True)
+                return connection.address
+            memory = MemorySaver(robot.facts, connection)
+            deployed = _upload(robot, project, manifest, options, talk, imports.program())
+            verdict = None
+            try:
+                if not options.in_place:
+                    verdict = start(robot, talk, deployed.fallback, options.auto_rollback)
+            finally:
+                if robot.program_survived:
+                    replace_kill_script(connection, progress)
+                memory.report(progress)  # last, since a failing login as administrator may take half a minute
+            _report_deployed(deployed, verdict, connection, options, talk)
     return connection.address
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING
 
 from ..errors import UsageError
 from ..project import Project
@@ -12,12 +14,16 @@ from .agent_client import AgentClient
 from .connection import Connection, connect, load_in_background
 from .credentials import NONE_OFFERED, Credentials
 from .discovery import Address, FoundRobot, addresses_of, find_robot, parse_address
+from .early_connection import EarlyConnection
 from .errors import NoPythonError
 from .host_keys import HostKeys, RobotKeys
 from .progress import DeployProgress, Questions
 from .recovery_hints import explain_interruption
 from .team import RobotTarget, find_target, team_of_project
 from .without_python import RobotWithoutPython
+
+if TYPE_CHECKING:
+    from .manifest import Manifest
 
 
 @dataclass(frozen=True)
@@ -61,21 +67,29 @@ def choose_target(project: Project | None, choice: RobotChoice, ask: Questions |
     return target
 
 
-def find(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> FoundRobot:
+def locate(target: RobotTarget, choice: RobotChoice) -> FoundRobot:
     """Find the robot, and return it with an open socket.
 
     :raises RobotNotFoundError: with all failed attempts
     :raises OnTheFieldError: if the Driver Station is connected to a competition field
     """
     load_in_background()
+    if target.robot is not None:
+        address = parse_address(target.robot)
+        return find_robot([(address, f"by {target.source}")], str(address), take_its_robot=False)
+    assert target.team is not None
+    whose = f"team {target.team} (by {target.source})"
+    return find_robot(addresses_of(target.team, choice.resolve), whose)
+
+
+def find(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> FoundRobot:
+    """Do the same as `locate`, as a phase of the command."""
+    return _show_found(lambda: locate(target, choice), progress)
+
+
+def _show_found(find: Callable[[], FoundRobot], progress: DeployProgress) -> FoundRobot:
     with progress.phase("find") as phase:
-        if target.robot is not None:
-            address = parse_address(target.robot)
-            found = find_robot([(address, f"by {target.source}")], str(address), take_its_robot=False)
-        else:
-            assert target.team is not None
-            whose = f"team {target.team} (by {target.source})"
-            found = find_robot(addresses_of(target.team, choice.resolve), whose)
+        found = find()
         phase.detail = f"{found.address} ({found.kind})"
     return found
 
@@ -88,27 +102,36 @@ def load_robot_keys(project: Project | None, target: RobotTarget, found: FoundRo
     return keys.of_robot(found.address, target.team, team_of_project(project) if target.team is None else None)
 
 
-@contextmanager
-def connected(
-    project: Project | None, target: RobotTarget, found: FoundRobot, choice: RobotChoice, progress: DeployProgress
-) -> Iterator[Connection]:
-    """Log in to the robot that was found, and disconnect after the ``with`` block.
+def log_in(project: Project | None, target: RobotTarget, choice: RobotChoice, found: FoundRobot) -> Connection:
+    """Log in to the robot that was found.
 
     Its host key is compared with the project's known keys or, outside of a project, with this user's.
 
     :raises HostKeyError: if the key is not known
     :raises ConnectionFailedError: if the login fails
     """
-    keys = load_robot_keys(project, target, found)
+    return connect(
+        found.address,
+        load_robot_keys(project, target, found),
+        connected=found.connected,
+        accepted_key=choice.accepted_key,
+        robot_name=choice.robot_name,
+        credentials=choice.credentials,
+    )
+
+
+@contextmanager
+def connected(
+    project: Project | None, target: RobotTarget, found: FoundRobot, choice: RobotChoice, progress: DeployProgress
+) -> Iterator[Connection]:
+    """Log in to the robot that was found, and disconnect after the ``with`` block; see `log_in`."""
+    with _show_connected(lambda: log_in(project, target, choice, found), progress) as connection:
+        yield connection
+
+
+def _show_connected(connect: Callable[[], Connection], progress: DeployProgress) -> Connection:
     with progress.phase("connect") as phase:
-        connection = connect(
-            found.address,
-            keys,
-            connected=found.connected,
-            accepted_key=choice.accepted_key,
-            robot_name=choice.robot_name,
-            credentials=choice.credentials,
-        )
+        connection = connect()
         recognized = connection.recognized
         phase.detail = "its key is known"
         if recognized.new_for is not None:
@@ -117,22 +140,39 @@ def connected(
             phase.detail += f" ({recognized.name})"
     if recognized.new_for is not None:
         progress.note(f"  its key: {connection.key.fingerprint} ({connection.key.kind})")
-    with connection:
-        yield connection
+    return connection
+
+
+def connect_early(project: Project | None, target: RobotTarget, choice: RobotChoice) -> EarlyConnection:
+    """Begin to connect to the robot in the background. `connected_early` must follow."""
+    return EarlyConnection(partial(locate, target, choice), partial(log_in, project, target, choice))
+
+
+def connected_early(early: EarlyConnection, progress: DeployProgress) -> Connection:
+    """Wait for the login that was begun in the background."""
+    _show_found(early.found, progress)
+    return _show_connected(early.connection, progress)
 
 
 @contextmanager
 def running_agent(
-    connection: Connection, progress: DeployProgress, modules: Sequence[str] = ()
+    connection: Connection,
+    progress: DeployProgress,
+    modules: Sequence[str] = (),
+    start: Callable[[], AgentClient] | None = None,
+    manifest: Manifest | None = None,
 ) -> Iterator[AgentClient]:
     """Start the agent on the robot, and end it after the ``with`` block.
 
     :param modules: modules to look for in the robot's Python
+    :param start: returns an agent that was started before
+    :param manifest: the files of the deploy that follows, if it is known
     :raises RefusedError: if there is no Python on the robot
     """
     with progress.phase("look") as phase:
         try:
-            robot = AgentClient.start(connection, hello={"modules": modules} if modules else None)
+            robot = AgentClient.open(connection) if start is None else start()
+            robot.begin({"modules": modules} if modules else None, manifest)
         except NoPythonError as error:
             raise RobotWithoutPython(connection).refusal(error) from error
         facts = robot.facts

@@ -18,7 +18,8 @@ from importlib.metadata import distribution
 from pathlib import Path
 from types import TracebackType
 
-from pyfrc_core.deploy.agent_client import COMMAND, AgentClient, Deployed, DeployRequest
+from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
+from pyfrc_core.deploy.agent_package import COMMAND, agent_hash
 from pyfrc_core.deploy.manifest import Manifest, build_manifest
 
 ROBOT_PY = "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n"
@@ -264,14 +265,16 @@ def _link_wpilib(directory: Path) -> None:
 
 
 def _skip_bootstrap(channel: LocalChannel) -> None:
-    """Such an agent has its modules already: they are left out of what is sent to it."""
-    from pyfrc_core.deploy.agent_client import agent_package
-
-    package = agent_package()
+    """Such an agent has its modules already: what its bootstrap would read is left out of what is sent to it."""
+    left = len(agent_hash()) + len(b"%08d" % 0)
     send = channel.sendall
 
     def sendall(data: bytes) -> None:
-        send(data[len(package) :] if data.startswith(package) else data)
+        nonlocal left
+        skipped = min(left, len(data))
+        left -= skipped
+        if data[skipped:]:
+            send(data[skipped:])
 
     channel.sendall = sendall  # type: ignore[method-assign]
 

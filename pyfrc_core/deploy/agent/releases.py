@@ -252,7 +252,7 @@ class Releases:
         for each in self.paths.own.iterdir():
             if each.name.startswith(_TRASH):
                 self.remove(each, if_possible=True)
-            elif each not in (self.paths.lock, self.paths.releases):
+            elif each not in (self.paths.lock, self.paths.releases, self.paths.agent):
                 self.remove(each)
         for name in (COMMAND, DEBUG_COMMAND):
             remove(self.paths.home / f".{name}.new")

@@ -9,6 +9,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
+from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -18,6 +19,7 @@ from .disk import files_below, free_bytes, remove, text_of
 from .host import Host, RoboRio, age_of
 from .imports import look_up
 from .inventory import IMAGE_FILE, image_in
+from .kept import keep
 from .program import Program
 from .releases import Releases
 from .robot_paths import COMMAND, DEBUG_COMMAND, Lock, Refusal, RobotPaths
@@ -25,15 +27,19 @@ from .start_monitor import ENDED, RUNNING, UNHEARD
 from .system import become, is_root, user
 from .transaction import Deploy, plan
 from .virtual import VirtualRobotClient
-from .wire import EndedError, Message, Wire, WireError
+from .wire import EndedError, Message, Wire, WireError, parse_message, read_frame
 
 _USER = "lvuser"
 
 
-def main(source: BinaryIO) -> None:
-    """Run the agent. Requests come from `source`; responses go to standard output."""
+def main(source: BinaryIO, first: bytes, code: bytes) -> None:
+    """Run the agent. Requests come from `source`; responses go to standard output.
+
+    :param first: the frame of the laptop's first message
+    :param code: the agent's code for `keep`
+    """
     wire = Wire(source, os.fdopen(os.dup(1), "wb"))
-    hello = wire.receive()
+    hello = parse_message(*read_frame(BytesIO(first).read))
     host: Host | None = VirtualRobotClient.from_environment()
     if host is None:
         root = hello.get("root")
@@ -44,6 +50,8 @@ def main(source: BinaryIO) -> None:
         Agent(wire, host, hello).serve()
     except (WireError, ConnectionError):
         sys.exit(1)  # the laptop has disconnected
+    if host.paths.root == Path("/"):  # where the next one looks for it
+        keep(host.paths, code)
 
 
 class Agent:
@@ -65,8 +73,8 @@ class Agent:
         self._lock: ExitStack | None = None
         #: The release that was started and not watched yet.
         self._started: int | None = None
-        #: The manifest of the last plan: a deploy without a manifest uses it.
-        self._files: list[Any] = []
+        #: The manifest of the first message or of the last plan: a deploy without a manifest uses it.
+        self._files: list[Any] = hello.get("files") or []
         self._requests: dict[str, Callable[[Message], Message]] = {
             "plan": self._plan,
             "deploy": self._deploy,
