@@ -1,4 +1,4 @@
-"""The agent's code that the robot keeps: used if the laptop would send the same, and no other user can have written it."""
+"""The agent's code that the robot keeps: used if the laptop would send the same, and no other user can write it."""
 
 from __future__ import annotations
 

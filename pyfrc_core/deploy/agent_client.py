@@ -55,6 +55,8 @@ class AgentClient:
         self._stream = stream
         self._planned: Manifest | None = None
         self._has_sent_package = False
+        #: Whether the robot restarts the program without another request.
+        self._is_restarting = False
         #: Whether the old program survived the kill script at the last restart, and was ended by a signal.
         self.program_survived = False
         self._current: int | None = None
@@ -133,7 +135,9 @@ class AgentClient:
         return plan
 
     def deploy(self, manifest: Manifest, request: DeployRequest, on_progress: OnProgress | None = None) -> Deployed:
-        """Make these files the robot's current release, or leave the robot unchanged. The program is not restarted.
+        """Make these files the robot's current release, or leave the robot unchanged.
+
+        The program is restarted only if the request says so; `restart` must then follow.
 
         :param on_progress: called with the robot's phase (``receive``, ``compile``, ``switch``, ...), the number of
             completed steps, and the total (0 if unknown). The steps of ``receive`` are bytes. Until the robot's first
@@ -163,6 +167,7 @@ class AgentClient:
                         recovery_hints.OVERWRITING if request.in_place else recovery_hints.MAYBE_SWITCHED
                     )
                 raise
+        self._is_restarting = request.restart
         self._current, self._previous, self._command = deployed.release, deployed.previous, _ANY
         if request.in_place or deployed.release is None:
             self.recovery_hint = None
@@ -171,11 +176,14 @@ class AgentClient:
         return deployed
 
     def restart(self) -> bool:
-        """Restart the program.
+        """Restart the program, or wait for the restart that a deploy has requested.
 
         :return: whether the old program survived the kill script, and was ended by a signal
         """
-        self.program_survived = self._request(lambda fields: fields.flag("survived"), "restart")
+        if not self._is_restarting:
+            self._send("restart")
+        self._is_restarting = False
+        self.program_survived = self._stream.read_response(lambda fields: fields.flag("survived"))
         self.recovery_hint = recovery_hints.started(self._current, self._previous)
         return self.program_survived
 

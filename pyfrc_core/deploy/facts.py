@@ -166,6 +166,7 @@ class DeployRequest:
     :param debug:       start the program for debugging
     :param in_place:    overwrite files of the current program, delete none
     :param program:     files that the program imports at its start, which the robot's Python must be able to compile
+    :param restart:     restart the program after the deploy
     """
 
     main: str
@@ -173,6 +174,7 @@ class DeployRequest:
     debug: bool = False
     in_place: bool = False
     program: Sequence[str] = ()
+    restart: bool = False
 
 
 @dataclass(frozen=True)

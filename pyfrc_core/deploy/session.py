@@ -198,6 +198,7 @@ def _upload(
         debug=options.debug,
         in_place=options.in_place,
         program=program,
+        restart=not options.in_place,
     )
     with talk.progress.phase("upload") as phase:
         deployed = robot.deploy(manifest, request, phase.work)

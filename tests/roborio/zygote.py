@@ -154,8 +154,7 @@ def agent(connection: int, alive: int, options: dict[str, Any]) -> None:
         program.Program.watch = lambda *watch: {**seen, "seconds": 1.0, "age": 1.0, "lived": 1.0}  # type: ignore[method-assign]
     counted: Steps | Calls = Calls() if options["calls"] else steps
     try:
-        requests = open(0, "rb", 0)  # noqa: SIM115
-        serve.main(requests, wire.frame(*wire.read_frame(requests.read)), b"")
+        serve.main(open(0, "rb", 0))  # noqa: SIM115
     except SystemExit:
         pass
     except BaseException:

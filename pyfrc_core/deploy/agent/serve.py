@@ -32,14 +32,14 @@ from .wire import EndedError, Message, Wire, WireError, parse_message, read_fram
 _USER = "lvuser"
 
 
-def main(source: BinaryIO, first: bytes, code: bytes) -> None:
+def main(source: BinaryIO, first: bytes = b"", code: bytes = b"") -> None:
     """Run the agent. Requests come from `source`; responses go to standard output.
 
-    :param first: the frame of the laptop's first message
+    :param first: the frame of the laptop's first message, if it was already read
     :param code: the agent's code for `keep`
     """
     wire = Wire(source, os.fdopen(os.dup(1), "wb"))
-    hello = parse_message(*read_frame(BytesIO(first).read))
+    hello = parse_message(*read_frame(BytesIO(first).read)) if first else wire.receive()
     host: Host | None = VirtualRobotClient.from_environment()
     if host is None:
         root = hello.get("root")
@@ -95,12 +95,16 @@ class Agent:
                 request = self._wire.receive()
             except EndedError:
                 return
-            self._respond(lambda request: self._requests[request["op"]](request), request)
+            done = self._respond(lambda request: self._requests[request["op"]](request), request)
+            if done and request.get("restart"):  # without another round trip
+                self._respond(lambda request: self._restart(prune=True), request)
 
-    def _respond(self, handle: Callable[[Message], Message], request: Message) -> None:
+    def _respond(self, handle: Callable[[Message], Message], request: Message) -> bool:
+        """Send the result of a request, or its error. Return whether it was carried out."""
         self._activity.reset()
         try:
             self._wire.send(done=handle(request))
+            return True
         except WireError:
             raise  # the laptop has disconnected, or violates the protocol
         except Refusal as refusal:
@@ -122,6 +126,7 @@ class Agent:
                 )
         except Exception:
             self._send_error("bug", "the agent on the robot has failed", "", traceback=traceback.format_exc())
+        return False
 
     def _send_error(self, kind: str, message: str, remedy: str, **details: Any) -> None:
         self._wire.send(error=kind, message=message, remedy=remedy, **details)
@@ -191,7 +196,11 @@ class Agent:
                     self._releases.remove(self._paths.incoming, if_possible=True)
                 raise
 
-    def _restart(self) -> Message:
+    def _restart(self, prune: bool = False) -> Message:
+        """Restart the program.
+
+        :param prune: remove old releases, which a deploy has left until the new program is starting
+        """
         with self._transaction(keep=True):
             self._activity.begin("stop")
             self._started = current = self._releases.current()
@@ -200,6 +209,9 @@ class Agent:
             survived = self._activity.wait_for(lambda: self._program.restart(main))
             if current is not None:
                 self._releases.carry_late_writes(current)
+            if prune:
+                with suppress(OSError):  # the next deploy removes the rest
+                    self._releases.prune()
         return {"survived": survived}
 
     def _watch(self, request: Message) -> Message:

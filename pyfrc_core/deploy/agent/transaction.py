@@ -86,6 +86,8 @@ class Deploy:
         self._main = str(request["main"])
         self._debug = bool(request.get("debug"))
         self._in_place = bool(request.get("in_place"))
+        #: Whether a restart follows, which removes old releases.
+        self._restarts = bool(request.get("restart"))
         self._program = frozenset(request.get("program") or ())
         self._commands = start_commands(self._main)
 
@@ -236,8 +238,9 @@ class Deploy:
             record["carried"] = {"from": record["from"], "files": carried}
             releases.write_record(number, record)
         self._switch(number, taken)
-        with suppress(OSError):  # the next deploy removes the rest
-            releases.prune()
+        if not self._restarts:
+            with suppress(OSError):  # the next deploy removes the rest
+                releases.prune()
         return {"release": number, "previous": record["from"], "taken": taken, "unchanged": False}
 
     def _switch(self, number: int, taken: int | None) -> None:
