@@ -5,6 +5,9 @@ RUN := $(VENV)/bin/python -m
 # One more than the number of processors, because some tests wait for other programs.
 WORKERS ?= $(shell expr 1 + $$(getconf _NPROCESSORS_ONLN))
 
+# Without compiled modules, each of many processes compiles the tests and pytest's plugins again.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test check docs clean
 
 demo: $(VENV)/installed  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back

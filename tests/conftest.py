@@ -5,6 +5,7 @@ from __future__ import annotations
 import compileall
 import faulthandler
 import functools
+import gc
 import json
 import os
 import re
@@ -113,8 +114,13 @@ def _environment() -> dict[str, str]:
         for name, value in os.environ.items()
         if name not in _NOT_PASSED_ON_EITHER and not name.startswith(_NOT_PASSED_ON)
     }
-    # Files may be changed twice within a second: Python would take what it has kept of the first for the second.
-    return passed_on | {"COLUMNS": "120", "PYTHONDONTWRITEBYTECODE": "1"}
+    return passed_on | {
+        "COLUMNS": "120",
+        # Files may be changed twice within a second: Python would take what it has kept of the first for the second.
+        "PYTHONDONTWRITEBYTECODE": "1",
+        # Robot projects do not use hypothesis. With -v its plugin imports all of it, which takes a second.
+        "PYTEST_ADDOPTS": "-p no:hypothesispytest",
+    }
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -123,6 +129,12 @@ def pytest_configure(config: pytest.Config) -> None:
     if not hasattr(config, "workerinput"):
         for package in ("pyfrc", "pyfrc_cli", "pyfrc_core"):
             compileall.compile_dir(Path(__file__).parents[1] / package, quiet=2)
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Exclude the thousands of tests and what they have imported from garbage collections, here and in forks."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:

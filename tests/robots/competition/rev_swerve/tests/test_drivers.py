@@ -27,6 +27,8 @@ def test_aims_at_the_hub(control, hal_data, robot, physics_controller):
     hal_data["alliance_station"] = "blue1"
     hal_data["joysticks"][0]["axes"][AIM] = 1.0
     with control.run_robot():
+        # without an autonomous before it, the robot does not know where it is
+        robot.container.drivetrain.reset_pose(physics_controller.get_pose())
         control.step_timing(seconds=3, autonomous=False, enabled=True)
         pose = physics_controller.get_pose()
         direction = math.atan2(4.03 - pose.Y(), 4.63 - pose.X())
