@@ -774,3 +774,32 @@ def test_coverage_below_what_is_asked_for_fails_and_names_the_lines(make_project
 
     enough = project.run("test", "--fail-under", "50", "-j", "1")
     assert enough.code == 0, enough.output
+
+
+def test_the_longest_test_starts_first_the_next_time_and_reports_stay_in_order(make_project) -> None:
+    project = make_project(
+        {
+            "robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n",
+            "tests/test_lengths.py": """
+                import pathlib
+
+                import pytest
+
+                @pytest.mark.parametrize("seconds", [1, 2, 400])
+                def test_of(control, robot, seconds):
+                    process = pathlib.Path("/proc/self/stat").read_text().rpartition(")")[2].split()
+                    pathlib.Path(f"{seconds}.started").write_text(process[19])
+                    with control.run_robot():
+                        control.step_timing(seconds=seconds, autonomous=False, enabled=True)
+            """,
+        }
+    )
+    lengths = (1, 2, 400)
+    for _ in range(2):
+        result = project.run("test", "-j", "2", "-v")
+        assert list(result.outcomes()) == [f"tests/test_lengths.py::test_of[{seconds}]" for seconds in lengths]
+    started = [int((project.path / f"{seconds}.started").read_text()) for seconds in lengths]
+    assert started[2] == min(started)
+    # No test may run after one that failed.
+    assert project.run("test", "-j", "2", "--", "-x").code == 0
+    assert int((project.path / "1.started").read_text()) <= int((project.path / "400.started").read_text())

@@ -89,11 +89,16 @@ def shared_fixtures(session: pytest.Session, item: pytest.Item) -> Iterator[tupl
     # pytest allows a fixture to be requested only while its test is set up: for this long, it seems to be.
     state.stack[item] = ([], None)
     try:
-        known = FIXTURE_INFO.of(item).name2fixturedefs
-        names = getattr(item, "fixturenames", ())
-        yield REQUEST.of(item), [name for name in names if name in known and known[name][-1].scope != "function"]
+        yield REQUEST.of(item), shared_fixture_names(item)
     finally:
         del state.stack[item]
+
+
+def shared_fixture_names(item: pytest.Item) -> list[str]:
+    """Return the names of a test's fixtures that are wider than one test."""
+    names = getattr(item, "fixturenames", ())
+    known = FIXTURE_INFO.of(item).name2fixturedefs if names else {}
+    return [name for name in names if name in known and known[name][-1].scope != "function"]
 
 
 def shared_parameters(item: pytest.Item) -> dict[str, int]:

@@ -12,8 +12,10 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import itertools
 import os
 import sys
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -26,6 +28,7 @@ from ...runtime.failures import headline_is_the_robots
 from ...runtime.fork_obstacles import reasons_not_to_fork
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
+from .durations import Durations, longest_first
 from .messages import replay
 from .processes import TestProcess, forked_test, spawned_test
 from .uncaptured import UncapturedOutput, uncaptured_output
@@ -45,6 +48,7 @@ class IsolatedTests:
         self._running: dict[pytest.Item, TestProcess] = {}
         self._announced: pytest.Item | None = None
         self._explained = False
+        self._durations: Durations | None = None
         #: Where tests print to, if pytest captures nothing.
         self._output: UncapturedOutput | None = None
 
@@ -55,6 +59,7 @@ class IsolatedTests:
         if session.testsfailed and not session.config.option.continue_on_collection_errors:
             problems = session.testsfailed
             raise session.Interrupted(f"{problems} error{'s' if problems != 1 else ''} during collection")
+        durations = self._durations = Durations(session.config)
         with uncaptured_output(session.config) as self._output:
             try:
                 self._run_all(session)
@@ -62,7 +67,13 @@ class IsolatedTests:
                 for process in self._running.values():
                     process.worker.kill()
                 self._running.clear()
+                durations.save()
         return True
+
+    @pytest.hookimpl
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if self._durations is not None:
+            self._durations.add(report)
 
     def _left_to_others(self, session: pytest.Session) -> bool:
         config = session.config
@@ -77,40 +88,64 @@ class IsolatedTests:
         waiting: list[pytest.Item] = []
         gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory
         previous: pytest.Item | None = None
-        for position, item in enumerate(items):
-            nextitem = items[position + 1] if position + 1 < len(items) else None
-            if not self._uses_robot(item):
+        for group in self._groups(session, jobs):
+            if not self._uses_robot(item := items[group[0]]):
                 self._finish(session, waiting, down_to=0)
                 _tear_down_shared(session, previous, item)
                 previous = item
+                nextitem = items[group[0] + 1] if group[0] + 1 < len(items) else None
                 item.config.hook.pytest_runtest_protocol(item=item, nextitem=nextitem)
                 _stop_if_asked(session)
                 continue
-            self._finish(session, waiting, down_to=jobs - 1)
-            if _would_tear_down_fixtures(session, item) or (waiting and _other_parameters(waiting[-1], item)):
-                self._finish(session, waiting, down_to=0)
-            _tear_down_shared(session, previous, item)
-            previous = item
-            forked = self._can_fork(session.config)
-            if forked:  # a new interpreter sets up everything itself
-                _set_up_shared(session, item)
-            waiting.append(item)
-            if len(waiting) == 1:
-                self._announce(item)
-            plugin = self._plugin
-            self._running[item] = forked_test(item, plugin, self._output) if forked else spawned_test(item, plugin)
+            waiting += (items[position] for position in sorted(group))
+            for item in (items[position] for position in group):
+                self._finish(session, waiting, down_to=jobs - 1)
+                other_parameters = previous in self._running and _other_parameters(previous, item)
+                if other_parameters or _would_tear_down_fixtures(session, item):
+                    self._finish(session, waiting, down_to=0)
+                _tear_down_shared(session, previous, item)
+                previous = item
+                forked = self._can_fork(session.config)
+                if forked:  # a new interpreter sets up everything itself
+                    _set_up_shared(session, item)
+                plugin = self._plugin
+                if item is waiting[0]:
+                    self._announce(item)
+                self._running[item] = forked_test(item, plugin, self._output) if forked else spawned_test(item, plugin)
         self._finish(session, waiting, down_to=0)
         _tear_down_shared(session, previous, None)
 
+    def _groups(self, session: pytest.Session, jobs: int) -> Iterator[list[int]]:
+        """Yield the positions of tests, in the order in which to start them.
+
+        Those in a row that use the robot and share no fixture are one group: the longest starts first. All others are
+        groups of their own. With ``-x`` the order is the tests' own, since no test is to run after one that failed.
+        """
+        assert self._durations is not None
+        in_order = jobs == 1 or bool(session.config.option.maxfail)
+        items = session.items
+
+        def is_free(position: int) -> bool:
+            item = items[position]
+            return not in_order and self._uses_robot(item) and not pytest_private.shared_fixture_names(item)
+
+        for free, positions in itertools.groupby(range(len(items)), is_free):
+            row = list(positions)
+            if free:
+                names = [items[position].nodeid for position in row]
+                yield [row[index] for index in longest_first(names, self._durations.known)]
+            else:
+                yield from ([position] for position in row)
+
     def _finish(self, session: pytest.Session, waiting: list[pytest.Item], down_to: int) -> None:
-        """Report tests, in their order, until no more than `down_to` are running."""
-        while len(waiting) > down_to:
-            process = self._running[waiting[0]]
-            if not process.worker.finished:
+        """Report tests that have ended, in their order, until no more than `down_to` are running."""
+        while waiting:
+            process = self._running.get(waiting[0])
+            if process is None or not process.worker.finished:
                 workers = [each.worker for each in self._running.values()]
-                wait_for_any(workers)
-                if not process.worker.finished and sum(not worker.finished for worker in workers) <= down_to:
+                if sum(not worker.finished for worker in workers) <= down_to:
                     return
+                wait_for_any(workers)
                 continue
             item = waiting.pop(0)
             self._announce(item)
@@ -121,7 +156,7 @@ class IsolatedTests:
             process.close()
             item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
             _stop_if_asked(session)
-            if waiting:
+            if waiting and waiting[0] in self._running:
                 self._announce(waiting[0])
 
     def _announce(self, item: pytest.Item) -> None:
