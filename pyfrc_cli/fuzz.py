@@ -115,6 +115,8 @@ class _ProgressPrinter:
         else:
             for line in found.story[:-1]:
                 click.echo(f"  {line}")
+            if found.fails_at is not None:
+                click.echo(f"  fails at {found.fails_at:.2f} s")
             if found.repeats:
                 hint(f"  {counted(found.writes, 'write')}, {counted(found.runs, 'run')} of the robot to find them")
             else:

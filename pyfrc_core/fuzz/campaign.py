@@ -14,8 +14,8 @@ from typing import Protocol
 from ..project import Project
 from ..runtime.scripts.script import InputScript
 from .corpus import Corpus, CorpusEntry
-from .describe import story_of
-from .failure import FuzzFailure
+from .describe import late_failure, story_of
+from .failure import PROCESS_ENDED, FuzzFailure
 from .goals import Goal, share
 from .match import FuzzTask, MatchResult, ReplayTask
 from .match_executor import MatchExecutor, open_match_executor
@@ -87,6 +87,11 @@ class FuzzFinding:
     known: bool = False
     runs: int = 0
     writes: int = 0
+
+    @property
+    def fails_at(self) -> float | None:
+        """Return when the robot fails, in seconds, if that is known and later than the last input."""
+        return None if self.failure.kind == PROCESS_ENDED else late_failure(self.entry.script)
 
 
 @dataclass

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.script import InputScript
@@ -33,12 +34,24 @@ _NAMES = {
 }
 
 
+#: A story of more moments than this has only the last ones: that of a script that could not be shortened.
+_MOST_MOMENTS, _LAST_MOMENTS = 12, 6
+
+
 def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
-    """Return a line for each moment of the script; the last line describes the failure."""
+    """Return a line for each moment of the script; the last line describes the failure.
+
+    Of a long script, only the last moments are described. An unusual order of modes has a line of its own.
+    """
     lines = []
+    if unusual := _unusual_order([step.writes[MODE] for step in script.steps if MODE in step.writes]):
+        lines.append(unusual)
+    earlier = len(script.steps) - _LAST_MOMENTS if len(script.steps) > _MOST_MOMENTS else 0
+    if earlier:
+        lines.append(f"({earlier} earlier moments are in the script)")
     mode = "disabled"
     held: dict[str, Value] = {}
-    for step in script.steps:
+    for index, step in enumerate(script.steps):
         mode = step.writes.get(MODE, mode)
         name = _MODES.get(mode, mode)
         now = {target: value for target, value in step.writes.items() if target != MODE}
@@ -48,10 +61,32 @@ def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
         if what and (still := _still_held(held, now)):
             what += f" while {still}"
         when = f"{name} begins" if MODE in step.writes else f"in {name}"
-        lines.append(f"at {step.at_us / 1e6:.2f} s {when}" + (f": {what}" if what else ""))
+        if index >= earlier:
+            lines.append(f"at {step.at_us / 1e6:.2f} s {when}" + (f": {what}" if what else ""))
         held |= now
     failed_us = max(0, script.end_us - PACKET_US)
     return (*lines, f"at {failed_us / 1e6:.2f} s: {failure.text.partition(chr(10))[0]}")
+
+
+def late_failure(script: InputScript) -> float | None:
+    """Return when the robot failed, in seconds, if that was later than all inputs; else None."""
+    failed_us = script.end_us - PACKET_US
+    return failed_us / 1e6 if script.steps and failed_us > script.steps[-1].at_us else None
+
+
+def _unusual_order(modes: Sequence[str]) -> str:
+    """Return in words what happens in no match that is played once; empty if this may be such a match."""
+    enabled = [mode for mode in modes if not mode.startswith("disabled")]
+    periods = [mode for mode, _ in groupby(modes) if not mode.startswith("disabled")]
+    if "autonomous" in enabled and "teleop" in enabled[: _last(enabled, "autonomous")]:
+        return "needs autonomous after teleoperated, as when a match follows practice without a restart"
+    if periods.count("autonomous") > 1:
+        return "needs a second autonomous, as when a match is started again without a restart"
+    return ""
+
+
+def _last(modes: Sequence[str], mode: str) -> int:
+    return len(modes) - 1 - list(reversed(modes)).index(mode)
 
 
 def _still_held(held: Mapping[str, Value], now: Mapping[str, Value]) -> str:

@@ -63,11 +63,13 @@ class ReplayTask:
 
     :param use_oracle: whether misbehavior without an exception is a failure
     :param ends_with: misbehavior that ends the run; other misbehavior is noted
+    :param hang_seconds: processor seconds without progress that count as a hang; None: those of the project's settings
     """
 
     script: InputScript
     use_oracle: bool = True
     ends_with: FuzzFailure | None = None
+    hang_seconds: float | None = None
 
 
 Task = FuzzTask | ReplayTask
@@ -195,7 +197,8 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
 
 def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:
     script = task.script
-    with _robot(project, log, script.seed, task.use_oracle, task.ends_with) as (run, notes):
+    robot = _robot(project, log, script.seed, task.use_oracle, task.ends_with, task.hang_seconds)
+    with robot as (run, notes):
         failure = None
         try:
             construct(project, run, load(project))
@@ -214,13 +217,18 @@ def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:
 
 @contextmanager
 def _robot(
-    project: Project, log: CrashLog, seed: int, use_oracle: bool = True, ends_with: FuzzFailure | None = None
+    project: Project,
+    log: CrashLog,
+    seed: int,
+    use_oracle: bool = True,
+    ends_with: FuzzFailure | None = None,
+    hang_seconds: float | None = None,
 ) -> Iterator[tuple[RobotRun, MisbehaviorNotes]]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
     load(project)  # before robot time begins
     run = RobotRun()
     settings = project.settings.fuzz
-    hang_detector = HangDetector(run, project.files, settings.hang_seconds, log)
+    hang_detector = HangDetector(run, project.files, hang_seconds or settings.hang_seconds, log)
     with hang_detector.watching():
         run.open()
         CrashMoment(log, run)

@@ -1,8 +1,10 @@
 """Find the shortest script of a failure: few writes, early and with simple values, by running shorter scripts.
 
-The algorithm is delta debugging (A. Zeller and R. Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", IEEE
-Transactions on Software Engineering 28(2), 2002); then the gaps between the remaining writes and their values are
-reduced.
+First, short scripts are tried that begin with the state in which the robot's inputs were soon before the failure
+(`shrink_starts`): most bugs need no more, and short runs take little time. The algorithm is then delta debugging
+(A. Zeller and R. Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", IEEE Transactions on Software
+Engineering 28(2), 2002), also of neighboring writes to one input together, such as a press and its release. Then the
+gaps between the remaining writes and their values are reduced.
 
 hypothesis' shrinker does not fit. It shortens the sequence of choices that a generator drew, and runs the generator
 again on the rest. Here the generator reads the robot's state while it draws, so each of a thousand writes depends on
@@ -14,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -25,24 +27,22 @@ from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .inputs import Input
 from .match import ReplayTask
 from .match_executor import MatchExecutor
+from .shrink_starts import Start, Write, starts_of, transitions_without_pause, without_overwritten
 from .values import simpler
 
 #: The maximum number of runs.
 MOST_RUNS = 2_000
 #: The maximum number of runs for a robot that hangs, since each takes `hang_seconds`.
 _MOST_HANGING_RUNS = 100
+#: Processor seconds without progress that count as a hang while a script of a hang is shortened. The shortest script is
+#: run once more with the project's own `hang_seconds`.
+_SHORT_HANG_SECONDS = 0.3
+#: How many neighboring writes to one input are removed together: a press and its release; two of them, since removing
+#: one of them inverts what a button toggles.
+_NEIGHBORS = (2, 4)
 
 #: Gaps to try between two moments, in packets.
 _GAPS = (0, 1, 2, 5, 10, 25, 50, 100, 250, 500)
-
-
-@dataclass(frozen=True)
-class _Write:
-    at_us: int
-    target: str
-    value: Any
-    #: Identifies the write in the script, whatever its time and value become.
-    number: int
 
 
 class Shrinker:
@@ -76,10 +76,12 @@ class Shrinker:
         self._executor = executor
         self._inputs = inputs
         self._most_runs = min(most_runs, _MOST_HANGING_RUNS) if failure.kind == HANGS else most_runs
+        self._hang_seconds = _SHORT_HANG_SECONDS if failure.kind == HANGS else None
         self._header = replace(script, steps=())
-        self._writes = tuple(_writes(script))
-        self._end_us = script.end_us
-        self._tried: set[tuple[_Write, ...]] = set()
+        self._whole = Start(tuple(_writes(script)), script.end_us)
+        self._writes, self._end_us = self._whole
+        self._without_pause = transitions_without_pause(self._writes)
+        self._tried: set[Start] = set()
 
     @property
     def script(self) -> InputScript:
@@ -88,58 +90,77 @@ class Shrinker:
 
     def shrink(self) -> None:
         """Run shorter scripts until nothing can be removed, or the maximum number of runs is reached."""
-        if self._first([self._writes]) is None:
+        self._shrink()
+        if self._hang_seconds is not None and self.repeats and not self.play_again():
+            # What takes long is not what hangs: start again, with the limit that the project has.
+            self._hang_seconds = None
+            self.repeats = False
+            self._tried.clear()
+            self._writes, self._end_us = self._whole
+            self._shrink()
+
+    def play_again(self) -> bool:
+        """Run the shortest script once more; return whether it fails in the same way."""
+        (played,) = self._executor.play([ReplayTask(self.script, self._use_oracle, self.failure)])
+        return self.failure.same_as(played.failure)
+
+    def _shrink(self) -> None:
+        # The moment of an ended process is not known.
+        starts = starts_of(*self._whole) if self.failure.kind != PROCESS_ENDED else []
+        if self._first_of([*starts, self._whole]) is None:
             return
-        by_target: dict[str, list[_Write]] = {}
-        for write in self._writes:
-            by_target.setdefault(write.target, []).append(write)
-        self._fewer([tuple(writes) for writes in by_target.values()])
+        self._fewer(self._by_target())
         before: InputScript | None = None
         while self.script != before and self.runs < self._most_runs:
             before = self.script
             self._fewer([(write,) for write in self._writes])
+            for count in _NEIGHBORS:
+                self._without_neighbors(count)
             self._sooner()
             self._simpler()
         if self.failure.kind in (HANGS, PROCESS_ENDED):
             self._shorter()
 
-    def play_again(self) -> bool:
-        """Run the shortest script once more; return whether it fails in the same way."""
-        (played,) = self._executor.play([self._follow(self._writes, self._end_us)])
-        return self.failure.same_as(played.failure)
-
     # -- trying ----------------------------------------------------------------------------------------------------
 
-    def _first(self, candidates: Iterable[tuple[_Write, ...]]) -> int | None:
-        """Take the first candidate that fails in the same way; return its index, or None.
+    def _first(self, candidates: Iterable[tuple[Write, ...]]) -> int | None:
+        """Take the first candidate that fails in the same way; return its index, or None."""
+        return self._first_of(Start(writes, self._end_us) for writes in candidates)
+
+    def _first_of(self, candidates: Iterable[Start]) -> int | None:
+        """As `_first`, with candidates that have their own ends.
 
         Several run at the same time; they count as if they ran one after the other.
         """
         left = self._most_runs - self.runs
-        new: list[tuple[int, tuple[_Write, ...]]] = []
-        for index, writes in enumerate(candidates):
-            if writes not in self._tried and len(new) < left:
-                self._tried.add(writes)
-                new.append((index, writes))
-        tasks = (self._follow(writes, self._end_us) for _, writes in new)
+        new: list[tuple[int, Start]] = []
+        for index, candidate in enumerate(candidates):
+            if candidate not in self._tried and len(new) < left and self._is_playable(candidate.writes):
+                self._tried.add(candidate)
+                new.append((index, candidate))
+        tasks = (self._follow(*candidate) for _, candidate in new)
         with closing(self._executor.play(tasks)) as results:
-            for (index, writes), played in zip(new, results, strict=True):
+            for (index, candidate), played in zip(new, results, strict=True):
                 self.runs += 1
                 self._on_run(self.runs)
                 if played.failure is not None and self.failure.same_as(played.failure):
                     self.failure = played.failure
                     self.repeats = True
                     self._end_us = played.script.end_us
-                    self._writes = tuple(write for write in writes if write.at_us < self._end_us)
+                    self._writes = tuple(write for write in candidate.writes if write.at_us < self._end_us)
                     # Later candidates do not count as tried; another pass may try them.
                     self._tried.difference_update(each for at, each in new if at > index)
                     return index
         return None
 
-    def _follow(self, writes: Sequence[_Write], end_us: int) -> ReplayTask:
-        return ReplayTask(self._script(writes, end_us), self._use_oracle, self.failure)
+    def _is_playable(self, writes: Sequence[Write]) -> bool:
+        """Return whether a field can play this as well as the whole script: it disables robots between two modes."""
+        return transitions_without_pause(writes) <= self._without_pause
 
-    def _script(self, writes: Sequence[_Write], end_us: int) -> InputScript:
+    def _follow(self, writes: Sequence[Write], end_us: int) -> ReplayTask:
+        return ReplayTask(self._script(writes, end_us), self._use_oracle, self.failure, self._hang_seconds)
+
+    def _script(self, writes: Sequence[Write], end_us: int) -> InputScript:
         steps = tuple(
             Step(at_us, {write.target: write.value for write in together})
             for at_us, together in groupby(writes, key=lambda write: write.at_us)
@@ -148,7 +169,7 @@ class Shrinker:
 
     # -- fewer -------------------------------------------------------------------------------------------------
 
-    def _fewer(self, units: list[tuple[_Write, ...]]) -> None:
+    def _fewer(self, units: list[tuple[Write, ...]]) -> None:
         """Remove as many of these units as possible: ddmin, by complements."""
         parts = min(2, len(units))
         while units and self.runs < self._most_runs:
@@ -168,7 +189,24 @@ class Shrinker:
             else:
                 parts = min(2 * parts, len(units))
 
-    def _without(self, units: Iterable[tuple[_Write, ...]]) -> tuple[_Write, ...]:
+    def _by_target(self) -> list[tuple[Write, ...]]:
+        by_target: dict[str, list[Write]] = {}
+        for write in self._writes:
+            by_target.setdefault(write.target, []).append(write)
+        return [tuple(writes) for writes in by_target.values()]
+
+    def _without_neighbors(self, count: int) -> None:
+        """Remove this many neighboring writes to one input together, wherever possible."""
+        found: int | None = 0
+        while found is not None and self.runs < self._most_runs:
+            candidates = [
+                self._without([unit[first : first + count]])
+                for unit in self._by_target()
+                for first in range(len(unit) - count + 1)
+            ]
+            found = self._first(candidates)
+
+    def _without(self, units: Iterable[tuple[Write, ...]]) -> tuple[Write, ...]:
         gone = {write.number for unit in units for write in unit}
         return tuple(write for write in self._writes if write.number not in gone)
 
@@ -194,10 +232,12 @@ class Shrinker:
             # When writes have joined the previous moment, the next moment has this index.
             index += 1 if high > 0 or not index else 0
 
-    def _moved(self, from_us: int, packets: int) -> tuple[_Write, ...]:
-        return tuple(
-            replace(write, at_us=write.at_us + packets * PACKET_US) if write.at_us >= from_us else write
-            for write in self._writes
+    def _moved(self, from_us: int, packets: int) -> tuple[Write, ...]:
+        return without_overwritten(
+            [
+                replace(write, at_us=write.at_us + packets * PACKET_US) if write.at_us >= from_us else write
+                for write in self._writes
+            ]
         )
 
     def _shorter(self) -> None:
@@ -221,20 +261,20 @@ class Shrinker:
             if write is not None:
                 self._first(self._with_value(number, value) for value in self._values(write))
 
-    def _values(self, write: _Write) -> Iterator[Any]:
+    def _values(self, write: Write) -> Iterator[Any]:
         if write.target == MODE and str(write.value).startswith("disabled "):
             yield "disabled"
         each = self._inputs.get(write.target)
         if each is not None:
             yield from simpler(each.kind, write.value)
 
-    def _with_value(self, number: int, value: Any) -> tuple[_Write, ...]:
+    def _with_value(self, number: int, value: Any) -> tuple[Write, ...]:
         return tuple(replace(write, value=value) if write.number == number else write for write in self._writes)
 
 
-def _writes(script: InputScript) -> Iterator[_Write]:
+def _writes(script: InputScript) -> Iterator[Write]:
     number = 0
     for step in script.steps:
         for target, value in step.writes.items():
-            yield _Write(step.at_us, target, value, number)
+            yield Write(step.at_us, target, value, number)
             number += 1
