@@ -90,7 +90,7 @@ class FuzzFinding:
 
     @property
     def fails_at(self) -> float | None:
-        """Return when the robot fails, in seconds, if that is known and later than the last input."""
+        """Return when the robot fails, in seconds, if that is known and not soon after the last input."""
         return None if self.failure.kind == PROCESS_ENDED else late_failure(self.entry.script)
 
 

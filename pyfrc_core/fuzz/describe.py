@@ -36,6 +36,8 @@ _NAMES = {
 
 #: A story of more moments than this has only the last ones: that of a script that could not be shortened.
 _MOST_MOMENTS, _LAST_MOMENTS = 12, 6
+#: A failure within this time after the last input is part of that moment.
+_SOON_US = 5 * PACKET_US
 
 
 def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
@@ -69,9 +71,10 @@ def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
 
 
 def late_failure(script: InputScript) -> float | None:
-    """Return when the robot failed, in seconds, if that was later than all inputs; else None."""
+    """Return when the robot failed, in seconds, if that was not soon after the last input; else None."""
     failed_us = script.end_us - PACKET_US
-    return failed_us / 1e6 if script.steps and failed_us > script.steps[-1].at_us else None
+    last_us = script.steps[-1].at_us if script.steps else 0
+    return failed_us / 1e6 if failed_us - last_us > _SOON_US else None
 
 
 def _unusual_order(modes: Sequence[str]) -> str:
