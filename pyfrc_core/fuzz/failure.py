@@ -10,7 +10,7 @@ from ..errors import text_of
 from ..invariants.watch import BrokenInvariantError
 from ..project.robot_files import RobotFiles
 from ..runtime.exceptions import TestFroze
-from ..runtime.failures import NamesItsPlace, headline
+from ..runtime.failures import NamesItsPlace, headline, library_calls, with_library_calls
 from ..runtime.loop_limit import LoopWaitsError
 
 #: Kind of a failure: the code hangs.
@@ -49,12 +49,14 @@ class FuzzFailure:
         function, since the line at which it is interrupted varies; empty when it is unknown
     :param function: the name of the function with that line
     :param text: the message for users, which begins with the line
+    :param calls: the calls in libraries that led to an exception without a line of the user's
     """
 
     kind: str
     place: str
     function: str
     text: str
+    calls: str = ""
 
     def same_as(self, other: FuzzFailure | None) -> bool:
         """Return whether both failures have the same cause."""
@@ -64,7 +66,7 @@ class FuzzFailure:
         if self.kind in _ONCE:
             return self.kind, ""
         # Errors of the HAL have no line of the robot's, but different texts.
-        return self.kind, _NUMBER.sub("0", self.text) if self.kind == "hal_errors" else self.place
+        return self.kind, _NUMBER.sub("0", self.text) if self.kind == "hal_errors" else self.place or self.calls
 
 
 def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
@@ -74,12 +76,13 @@ def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
     if isinstance(error, LoopWaitsError):  # the line that waits varies
         return FuzzFailure(WAITS, error.begins_at, error.function, str(error))
     code, line = _innermost(error.__traceback__, files)
-    text = _ADDRESS.sub("", headline(error, files) or text_of(error))
+    text = _ADDRESS.sub("", headline(error, files) or with_library_calls(text_of(error), error, files))
     if isinstance(error, TestFroze):
         place, function = _place(code, files), code.co_name if code else ""
         return FuzzFailure(HANGS, place, function, f"{place}: {function}() hangs" if place else "the robot code hangs")
     place = f"{files.relative(code.co_filename)}:{line}" if code else ""
-    return FuzzFailure(type(error).__name__, place, code.co_name if code else "", text)
+    calls = library_calls(error, files)
+    return FuzzFailure(type(error).__name__, place, code.co_name if code else calls.partition(",")[0], text, calls)
 
 
 def user_frame(frame: FrameType | None, files: RobotFiles) -> FrameType | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+import threading
 from types import CodeType, ModuleType
 
 from ..errors import PyfrcError, RobotCodeError, UsageError, text_of
@@ -11,6 +12,9 @@ from ..project.robot_files import RobotFiles, is_pyfrc
 from .exceptions import TestFroze
 
 _STACK_ENTRY = re.compile(r'  File "([^"]+)", line \d+, in [^\n]*\n(?:    [^\n]*\n)?\n?')
+
+#: How many calls of libraries are shown.
+_SHOWN_CALLS = 4
 
 
 class NamesItsPlace(Exception):
@@ -58,7 +62,36 @@ def as_robot_code_error(error: BaseException, files: RobotFiles) -> PyfrcError:
     if isinstance(error, PyfrcError):
         return error
     text = headline(error, files)
-    return RobotCodeError(text) if text is not None else RobotCodeError(text_of(error))
+    return RobotCodeError(text if text is not None else with_library_calls(text_of(error), error, files))
+
+
+def with_library_calls(text: str, error: BaseException, files: RobotFiles) -> str:
+    """Add the calls in libraries to the first line of a text about an exception, if no line of the robot's is known."""
+    first, newline, rest = text.partition("\n")
+    calls = library_calls(error, files)
+    return f"{first} (in {calls}){newline}{rest}" if calls else text
+
+
+def library_calls(error: BaseException, files: RobotFiles) -> str:
+    """Return the calls in libraries that led to an exception without a line of the robot's, innermost first.
+
+    Such as ``DriveDistance.execute, called by CommandScheduler.run``: methods are named after the object's class, which
+    may be one of the robot's. Empty if the robot's code took part, or only pyfrc did.
+    """
+    if files.innermost_line(error.__traceback__) is not None:
+        return ""
+    names: list[str] = []
+    entry = error.__traceback__
+    while entry is not None:
+        frame, entry = entry.tb_frame, entry.tb_next
+        if is_pyfrc(frame.f_code.co_filename) or frame.f_code.co_filename == threading.__file__:
+            continue
+        owner = frame.f_locals.get("self")
+        of = frame.f_globals.get("__name__", "") if owner is None else type(owner).__name__
+        name = f"{of}.{frame.f_code.co_name}"
+        if names[-1:] != [name]:
+            names.append(name)
+    return ", called by ".join(reversed(names[-_SHOWN_CALLS:]))
 
 
 def names_its_place(error: BaseException) -> bool:
