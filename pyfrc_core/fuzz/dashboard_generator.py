@@ -1,21 +1,39 @@
-"""Generate a dashboard's inputs: find in NetworkTables what drivers may select, type and click, and change it."""
+"""Generate a network's inputs: what drivers select, type and click in a dashboard, and what cameras send."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
 
 import ntcore
 
 from ..runtime.clock import PACKET_US
-from ..runtime.scripts.targets import NETWORK
+from ..runtime.scripts.network_entries import NETWORK, entry_target, parse_entry_target
 from .inputs import Input
+from .network_reads import NetworkRead, NetworkReads
+from .network_values import SEES_TARGET, NetworkValues, is_setting
+from .robot_constants import UNKNOWN, RobotConstants
 from .values import Value, draw
 
 _DASHBOARD_TABLES = ("/SmartDashboard/", "/Shuffleboard/")
 
-#: Seconds from one choice to the next, on average.
-_PAUSE = 3.0
+#: Tables that WPILib itself writes.
+_NOT_INPUTS = ("/FMSInfo/", "/LiveWindow/")
+
+#: Seconds from one choice to the next, on average and at least; each entry that the robot reads makes them more.
+_PAUSE, _SHORTEST_PAUSE = 3.0, 0.3
+
+#: The share of the entries that nothing is known to read, such as the telemetry of a dashboard.
+_UNREAD = 0.15
+
+#: How often an entry has a value when the robot starts.
+_BEFORE_START = 0.5
+
+#: Types whose values show them, so that a target does not name them.
+_PLAIN = ("boolean", "double", "string")
+_NUMBERS = ("int", "float", "double")
 
 
 def find_dashboard() -> Iterator[Input]:
@@ -40,22 +58,50 @@ def find_dashboard() -> Iterator[Input]:
 
 
 class DashboardGenerator:
-    """Generates one match's dashboard inputs."""
+    """Generates one match's inputs from the network.
 
-    def __init__(self, rng: random.Random) -> None:
+    :param reads: the entries that the robot reads; None if they are not watched
+    """
+
+    def __init__(
+        self, rng: random.Random, reads: NetworkReads | None = None, constants: RobotConstants = UNKNOWN
+    ) -> None:
         self._rng = rng
+        self._reads = reads
+        self._values = NetworkValues(rng, constants)
         self.next_us = 0
         self._inputs: list[Input] = []
-        self._numbers: dict[str, float] = {}
+        self._unread: list[Input] = []
+        #: The value of each number and entry before it was first written.
+        self._originals: dict[str, Any] = {}
+        self._settings: set[str] = set()
+        self._written: dict[str, Value] = {}
         self._chosen: set[str] = set()
 
-    def set_inputs(self, inputs: list[Input]) -> None:
-        """Set the inputs to generate values for."""
-        self._inputs = inputs
+    def set_inputs(self, inputs: list[Input]) -> list[Input]:
+        """Set the inputs to generate values for; return them with the entries that the robot reads."""
+        reads = {} if self._reads is None else self._reads.found
+        entries = [each for read in reads.values() if (each := self._entry(read)) is not None]
+        others = [each for each in inputs if each.target.removeprefix(NETWORK) not in reads]
+        plain = [each for each in others if each.kind in ("flag", "number")] if self._reads is not None else []
+        self._inputs = [*(each for each in others if each not in plain), *entries]
+        self._unread = plain
         for each in inputs:
-            if each.kind == "number" and each.target not in self._numbers:
+            if each.kind == "number" and each.target not in self._originals:
                 entry = ntcore.NetworkTableInstance.getDefault().getEntry(each.target.removeprefix(NETWORK))
-                self._numbers[each.target] = entry.getDouble(0.0)
+                self._originals[each.target] = entry.getDouble(0.0)
+        return [*inputs, *entries]
+
+    def before_first_read(self, read: NetworkRead) -> dict[str, Value]:
+        """Return what to write before the robot, which is starting, reads an entry for the first time."""
+        exists = ntcore.NetworkTableInstance.getDefault().getTopic(read.name).exists()
+        if exists or self._rng.random() >= _BEFORE_START:
+            return {}
+        found: dict[str, Value] = {}
+        entry = self._entry(read)
+        if entry is not None:
+            self._change_entry(entry.target, read, found)
+        return found
 
     def write(self, now_us: int, found: dict[str, Value]) -> None:
         """Add the writes of this time: a choice for each new chooser, and a random change now and then."""
@@ -64,9 +110,64 @@ class DashboardGenerator:
             if each.kind == "choice" and each.target not in self._chosen:
                 self._chosen.add(each.target)
                 self._choose(each, found)
-        if self._inputs and self.next_us:
-            self._choose(rng.choice(self._inputs), found)
-        self.next_us = now_us + PACKET_US + round(rng.expovariate(1 / _PAUSE) * 50) * PACKET_US
+        if self.next_us:
+            if self._unread and (not self._inputs or rng.random() < _UNREAD):
+                self._choose(rng.choice(self._unread), found)
+            elif self._inputs:
+                self._choose(rng.choice(self._inputs), found)
+        read = sum(each.kind == "entry" for each in self._inputs)
+        pause = max(_SHORTEST_PAUSE, _PAUSE / (1 + read))
+        self.next_us = now_us + PACKET_US + round(rng.expovariate(1 / pause) * 50) * PACKET_US
 
     def _choose(self, each: Input, found: dict[str, Value]) -> None:
-        found[each.target] = draw(each.kind, self._rng, each.options, self._numbers.get(each.target, 0.0))
+        if each.kind != "entry" or self._reads is None:
+            found[each.target] = draw(each.kind, self._rng, each.options, self._originals.get(each.target, 0.0))
+            return
+        camera = [other for other in self._inputs if other.kind == "entry" and other.device == each.device]
+        sees = next((other for other in camera if SEES_TARGET.search(_name(other).rpartition("/")[2])), None)
+        if sees is None or is_setting(each.device):
+            self._change_entry(each.target, self._reads.found[_name(each)], found)
+            return
+        # All that a camera measures changes together: without a target, there is nothing to measure.
+        target = self._rng.random() < 0.7
+        for other in camera:
+            read = self._reads.found[_name(other)]
+            if target:
+                self._change_entry(other.target, read, found)
+            else:
+                found[other.target] = self._values.without_target(read)
+        if target:
+            found[sees.target] = True if self._reads.found[_name(sees)].type_name == "boolean" else 1
+
+    def _entry(self, read: NetworkRead) -> Input | None:
+        """Return the input that an entry is; None if the robot does not read it with its own type."""
+        table, _, last = read.name.rpartition("/")
+        if read.name.startswith(_NOT_INPUTS) or last.startswith("."):
+            return None
+        topic = ntcore.NetworkTableInstance.getDefault().getTopic(read.name)
+        type_name = read.type_name
+        if topic.exists() and topic.getTypeString() != type_name:
+            if not {topic.getTypeString(), type_name} <= set(_NUMBERS):
+                return None
+            type_name = topic.getTypeString()
+        return Input(entry_target(read.name, "" if type_name in _PLAIN else type_name), "entry", table)
+
+    def _change_entry(self, target: str, read: NetworkRead, found: dict[str, Value]) -> None:
+        if read.name not in self._originals:
+            entry = ntcore.NetworkTableInstance.getDefault().getEntry(read.name)
+            own = entry.exists()
+            self._originals[read.name] = entry.getValue().value() if own else read.default
+            if own or is_setting(read.name):
+                self._settings.add(read.name)
+        now = self._entry(read)
+        if now is None or now.target != target:  # the robot has just published it with another type
+            return
+        setting = read.name in self._settings
+        read = replace(read, type_name=parse_entry_target(target)[1] or read.type_name)
+        before = self._originals[read.name] if setting else self._written.get(read.name, read.default)
+        found[target] = self._written[read.name] = self._values.draw(read, before, setting)
+
+
+def _name(entry: Input) -> str:
+    """Return the full name of an entry."""
+    return parse_entry_target(entry.target)[0]

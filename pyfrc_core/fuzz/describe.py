@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 
 from ..runtime.clock import PACKET_US
+from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript
-from ..runtime.scripts.targets import MATCH_TIME, MODE, NETWORK
+from ..runtime.scripts.targets import MATCH_TIME, MODE
 from .failure import FuzzFailure
 from .values import NOT_PRESSED, Value
 
@@ -123,7 +124,8 @@ def _described(target: str, value: Value) -> str:
     if plugged is not None:
         return f"joystick {plugged[1]} {'plugged in' if value else 'unplugged'}"
     if target.startswith(NETWORK):
-        return f"{target.removeprefix(NETWORK)} set to {value!r}"
+        shown = list(value) if isinstance(value, tuple) else value
+        return f"{parse_entry_target(target)[0]} set to {shown!r}"
     return f"{_NAMES.get(target, target)} {value!r}"
 
 

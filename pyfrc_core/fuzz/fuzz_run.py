@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO
 
@@ -12,6 +12,7 @@ from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript, Step
 from ..runtime.scripts.targets import Targets
 from .input_generator import InputGenerator
+from .values import Value
 
 
 class FuzzRun:
@@ -28,17 +29,13 @@ class FuzzRun:
         self._generator = generator
         self._journal = journal
         self._targets = Targets(run.hal_data, run.connection.packet)
+        generator.write_at_once = self._apply
 
     def write(self) -> None:
         """Write the inputs that are due now; call it once before the robot starts."""
-        now_us = self._run.clock.now_us
-        writes = self._generator.writes(now_us)
+        writes = self._generator.writes(self._run.clock.now_us)
         if writes:
-            self.steps.append(Step(now_us, writes))
-            if self._journal is not None:
-                self._journal.write(pickle.dumps(self.steps[-1]))
-        for target, value in writes.items():
-            self._targets.write(target, value, now_us)
+            self._apply(writes)
 
     def on_packet(self, now: float) -> bool:
         """Write the inputs of the next packet; return whether the match continues."""
@@ -47,6 +44,14 @@ class FuzzRun:
             self.write()
         self._targets.count_down(now_us)
         return not self._generator.over(now_us)
+
+    def _apply(self, writes: Mapping[str, Value]) -> None:
+        now_us = self._run.clock.now_us
+        self.steps.append(Step(now_us, writes))
+        if self._journal is not None:
+            self._journal.write(pickle.dumps(self.steps[-1]))
+        for target, value in writes.items():
+            self._targets.write(target, value, now_us)
 
     def script(self, robot: str, seed: int) -> InputScript:
         """Return the inputs up to now as a script that ends after this packet."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..compat.wpilib_private import simulation_periodic_of
@@ -17,6 +17,8 @@ from .gamepads import find_gamepads
 from .inputs import Input, SensorFinder, find_controls
 from .joystick_generator import JoystickGenerator
 from .match_plan import plan_match
+from .network_reads import NetworkRead, NetworkReads
+from .robot_constants import UNKNOWN, RobotConstants
 from .sensor_generator import SensorGenerator
 from .values import Value
 
@@ -47,6 +49,8 @@ class InputGenerator:
         turn out to be driven during the match are excluded from then on
     :param settings: the maximum length of each period
     :param game_messages: the messages that the field may send, if they are known
+    :param network_reads: the entries of NetworkTables that the robot reads; None if they are not watched
+    :param constants: the constants of the robot's code
     """
 
     def __init__(
@@ -58,6 +62,8 @@ class InputGenerator:
         physics_inputs: frozenset[str] = frozenset(),
         settings: MatchSettings | None = None,
         game_messages: Sequence[str] = (),
+        network_reads: NetworkReads | None = None,
+        constants: RobotConstants = UNKNOWN,
     ) -> None:
         #: The inputs found so far, by target.
         self.inputs: dict[str, Input] = {}
@@ -70,7 +76,11 @@ class InputGenerator:
         self._sticks = JoystickGenerator(rng)
         self._sensors = SensorGenerator(rng, self._hal_data)
         self._sensor_finder = SensorFinder(self._hal_data)
-        self._dashboard = DashboardGenerator(rng)
+        self._dashboard = DashboardGenerator(rng, network_reads, constants)
+        #: Applies writes at once, while the robot starts. Set by the match.
+        self.write_at_once: Callable[[Mapping[str, Value]], None] | None = None
+        if network_reads is not None:
+            network_reads.on_first = self._before_first_read
         self._driven = set(physics_inputs)
         self._sensors.paused = not physics_inputs and _is_simulated(run)
         self._enabled_since_us: int | None = None
@@ -146,7 +156,16 @@ class InputGenerator:
         self._remember(sensors)
         self._sensors.set_inputs(sensors)
         self._sensors.excluded = {each.device for each in sensors if each.target in self._driven}
-        self._dashboard.set_inputs(sorted(find_dashboard()))
+        self._remember(self._dashboard.set_inputs(sorted(find_dashboard())))
+
+    def _before_first_read(self, read: NetworkRead) -> None:
+        """Write an entry before the robot first reads it, as if it had been there before the robot was started."""
+        run = self._run
+        if self.write_at_once is None or not run.started or run.clock.now_us > 0 or not self._attached:
+            return
+        writes = without(self.left_out, self._dashboard.before_first_read(read))
+        if writes:
+            self.write_at_once(writes)
 
     def _remember(self, inputs: list[Input]) -> None:
         self.inputs |= {each.target: each for each in inputs}

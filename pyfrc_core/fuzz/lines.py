@@ -9,7 +9,7 @@ from __future__ import annotations
 import gc
 import sys
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import CodeType, FrameType, FunctionType
 from typing import Any
@@ -60,6 +60,11 @@ class RobotLines:
             for constant in code.co_consts:
                 if isinstance(constant, CodeType):
                     self._add(constant)
+
+    @property
+    def functions(self) -> Sequence[FunctionType]:
+        """Return the robot's functions."""
+        return self._functions
 
     def all(self) -> frozenset[Line]:
         """Return all lines."""

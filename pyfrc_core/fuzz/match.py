@@ -31,7 +31,9 @@ from .input_generator import InputGenerator
 from .inputs import Input
 from .lines import RobotLines
 from .misbehavior_notes import MisbehaviorNotes, NotedFailure
+from .network_reads import watch_network_reads
 from .oracle import attach_oracle
+from .robot_constants import RobotConstants, find_constants
 from .seed_schedule import SeedSchedule
 from .states import RobotStates
 
@@ -123,6 +125,12 @@ def robot_lines(project: Project) -> RobotLines:
     return RobotLines(project.files)
 
 
+@lru_cache(maxsize=1)
+def robot_constants(project: Project) -> RobotConstants:
+    """Return the constants of the robot's code."""
+    return find_constants(robot_lines(project).functions)
+
+
 def load(project: Project) -> type[Any]:
     """Import the robot program, its physics and its rules.
 
@@ -158,6 +166,8 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
             seconds=seconds,
             settings=project.settings.match,
             game_messages=project.game_specific_messages,
+            network_reads=closing.enter_context(watch_network_reads(project.files)),
+            constants=robot_constants(project),
         )
         generator.left_out = task.schedule.left_out_at(0)
         fuzz_run = FuzzRun(run, generator, closing.enter_context(task.journal.open("wb", 0)) if task.journal else None)

@@ -31,7 +31,7 @@ from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .fuzz_run import read_journal
 from .goals import Line
 from .inputs import prepare_sensor_search
-from .match import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task, play, robot_lines
+from .match import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task, play, robot_constants, robot_lines
 
 Answer = TypeVar("Answer")
 
@@ -192,6 +192,7 @@ class ForkedMatchExecutor(MatchExecutor):
         self._imported = not imports_late
         if self._imported:
             robot_lines(project)
+            robot_constants(project)
         # Each match asks for these; the first call prepares the answer, and forks inherit what it has made.
         devices_exist()
         prepare_sensor_search()

@@ -5,15 +5,17 @@ A failure on a stick at 2.0 or a voltage of -3 is not a bug that a team can meet
 
 from __future__ import annotations
 
+import math
 import random
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 #: The value of an input.
-Value: TypeAlias = bool | int | float | str
+Value: TypeAlias = bool | int | float | str | tuple[bool | int | float | str, ...]
 
 #: The kind of an input's values. Units: volts, counts, degrees, degrees per second, turns (0 to 1), g, amperes, degrees
-#: Celsius.
+#: Celsius. An "entry" is one of NetworkTables, whose values `network_values` draws.
 InputKind = Literal[
     "axis",
     "trigger",
@@ -41,6 +43,7 @@ InputKind = Literal[
     "command",
     "flag",
     "number",
+    "entry",
 ]
 
 
@@ -105,7 +108,7 @@ def draw(kind: InputKind, rng: random.Random, options: tuple[str, ...] = (), now
         return _axis(rng)
     if kind == "pov":
         return rng.choice(POV_ANGLES)
-    if kind in ("option", "choice"):
+    if kind in ("option", "choice", "entry"):
         return rng.choice(options)
     if kind == "command":
         return True
@@ -138,15 +141,29 @@ def nearest(kind: InputKind, value: float) -> float:
     return round(inside) if span.whole else round(float(inside), _DIGITS)
 
 
-def simpler(kind: InputKind, value: Value) -> list[float]:
+def simpler(kind: InputKind, value: Value) -> Sequence[Value]:
     """Return values of this kind that are shorter to read, the shortest first; for kinds without numbers, none."""
     span = SPANS.get(kind)
+    if kind == "entry":
+        return _simpler_entry(value)
     if span is None or isinstance(value, bool) or not isinstance(value, int | float):
         return []
     rounded = [round(value, digits) for digits in (1, 2)]
     found: list[float] = [nearest(kind, each) for each in (span.low, span.high, value, *rounded, *span.typical)]
     found = [each for each in dict.fromkeys(found) if len(repr(each)) < len(repr(value))]
     return sorted(found, key=lambda each: (len(repr(each)), abs(each - value)))
+
+
+def _simpler_entry(value: Value) -> list[Value]:
+    found: list[Value] = []
+    if isinstance(value, float):
+        found = [0.0, 1.0, math.copysign(1.0, value), *(round(value, digits) for digits in (0, 1, 2))]
+    elif isinstance(value, tuple):
+        zeros = tuple(each if isinstance(each, str) else type(each)(0) for each in value)
+        found = [(), value[:1], zeros]
+    elif isinstance(value, int) and not isinstance(value, bool):
+        found = [0, 1]
+    return [each for each in dict.fromkeys(found) if len(repr(each)) < len(repr(value))]
 
 
 def can_be(kind: InputKind, value: object, options: tuple[str, ...] = ()) -> bool:
@@ -156,6 +173,8 @@ def can_be(kind: InputKind, value: object, options: tuple[str, ...] = ()) -> boo
         return value in (NOT_PRESSED, *POV_ANGLES)
     if kind in ("option", "choice"):
         return value in options
+    if kind == "entry":
+        return isinstance(value, bool | int | float | str | tuple)
     if kind == "number":
         return isinstance(value, float)
     if span is None:

@@ -13,7 +13,10 @@ from typing import Any
 
 from ..fuzz.fuzz_run import FuzzRun
 from ..fuzz.input_generator import InputGenerator
+from ..fuzz.lines import RobotLines
 from ..fuzz.match_plan import seconds_of
+from ..fuzz.network_reads import watch_network_reads
+from ..fuzz.robot_constants import find_constants
 from ..hal import HalData, modes
 from ..project import Project, find_project
 from ..runtime.scripts.script import InputScript
@@ -34,21 +37,24 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
     """Run through a whole match with random inputs."""
     __tracebackhide__ = True
     clock, project, seed = fake_time.run.clock, control.project or find_project(), control.seed
-    generator = InputGenerator(
-        random.Random(f"fuzz {seed}"),  # not the generator that the robot's code uses
-        fake_time.run,
-        seconds=seconds_of(project.settings.match),
-        settings=project.settings.match,
-        game_messages=project.game_specific_messages,
-    )
-    fuzz_run = FuzzRun(fake_time.run, generator)
-    fuzz_run.write()
-    try:
-        control.run_test(fuzz_run.on_packet)
-    except Exception as error:
-        print(f"The robot failed at {clock.now:.2f} s of a match with random inputs, in {modes.mode_name()} mode.")
-        _save(project, fuzz_run.script(project.main_file.name, seed), generator, error)
-        raise
+    with watch_network_reads(project.files) as reads:
+        generator = InputGenerator(
+            random.Random(f"fuzz {seed}"),  # not the generator that the robot's code uses
+            fake_time.run,
+            seconds=seconds_of(project.settings.match),
+            settings=project.settings.match,
+            game_messages=project.game_specific_messages,
+            network_reads=reads,
+            constants=find_constants(RobotLines(project.files).functions),
+        )
+        fuzz_run = FuzzRun(fake_time.run, generator)
+        fuzz_run.write()
+        try:
+            control.run_test(fuzz_run.on_packet)
+        except Exception as error:
+            print(f"The robot failed at {clock.now:.2f} s of a match with random inputs, in {modes.mode_name()} mode.")
+            _save(project, fuzz_run.script(project.main_file.name, seed), generator, error)
+            raise
 
 
 def _save(project: Project, script: InputScript, generator: InputGenerator, error: Exception) -> None:

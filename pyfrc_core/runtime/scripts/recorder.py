@@ -16,8 +16,9 @@ from ...hal import modes
 from ...hal.change_reader import MISSING, Change
 from ...hal.changing_values import same
 from ..robot import RobotRun
+from .network_entries import NETWORK
 from .script import InputScript, Step
-from .targets import MATCH_TIME, MODE, NETWORK, PACKET, REMAINING, Countdown, plugged
+from .targets import MATCH_TIME, MODE, PACKET, REMAINING, Countdown, plugged
 
 _RECORDED_PACKAGES = ("pyfrc", "wpilib")
 

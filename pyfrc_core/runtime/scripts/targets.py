@@ -4,7 +4,8 @@
 - ``match_time``: seconds left in the period; they count down from then on (``time.remaining`` stands still)
 - ``joysticks[0].plugged``: false: unplugged, with no axes, buttons and POVs; true: plugged in again, nothing pressed
 - ``packet``: true: a packet is delivered at once, out of turn, as tests can have it
-- ``nt:/SmartDashboard/x``: an entry of NetworkTables; a SendableChooser's choice is its entry ``selected``
+- ``nt:/SmartDashboard/x``: an entry of NetworkTables; a SendableChooser's choice is its entry ``selected``;
+  more in `network_entries`
 - anything else: a path in `hal_data`, such as ``joysticks[0].axes[1]`` or ``event.game_specific_message``
 """
 
@@ -14,15 +15,15 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-import ntcore
 import wpilib
 
 from ...errors import UsageError
 from ...hal import HalData, LiveDict, format_path, modes, parse_path
 from ...hal.timing import deliver_packet
 from ..clock import to_us
+from .network_entries import NETWORK, NetworkEntries
 
-MODE, MATCH_TIME, PACKET, NETWORK = "mode", "match_time", "packet", "nt:"
+MODE, MATCH_TIME, PACKET = "mode", "match_time", "packet"
 
 #: The path of the seconds left: written, they stand still.
 REMAINING = "time.remaining"
@@ -66,7 +67,7 @@ class Targets:
     def __init__(self, hal_data: HalData, deliver: Callable[[], object] = deliver_packet) -> None:
         self._hal_data = hal_data
         self._deliver = deliver
-        self._entries: dict[str, ntcore.NetworkTableEntry] = {}
+        self._entries = NetworkEntries()
         #: The list and the index of each joystick's control that was written: most writes of fuzz go to these.
         self._controls: dict[str, tuple[Any, Any]] = {}
         self._countdown = Countdown()
@@ -91,7 +92,7 @@ class Targets:
             self._deliver()
             wpilib.DriverStation.refreshData()
         elif target.startswith(NETWORK):
-            self._write_entry(target.removeprefix(NETWORK), value)
+            self._entries.write(target, value)
         elif (stick := _PLUGGED.fullmatch(target)) is not None:
             modes.plug_in(int(stick[1])) if value else modes.unplug(int(stick[1]))
         else:
@@ -138,16 +139,3 @@ class Targets:
             and not target.startswith(NETWORK)
             and not _PLUGGED.fullmatch(target)
         )
-
-    def _write_entry(self, name: str, value: Any) -> None:
-        entry = self._entries.get(name)
-        if entry is None:
-            entry = self._entries[name] = ntcore.NetworkTableInstance.getDefault().getEntry(name)
-        if (
-            isinstance(value, int)
-            and not isinstance(value, bool)
-            and entry.getType() != ntcore.NetworkTableType.kInteger
-        ):
-            value = float(value)  # JSON does not tell 1 from 1.0, and dashboards write doubles
-        if not entry.setValue(value):
-            raise UsageError(f"{name} is {entry.getTopic().getTypeString()}, and cannot be {value!r}")

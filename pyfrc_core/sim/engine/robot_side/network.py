@@ -14,7 +14,7 @@ from typing import Any
 
 import ntcore
 
-from ....runtime.scripts.targets import NETWORK
+from ....runtime.scripts.network_entries import NETWORK
 from ..snapshot import Chooser
 
 _PUBLISHED = int(ntcore.EventFlags.kPublish) | int(ntcore.EventFlags.kImmediate)

@@ -1,0 +1,103 @@
+"""Entries of NetworkTables as targets of input scripts.
+
+``nt:/SmartDashboard/x`` has the type of its value, and a number is a double. Where that is not so, the target names the
+type as NetworkTables does: ``nt:int:/vision/id``, ``nt:double[]:/limelight/botpose`` (also for an empty list),
+``nt:struct:Pose2d:/vision/pose``, whose value is a list of the struct's numbers (structs of doubles only).
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import ntcore
+
+from ...errors import UsageError
+
+NETWORK = "nt:"
+
+_STRUCT = "struct:"
+
+#: How to make a value of each type that a target can name.
+_MAKE: dict[str, Callable[[Any], ntcore.Value]] = {
+    "boolean": ntcore.Value.makeBoolean,
+    "int": ntcore.Value.makeInteger,
+    "float": ntcore.Value.makeFloat,
+    "double": ntcore.Value.makeDouble,
+    "string": ntcore.Value.makeString,
+    "boolean[]": ntcore.Value.makeBooleanArray,
+    "int[]": ntcore.Value.makeIntegerArray,
+    "float[]": ntcore.Value.makeFloatArray,
+    "double[]": ntcore.Value.makeDoubleArray,
+    "string[]": ntcore.Value.makeStringArray,
+}
+
+
+def entry_target(name: str, type_name: str = "") -> str:
+    """Return the target of an entry; with the name of its type where its values do not show it."""
+    return f"{NETWORK}{type_name}:{name}" if type_name else NETWORK + name
+
+
+def parse_entry_target(target: str) -> tuple[str, str]:
+    """Return the name of a target's entry, and the name of its type; empty where its values show it."""
+    type_name, slash, name = target.removeprefix(NETWORK).partition("/")
+    return slash + name if slash else type_name, type_name.removesuffix(":") if slash else ""
+
+
+class NetworkEntries:
+    """Writes to entries of NetworkTables."""
+
+    def __init__(self) -> None:
+        self._writers: dict[str, Callable[[Any], None]] = {}
+
+    def write(self, target: str, value: Any) -> None:
+        """Write one value.
+
+        :raises UsageError: when the entry cannot have this value
+        """
+        writer = self._writers.get(target)
+        if writer is None:
+            writer = self._writers[target] = _writer(*parse_entry_target(target))
+        writer(value)
+
+
+def _writer(name: str, type_name: str) -> Callable[[Any], None]:
+    network = ntcore.NetworkTableInstance.getDefault()
+    if type_name.startswith(_STRUCT):
+        publisher = network.getRawTopic(name).publish(type_name)
+
+        def write_struct(value: Sequence[float]) -> None:
+            try:
+                publisher.set(struct.pack(f"<{len(value)}d", *value))
+            except (TypeError, struct.error):
+                raise UsageError(f"{name} is a struct, written as a list of its numbers, not {value!r}") from None
+
+        return write_struct
+    entry = network.getEntry(name)
+    if not type_name:
+        return lambda value: _write_plain(entry, value)
+    if type_name not in _MAKE:
+        raise UsageError(f"NetworkTables has no type {type_name!r}: the types are {', '.join(_MAKE)}, struct:NAME")
+    make = _MAKE[type_name]
+
+    def write_typed(value: Any) -> None:
+        try:
+            made = make(list(value) if isinstance(value, list | tuple) else value)
+        except TypeError:
+            raise UsageError(f"{name} is {type_name}, and cannot be {value!r}") from None
+        _set(entry, made, value)
+
+    return write_typed
+
+
+def _write_plain(entry: ntcore.NetworkTableEntry, value: Any) -> None:
+    is_whole = isinstance(value, int) and not isinstance(value, bool)
+    if is_whole and entry.getType() != ntcore.NetworkTableType.kInteger:
+        value = float(value)  # JSON does not tell 1 from 1.0, and dashboards write doubles
+    _set(entry, value, value)
+
+
+def _set(entry: ntcore.NetworkTableEntry, made: Any, value: Any) -> None:
+    if not entry.setValue(made):
+        raise UsageError(f"{entry.getName()} is {entry.getTopic().getTypeString()}, and cannot be {value!r}")

@@ -1,0 +1,218 @@
+"""The inputs that `pyfrc fuzz` varies: a robot for each kind, which fails when it meets a certain value."""
+
+from __future__ import annotations
+
+import random
+from types import FunctionType
+from typing import Any
+
+import ntcore
+import pytest
+
+from pyfrc_core.errors import UsageError
+from pyfrc_core.fuzz.network_reads import NetworkRead
+from pyfrc_core.fuzz.network_values import NetworkValues
+from pyfrc_core.fuzz.robot_constants import UNKNOWN, RobotConstants, find_constants
+from pyfrc_core.fuzz.values import can_be, simpler
+from pyfrc_core.hal import HalData
+from pyfrc_core.runtime.scripts.network_entries import entry_target, parse_entry_target
+from pyfrc_core.runtime.scripts.script import load_script
+from pyfrc_core.runtime.scripts.targets import Targets
+
+ROBOT = """
+    import ntcore
+    import wpilib
+    from wpilib import DriverStation, Preferences, RobotController, SmartDashboard
+    from wpimath.geometry import Pose2d
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.pad = wpilib.XboxController(0)
+            self.network = ntcore.NetworkTableInstance.getDefault()
+            self.camera = self.network.getTable("limelight")
+            {}
+
+        def teleopPeriodic(self):
+            {}
+    """
+
+#: Two lines of each robot: one of `robotInit`, and one of `teleopPeriodic` that fails with one kind of input.
+KINDS = {
+    "a camera's numbers": (
+        "pass",
+        "if self.camera.getNumber('tv', 0) == 1 and self.camera.getNumber('tx', 0) < -20: raise ValueError",
+    ),
+    "a camera's array": (
+        "pass",
+        "if self.pad.getAButton(): self.camera.getEntry('botpose').getDoubleArray([0.0] * 6)[5]",
+    ),
+    "a subscription to a string": (
+        "self.state = self.network.getStringTopic('/vision/state').subscribe('idle')",
+        "if self.state.get() == 'LOCKED' and self.pad.getBButton(): raise ValueError",
+    ),
+    "a subscription to an integer": (
+        "self.count = self.network.getIntegerTopic('/vision/count').subscribe(0)",
+        "if self.count.get() > 12: raise ValueError",
+    ),
+    "a subscription to a struct": (
+        "self.pose = self.network.getStructTopic('/vision/pose', Pose2d).subscribe(Pose2d())",
+        "if self.pose.get().x > 8: raise ValueError",
+    ),
+    "a preference, read once": (
+        "self.demo = Preferences.getBoolean('demo', False)",
+        "if self.demo: raise ValueError",
+    ),
+    "a preference that is 0": (
+        "Preferences.initDouble('divider', 4.0)",
+        "1 / Preferences.getDouble('divider', 4.0)",
+    ),
+    "a number of the dashboard that was 0": (
+        "SmartDashboard.putNumber('trim', 0.0)",
+        "if SmartDashboard.getNumber('trim', 0.0) > 0.3: raise ValueError",
+    ),
+    "a number beside constants": (
+        "SmartDashboard.putNumber('speed', 1.0)",
+        "if 3.2 < SmartDashboard.getNumber('speed', 1.0) < 3.4: raise ValueError",
+    ),
+    "a string of the dashboard": (
+        "SmartDashboard.putString('side', 'none')",
+        "if SmartDashboard.getString('side', 'none') == 'left': raise ValueError",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_kind_of_input_is_varied(kind: str, make_project: Any) -> None:
+    first, then = KINDS[kind]
+    settings = "[tool.pyfrc.fuzz]\nmatch_seconds = 15\n"
+    project = make_project({"robot.py": ROBOT.format(first, then), "pyproject.toml": settings})
+    result = project.run("fuzz", "--seed", "1", "--runs", "32")
+    assert result.code == 1, result.output
+    (file,) = (project.path / "tests/fuzz").glob("*.jsonl")  # it has failed again in a replay
+    assert sum(len(step.writes) for step in load_script(file).steps) <= 5
+
+
+def test_tunables_are_varied(make_project: Any) -> None:
+    robot = """
+        import magicbot
+
+        class Arm:
+            limit = magicbot.tunable(0.0)
+
+            def execute(self):
+                if self.limit > 0.7:
+                    raise ValueError
+
+        class MyRobot(magicbot.MagicRobot):
+            arm: Arm
+
+            def createObjects(self):
+                pass
+        """
+    settings = "[tool.pyfrc.fuzz]\nmatch_seconds = 15\n"
+    project = make_project({"robot.py": robot, "pyproject.toml": settings})
+    result = project.run("fuzz", "--seed", "1", "--runs", "16")
+    assert result.code == 1, result.output
+    assert "/components/arm/limit set to 1.0" in result.stdout
+
+
+# -- values ------------------------------------------------------------------------------------------------------------
+
+
+def drawn(read: NetworkRead, before: Any, setting: bool, constants: RobotConstants = UNKNOWN) -> list[Any]:
+    values = NetworkValues(random.Random(1), constants)
+    found = [values.draw(read, before, setting) for _ in range(300)]
+    assert all(can_be("entry", value) for value in found)
+    again = NetworkValues(random.Random(1), constants)
+    assert found == [again.draw(read, before, setting) for _ in range(300)]
+    return found
+
+
+def test_a_setting_keeps_its_sign_or_becomes_zero() -> None:
+    constants = RobotConstants(numbers=(-7.0, 0.25, 12.0))
+    found = drawn(NetworkRead("/SmartDashboard/speed", "double"), 2.0, True, constants)
+    assert min(found) == 0.0
+    assert {1.0, 4.0} <= set(found)
+    assert any(0.2 < value < 0.3 for value in found)
+    assert max(drawn(NetworkRead("/SmartDashboard/speed", "double"), -2.0, True, constants)) == 0.0
+
+
+def test_what_a_camera_measures_has_its_limits() -> None:
+    found = drawn(NetworkRead("/limelight/tx", "double"), 0.0, False, RobotConstants(numbers=(5.0, 500.0)))
+    assert min(found) == -29.8
+    assert max(found) == 29.8
+    assert set(drawn(NetworkRead("/limelight/tv", "double"), 0.0, False)) == {0.0, 1.0}
+    tags = drawn(NetworkRead("/limelight/tid", "int"), -1, False)
+    assert all(isinstance(tag, int) and 1 <= tag <= 32 for tag in tags)
+    assert NetworkValues(random.Random(1), UNKNOWN).without_target(NetworkRead("/limelight/tid", "int", -1)) == -1
+
+
+def test_lists_are_empty_short_and_long() -> None:
+    found = drawn(NetworkRead("/limelight/botpose", "double[]"), [0.0] * 6, False)
+    assert {0, 5, 6, 7, 11} == {len(value) for value in found}
+
+
+def test_strings_are_those_of_the_code() -> None:
+    found = drawn(NetworkRead("/vision/state", "string"), "idle", False, RobotConstants(texts=("LOCKED", "state")))
+    assert {"LOCKED", "", "IDLE"} <= set(found)
+    assert "state" not in found
+
+
+def test_values_of_entries_become_simpler() -> None:
+    assert list(simpler("entry", 3.141))[:2] == [0.0, 1.0]
+    assert next(iter(simpler("entry", (1.5, 2.25)))) == ()
+    assert list(simpler("entry", True)) == []
+
+
+# -- constants ---------------------------------------------------------------------------------------------------------
+
+TOP = 42.5
+HEIGHTS = {"low": 0.3, "high": 1.7}
+
+
+def decide(value: float) -> str:
+    """Return which of the heights it is."""
+    if value > TOP:
+        return "above"
+    return min(HEIGHTS, key=lambda name: abs(HEIGHTS[name] - value) + 0.125)
+
+
+def test_constants_are_those_that_functions_use() -> None:
+    assert isinstance(decide, FunctionType)
+    found = find_constants([decide])
+    assert {42.5, 0.3, 1.7, 0.125} <= set(found.numbers)
+    assert {"above", "low", "high"} <= set(found.texts)
+    assert not any("heights" in text for text in found.texts)
+    assert found.asks("abs", "nothing")
+    assert not found.asks("nothing")
+
+
+def test_numbers_near_constants() -> None:
+    constants, rng = RobotConstants(numbers=(1.0, 1.5)), random.Random(1)
+    found = [constants.near(rng, -2, 2) for _ in range(300)]
+    assert {1.0, 1.5, -1.0} <= set(found)
+    assert sum(1.0 < value < 1.5 for value in found if value is not None) > 50
+    assert UNKNOWN.near(rng, -2, 2) is None
+
+
+# -- targets -----------------------------------------------------------------------------------------------------------
+
+
+def test_entries_have_the_type_that_the_target_names() -> None:
+    targets, network = Targets(HalData()), ntcore.NetworkTableInstance.getDefault()
+    for target, value, type_name in (
+        ("nt:int:/typed/id", 3, "int"),
+        ("nt:double[]:/typed/pose", (), "double[]"),
+        ("nt:string[]:/typed/names", ["a"], "string[]"),
+        ("nt:struct:Pose2d:/typed/at", [1.0, 2.0, 0.5], "struct:Pose2d"),
+        ("nt:/typed/plain", 3, "double"),
+    ):
+        targets.write(target, value, 0)
+        name, named = parse_entry_target(target)
+        assert network.getTopic(name).getTypeString() == type_name
+        assert named in ("", type_name)
+        assert entry_target(name, named) == target
+    with pytest.raises(UsageError, match=r"/typed/id is int, and cannot be 'x'"):
+        targets.write("nt:int:/typed/id", "x", 0)
+    with pytest.raises(UsageError, match="NetworkTables has no type 'whole'"):
+        targets.write("nt:whole:/typed/other", 1, 0)
