@@ -1,0 +1,206 @@
+"""Input scripts from WPILib data logs: `wpilib.DriverStation.startDataLog`, or ``pyfrc sim --wpilog``.
+
+A log has what the driver station sent, and the values of NetworkTables. It does not say who has published a value, so
+only values that dashboards and cameras publish are inputs: the choices of choosers, and the tables of Limelight and
+PhotonVision. The seconds left are not logged. In a log with autonomous before teleoperated, they are those until the
+period ends.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+from wpiutil.log import DataLogReader, DataLogRecord
+
+from ...hal.modes import AXES, BUTTONS, EVENT_NAME, JOYSTICKS, NOT_PRESSED, POVS
+from ..robot_time import PACKET_US
+from .script import InputScript, ScriptError, Step
+from .targets import MATCH_TIME, MODE, NETWORK, REMAINING, plugged
+
+_READ: dict[str, Callable[[DataLogRecord], Any]] = {
+    "boolean": DataLogRecord.getBoolean,
+    "double": DataLogRecord.getDouble,
+    "float": DataLogRecord.getFloat,
+    "int64": DataLogRecord.getInteger,
+    "string": DataLogRecord.getString,
+    "boolean[]": DataLogRecord.getBooleanArray,
+    "double[]": DataLogRecord.getDoubleArray,
+    "float[]": DataLogRecord.getFloatArray,
+    "int64[]": DataLogRecord.getIntegerArray,
+}
+_SCALARS = (bool, int, float, str)
+
+_FMS = "NT:/FMSInfo/"
+_HAL = "/hal_data/"
+_FROM_OUTSIDE = re.compile(r"NT:(/.+/selected|/limelight[^/]*/.+|/photonvision/.+)", re.DOTALL)
+_STICK = re.compile(r"DS:joystick([0-5])/(axes|buttons|povs)")
+
+#: The bits of ``FMSControlData``.
+_FMS_ATTACHED, _DS_ATTACHED = 16, 32
+
+_STATIONS = ("unknown", "red1", "red2", "red3", "blue1", "blue2", "blue3")
+_MATCH_TYPES = ("none", "practice", "qualification", "elimination")
+
+#: The number of controls of a joystick that is plugged in, and their initial value.
+_CONTROLS: dict[str, tuple[int, Any]] = {
+    "axes": (AXES, 0.0),
+    "buttons": (BUTTONS, False),
+    "povs": (POVS, NOT_PRESSED),
+}
+
+
+@dataclass(frozen=True)
+class _Record:
+    at_us: int
+    name: str
+    value: Any
+
+
+def script_from_log(file: Path) -> InputScript:
+    """Return the inputs in a data log as a script.
+
+    :raises ScriptError: when the file is not a data log, or has no data of a driver station
+    """
+    try:
+        records = sorted(_records(file), key=lambda record: record.at_us)
+    except (RuntimeError, ValueError, TypeError, IndexError, OSError) as malformed:
+        raise ScriptError(f"the data log cannot be read: {malformed}", where=file.name) from None
+    station = [record for record in records if record.name.startswith("DS:")]
+    if not any(record.name == "DS:enabled" for record in station):
+        raise ScriptError(
+            "this data log has no data of a driver station",
+            where=file.name,
+            remedy="In robotInit, wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog()) logs it.",
+        )
+    # A robot's clock starts before its program; that of a simulation starts with it.
+    first_us = station[0].at_us
+    base_us = 0 if first_us <= PACKET_US else first_us // PACKET_US * PACKET_US
+    state, steps = _State(), []
+    for at_us, together in groupby(records, key=lambda record: _packet(record.at_us - base_us)):
+        for record in together:
+            state.values[record.name] = record.value
+        if at_us > 0 and (writes := dict(state.changes())):  # before the first packet, no driver station is connected
+            steps.append(Step(at_us, writes))
+    last_us = _packet(records[-1].at_us - base_us)
+    return InputScript(tuple(_with_match_time(steps, last_us)), last_us + PACKET_US, file=file.name)
+
+
+def _records(file: Path) -> Iterator[_Record]:
+    if not file.is_file():
+        raise ScriptError("this is a directory, not a data log" if file.is_dir() else f"there is no file {file}")
+    reader = DataLogReader(str(file))
+    if not reader.isValid():
+        raise ScriptError("this is not a WPILib data log", where=file.name)
+    entries: dict[int, tuple[str, Callable[[DataLogRecord], Any]]] = {}
+    for record in reader:
+        if record.isStart():
+            start = record.getStartData()
+            read = _READ.get(start.type)
+            if read is not None and start.name.startswith(("DS:", "NT:", _HAL)):
+                entries[start.entry] = start.name, read
+        elif not record.isControl() and record.getEntry() in entries:
+            name, read = entries[record.getEntry()]
+            yield _Record(record.getTimestamp(), name, read(record))
+
+
+def _packet(at_us: int) -> int:
+    """Return the time of the packet with which something arrives that was logged at this time."""
+    return max(0, -(-at_us // PACKET_US)) * PACKET_US
+
+
+@dataclass
+class _State:
+    """The latest values of a log, and what was written of them."""
+
+    values: dict[str, Any] = field(default_factory=dict)
+    _written: dict[str, Any] = field(default_factory=dict)
+
+    def changes(self) -> Iterator[tuple[str, Any]]:
+        """Return what to write: nothing but the lost connection while no driver station is attached."""
+        attached = self._attached()
+        yield from self._changed("control.dsAttached", attached, True)
+        if attached:
+            for target, value, initially in self._station():
+                yield from self._changed(target, value, initially)
+            for stick in range(JOYSTICKS):
+                yield from self._joystick(stick)
+        for name, value in self.values.items():
+            if _FROM_OUTSIDE.fullmatch(name) and isinstance(value, _SCALARS):
+                yield from self._changed(NETWORK + name.removeprefix("NT:"), value, None)
+
+    def _changed(self, target: str, value: Any, initially: Any) -> Iterator[tuple[str, Any]]:
+        if self._written.get(target, initially) != value:
+            self._written[target] = value
+            yield target, value
+
+    def _attached(self) -> bool:
+        if (control := self.values.get(f"{_FMS}FMSControlData")) is not None:
+            return bool(control & _DS_ATTACHED)
+        return bool(self.values.get(f"{_HAL}control.dsAttached", True))
+
+    def _station(self) -> Iterator[tuple[str, Any, Any]]:
+        """Return targets with their values now, and at the start of a run."""
+        fms = {name.removeprefix(_FMS): value for name, value in self.values.items() if name.startswith(_FMS)}
+        ours = {name.removeprefix(_HAL): value for name, value in self.values.items() if name.startswith(_HAL)}
+        station = int(ours.get("alliance_station", 1))
+        if "StationNumber" in fms:
+            station = int(fms["StationNumber"]) + (0 if fms.get("IsRedAlliance", True) else 3)
+        yield "alliance_station", _named(_STATIONS, station), "red1"
+        yield "control.eStop", bool(self.values.get("DS:estop")), False
+        fms_attached = bool(fms.get("FMSControlData", 0) & _FMS_ATTACHED) or bool(ours.get("control.fmsAttached"))
+        yield "control.fmsAttached", fms_attached, False
+        yield "event.name", fms.get("EventName", ours.get("event.name", EVENT_NAME)), EVENT_NAME
+        yield "event.match_number", int(fms.get("MatchNumber", ours.get("event.match_number", 0))), 0
+        match_type = int(fms.get("MatchType", ours.get("event.match_type", 0)))
+        yield "event.match_type", _named(_MATCH_TYPES, match_type), "none"
+        message = fms.get("GameSpecificMessage", ours.get("event.game_specific_message", ""))
+        yield "event.game_specific_message", message, ""
+        yield MODE, self._mode(), "disabled"
+
+    def _mode(self) -> str:
+        selected = next((mode for mode in ("autonomous", "test") if self.values.get(f"DS:{mode}")), "")
+        if self.values.get("DS:enabled"):
+            return selected or "teleop"
+        return f"disabled {selected}" if selected else "disabled"
+
+    def _joystick(self, stick: int) -> Iterator[tuple[str, Any]]:
+        controls = {sort: self.values.get(f"DS:joystick{stick}/{sort}") for sort in _CONTROLS}
+        if all(values is None for values in controls.values()):
+            return
+        is_plugged = any(controls.values())
+        for target, value in self._changed(plugged(stick), is_plugged, True):
+            yield target, value
+            for path in [path for path in self._written if path.startswith(f"joysticks[{stick}].") and path != target]:
+                del self._written[path]
+        if is_plugged:
+            for sort, values in controls.items():
+                most, initially = _CONTROLS[sort]
+                for number, value in enumerate((values or [])[:most], 1 if sort == "buttons" else 0):
+                    yield from self._changed(f"joysticks[{stick}].{sort}[{number}]", value, initially)
+
+
+def _named(names: tuple[str, ...], number: int) -> str:
+    return names[number] if 0 <= number < len(names) else names[0]
+
+
+def _with_match_time(steps: list[Step], last_us: int) -> Iterator[Step]:
+    modes = [(step.at_us, str(step.writes[MODE])) for step in steps if MODE in step.writes]
+    enabled = [mode for _, mode in modes if not mode.startswith("disabled")]
+    if "autonomous" not in enabled or "teleop" not in enabled[enabled.index("autonomous") :]:
+        yield from steps
+        return
+    if not steps or steps[0].at_us > PACKET_US:
+        yield Step(PACKET_US, {REMAINING: 0.0})
+    ends = dict(zip((at_us for at_us, _ in modes), [*(at_us for at_us, _ in modes[1:]), last_us], strict=True))
+    for step in steps:
+        writes: Mapping[str, Any] = step.writes
+        if step.at_us == PACKET_US:
+            writes = {REMAINING: 0.0, **writes}
+        if writes.get(MODE) in ("autonomous", "teleop"):
+            writes = {**writes, MATCH_TIME: (ends[step.at_us] - step.at_us) / 1_000_000}
+        yield Step(step.at_us, writes)

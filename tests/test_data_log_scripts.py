@@ -1,0 +1,122 @@
+"""WPILib data logs as input scripts: a robot does the same with them as it did when the log was written."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from wpiutil import DataLogWriter
+from wpiutil.log import DoubleLogEntry
+
+from pyfrc_core.runtime.scripts.script import ScriptError, load_script
+
+ROBOT = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            {log}
+            self.pad = wpilib.Joystick(0)
+            self.motors = [wpilib.PWMSparkMax(channel) for channel in range(4)]
+            self.timer = wpilib.Timer()
+            self.chooser = wpilib.SendableChooser()
+            self.chooser.setDefaultOption("Stay", 0.0)
+            self.chooser.addOption("Go", 0.7)
+            wpilib.SmartDashboard.putData("Auto", self.chooser)
+
+        def autonomousInit(self):
+            self.timer.restart()
+
+        def autonomousPeriodic(self):
+            self.motors[0].set(self.chooser.getSelected() if self.timer.get() < 1.0 else 0.1)
+
+        def teleopPeriodic(self):
+            self.motors[0].set(self.pad.getRawAxis(1))
+            self.motors[1].set(0.5 if self.pad.getRawButton(3) else self.pad.getPOV() / 400)
+            self.motors[2].set(wpilib.DriverStation.getMatchTime() / 200)
+            self.motors[3].set(len(wpilib.DriverStation.getGameSpecificMessage()) / 10 + self.alliance())
+
+        def alliance(self):
+            return 0.5 if wpilib.DriverStation.getAlliance() == wpilib.DriverStation.Alliance.kBlue else 0.0
+"""
+LOGGING = """wpilib.DataLogManager.start()
+            wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog())"""
+SETTINGS = "[tool.pyfrc.match]\nautonomous = 2.0\nteleop = 3.0\n"
+
+DRIVEN = """{"format": "pyfrc-input 1", "end": 6.0}
+{"t": 0, "set": {"alliance_station": "blue2", "event.game_specific_message": "LRL"}}
+{"t": 0.5, "set": {"nt:/SmartDashboard/Auto/selected": "Go"}}
+{"t": 1, "set": {"mode": "autonomous", "match_time": 2}}
+{"t": 3, "set": {"mode": "disabled", "match_time": 0}}
+{"t": 3.5, "set": {"mode": "teleop", "match_time": 2.0, "joysticks[0].axes[1]": -0.4}}
+{"t": 3.8, "set": {"joysticks[0].buttons[3]": true}}
+{"t": 4, "set": {"joysticks[0].buttons[3]": false, "joysticks[0].povs[0]": 90}}
+{"t": 4.5, "set": {"joysticks[0].plugged": false}}
+{"t": 4.8, "set": {"joysticks[0].plugged": true, "joysticks[0].axes[1]": 0.3}}
+{"t": 5.5, "set": {"control.eStop": true}}
+"""
+
+
+def robot(log: str = LOGGING) -> dict[str, str]:
+    return {"robot.py": ROBOT.replace("{log}", log), "pyproject.toml": SETTINGS, "drive.jsonl": DRIVEN}
+
+
+def changes(trace: Path) -> list[dict[str, Any]]:
+    return [change for change in map(json.loads, trace.read_text().splitlines()) if "t" in change]
+
+
+def outputs(trace: Path) -> list[tuple[float, str, Any]]:
+    """The values of motors, by time."""
+    return [
+        (change["t"], path, value)
+        for change in changes(trace)
+        for path, value in change["set"].items()
+        if path.startswith("pwm[")
+    ]
+
+
+@pytest.mark.parametrize("arguments", [("--mode", "practice"), ("--script", "drive.jsonl")])
+def test_the_log_of_a_robot_replays_to_the_same_outputs(arguments: tuple[str, ...], make_project) -> None:
+    project = make_project(robot())
+    result = project.run("sim", "--ui", "none", *arguments, "--record", "recorded.jsonl")
+    assert result.code == 0, result.output
+    (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
+    log = log.rename(project.path / "match.wpilog")
+    result = project.run("replay", "match.wpilog", "--trace", "replayed.jsonl")
+    assert result.code == 0, result.output
+    replayed = outputs(project.path / "replayed.jsonl")
+    assert len(replayed) > 30
+    assert replayed == outputs(project.path / "recorded.trace.jsonl")
+
+
+def test_the_log_of_the_simulator_replays_to_the_same_outputs(make_project) -> None:
+    project = make_project(robot("pass"))
+    sim = ("sim", "--ui", "none", "--mode", "practice", "--wpilog", "match.wpilog", "--record", "recorded.jsonl")
+    assert project.run(*sim).code == 0
+    result = project.run("replay", "match.wpilog", "--trace", "replayed.jsonl")
+    assert result.code == 0, result.output
+    assert outputs(project.path / "replayed.jsonl") == outputs(project.path / "recorded.trace.jsonl")
+
+
+def test_a_log_without_a_driver_station_is_refused(make_project) -> None:
+    project = make_project(robot())
+    log = DataLogWriter(str(project.path / "turns.wpilog"))
+    DoubleLogEntry(log, "/turns").append(1.0, 20_000)
+    log.flush()
+    log.stop()
+    result = project.run("replay", "turns.wpilog")
+    assert result.code == 2
+    assert "turns.wpilog: this data log has no data of a driver station" in result.output
+    assert "startDataLog" in result.output
+
+
+@pytest.mark.parametrize("content", [b"", b"no log", b'{"format": "pyfrc-input 1", "end": 1}', b"WPILOG\x00\x01\xff"])
+def test_what_is_no_log_is_refused(content: bytes, tmp_path: Path) -> None:
+    file = tmp_path / "match.wpilog"
+    file.write_bytes(content)
+    with pytest.raises(ScriptError, match="data log"):
+        load_script(file)
+    with pytest.raises(ScriptError, match="there is no file"):
+        load_script(tmp_path / "other.wpilog")
