@@ -36,10 +36,12 @@ _MAX_OUTPUT_BYTES = 100_000
 _CHECK_LINK = "Check the link (radio, cable, power of the robot) and run the command again."
 
 
-def load_in_background() -> None:
-    """Import paramiko, which takes 0.1 s, in a background thread."""
+def load_in_background() -> threading.Thread:
+    """Import paramiko, which takes 0.1 s, in a background thread. Return the thread."""
     # Not a daemon thread: Python crashes if it exits during an import.
-    threading.Thread(target=_load).start()
+    loading = threading.Thread(target=_load)
+    loading.start()
+    return loading
 
 
 def _load() -> None:

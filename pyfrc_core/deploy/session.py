@@ -16,13 +16,9 @@ from .deploy_json import deploy_json
 from .discovery import Address
 from .errors import RefusedError
 from .facts import Deployed, DeployRequest, Plan
-from .kill_script import replace_kill_script
 from .local_checks import ImportCheck, ask_to_continue, passed_already, refuse_other_main_files, run_tests
 from .manifest import Manifest, ascii_path, build_manifest
-from .other_languages import WHAT, remove_other_languages
-from .progress import UserInterface
-from .robot_checks import MemorySaver, refuse_unfit_robot
-from .robot_packages import ImportSearch, check_packages
+from .progress import DeployProgress, UserInterface
 from .robot_setup import other_languages_notice
 from .starting import go_back, start
 from .target_connection import (
@@ -72,12 +68,16 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     :raises DeployError: if the deploy fails; the robot still has a complete program
     :raises ProgramDiedError: if the program was deployed and ended during the watch
     """
-    load_in_background()
+    loading = load_in_background()
     progress = talk.progress
     refuse_other_main_files(project, options.nonstandard)
     target = choose_target(project, options.choice, talk.ask)
     importing = None if options.dry_run else _check_program(project, options, talk)
     with connect_early(project, target, options.choice) as early:
+        loading.join()  # the login begins then; the following runs while the robot responds
+        from .robot_checks import MemorySaver, refuse_unfit_robot
+        from .robot_packages import ImportSearch, check_packages
+
         with progress.phase("files") as phase:
             manifest = build_manifest(project.root, project.settings.deploy.exclude, options.large)
             phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
@@ -103,8 +103,7 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
                 if not options.in_place:
                     verdict = start(robot, talk, deployed.fallback, options.auto_rollback)
             finally:
-                if robot.program_survived:
-                    replace_kill_script(connection, progress)
+                _replace_bad_kill_script(robot, connection, progress)
                 memory.report(progress)  # last, since a failing login as administrator may take half a minute
             _report_deployed(deployed, verdict, connection, options, talk)
     return connection.address
@@ -122,11 +121,17 @@ def rollback(project: Project | None, choice: RobotChoice, release: int | None, 
         try:
             restored = go_back(robot, talk, release)
         finally:
-            if robot.program_survived:
-                replace_kill_script(connection, talk.progress)
+            _replace_bad_kill_script(robot, connection, talk.progress)
         result = {"host": connection.host, "release": restored}
         talk.progress.result(result, f"The robot runs release {restored} again.")
     return connection.address
+
+
+def _replace_bad_kill_script(robot: AgentClient, connection: Connection, progress: DeployProgress) -> None:
+    if robot.program_survived:
+        from .kill_script import replace_kill_script  # not before, since it is rare
+
+        replace_kill_script(connection, progress)
 
 
 def undeploy_other_languages(
@@ -136,6 +141,8 @@ def undeploy_other_languages(
 
     :param confirmed: whether the user has already confirmed this
     """
+    from .other_languages import WHAT, remove_other_languages
+
     target = choose_target(project, choice, talk.ask)
     _confirm(f"{WHAT} will be removed", talk, confirmed)
     found = find(target, choice, talk.progress)

@@ -20,7 +20,6 @@ from .host_keys import HostKeys, RobotKeys
 from .progress import DeployProgress, Questions
 from .recovery_hints import explain_interruption
 from .team import RobotTarget, find_target, team_of_project
-from .without_python import RobotWithoutPython
 
 if TYPE_CHECKING:
     from .manifest import Manifest
@@ -174,6 +173,8 @@ def running_agent(
             robot = AgentClient.open(connection) if start is None else start()
             robot.begin({"modules": modules} if modules else None, manifest)
         except NoPythonError as error:
+            from .without_python import RobotWithoutPython  # not before, since it is rare
+
             raise RobotWithoutPython(connection).refusal(error) from error
         facts = robot.facts
         phase.detail = f"wpilib {facts.wpilib or 'missing'}, image {facts.image or 'unknown'}"
