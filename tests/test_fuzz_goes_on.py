@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from pyfrc_core.fuzz.avoidance import without
+from pyfrc_core.fuzz.failure import FuzzFailure
 from pyfrc_core.fuzz.seed_schedule import SeedScheduler
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
@@ -136,19 +137,26 @@ def script_of(*writes: dict[str, Any]) -> InputScript:
 
 def test_most_matches_leave_out_an_input_of_each_known_failure() -> None:
     scheduler = SeedScheduler(1)
-    scheduler.avoid(script_of({"mode": "teleop", "joysticks[0].buttons[1]": True}, {"dio[0].value": False}))
-    scheduler.avoid(script_of({"mode": "autonomous"}, {"mode": "disabled"}, {"mode": "autonomous"}))
+    often, too, seldom = (FuzzFailure("ValueError", f"robot.py:{line}", "f", "") for line in (1, 2, 3))
+    for ended_by in [often, too, None] * 10 + [seldom]:
+        scheduler.note_end(scheduler.schedule(0), ended_by)
+    scheduler.avoid(often, script_of({"mode": "teleop", "joysticks[0].buttons[1]": True}, {"dio[0].value": False}))
+    scheduler.avoid(too, script_of({"mode": "autonomous"}, {"mode": "disabled"}, {"mode": "autonomous"}))
+    scheduler.avoid(seldom, script_of({"mode": "test"}))
     chosen = Counter(frozenset(scheduler.schedule(number).left_out_at(5_000_000)) for number in range(400))
     button, switch, mode = "joysticks[0].buttons[1]", "dio[0].value", "mode=autonomous"
     assert {frozenset({button, mode}), frozenset({switch, mode}), frozenset({button}), frozenset({mode})} < set(chosen)
     assert 100 < chosen[frozenset({button, mode})] < 250
     assert sum(count for left_out, count in chosen.items() if left_out) > 380
+    assert 10 < sum(count for left_out, count in chosen.items() if "mode=test" in left_out) < 80
 
 
 def test_a_match_that_continues_another_leaves_out_more_only_from_then_on() -> None:
     scheduler = SeedScheduler(1)
     scheduler.learn(scheduler.schedule(0), {("robot.py", 1): 4_000_000})
-    scheduler.avoid(script_of({"mode": "teleop"}))
+    failure = FuzzFailure("ValueError", "robot.py:1", "f", "")
+    scheduler.note_end(scheduler.schedule(0), failure)
+    scheduler.avoid(failure, script_of({"mode": "teleop"}))
     (continued, *_) = (each for each in map(scheduler.schedule, range(1, 50)) if len(each.seeds) == 2)
     assert not continued.left_out_at(3_999_999)
     assert continued.left_out_at(5_000_000) == {"mode=teleop"}

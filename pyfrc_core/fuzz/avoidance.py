@@ -1,4 +1,4 @@
-"""Avoid known failures: most matches leave out an input of each, so that they find what is behind it.
+"""Avoid known failures that end many matches: others leave out an input of each, and find what is behind it.
 
 An exception ends a match. A bug that every driver meets in the first seconds would therefore hide all others. The
 shortest script of a failure has only inputs that it needs, so a match without one of them does not fail in this way.
@@ -8,33 +8,77 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from ..runtime.scripts.script import InputScript
 from ..runtime.scripts.targets import MODE
+from .failure import FuzzFailure
 from .values import NOT_PRESSED, Value
 
 #: What a match leaves out: targets, and modes as ``mode=teleop``.
 LeftOut = frozenset[str]
 
-#: The share of matches that leave out something of a known failure; the others show what comes with it.
-_AVOIDED = 0.9
+#: The share of matches that leave out something of a failure which ends this share of the other matches, or more. A
+#: failure that ends fewer is left out less often.
+_AVOIDED, _OFTEN = 0.9, 0.3
+
+
+@dataclass
+class _KnownFailure:
+    """A failure that ends matches.
+
+    :param needed: the inputs of its shortest script; empty until it is known
+    :param met: how many matches could meet it
+    :param ended: how many of them it has ended
+    """
+
+    failure: FuzzFailure
+    needed: tuple[str, ...] = ()
+    met: int = 0
+    ended: int = 0
+
+    def share_to_avoid(self) -> float:
+        return _AVOIDED * min(1.0, self.ended / max(1, self.met) / _OFTEN)
 
 
 class KnownFailures:
-    """The inputs of the failures that are known."""
+    """The failures that have ended matches, and what they need."""
 
     def __init__(self) -> None:
-        self._needed: list[tuple[str, ...]] = []
+        self._matches = 0
+        self._known: list[_KnownFailure] = []
 
-    def add(self, script: InputScript) -> None:
+    def add(self, failure: FuzzFailure, script: InputScript) -> None:
         """Add the shortest script of a failure that ends matches."""
-        needed = needed_inputs(script)
-        if needed and needed not in self._needed:
-            self._needed.append(needed)
+        self._find(failure).needed = needed_inputs(script)
+
+    def note(self, left_out: LeftOut, failure: FuzzFailure | None) -> None:
+        """Note how a match has ended.
+
+        :param left_out: what it left out
+        :param failure: the failure that ended it, if there was one
+        """
+        if failure is not None:
+            self._find(failure)
+        self._matches += 1
+        for known in self._known:
+            if left_out.isdisjoint(known.needed):
+                known.met += 1
+                known.ended += known.failure.same_as(failure)
 
     def left_out(self, rng: random.Random) -> LeftOut:
-        """Choose what a match leaves out: one input of each failure, in most cases."""
-        return frozenset(rng.choice(needed) for needed in self._needed if rng.random() < _AVOIDED)
+        """Choose what a match leaves out: an input of each failure that ends many matches."""
+        return frozenset(
+            rng.choice(known.needed) for known in self._known if known.needed and rng.random() < known.share_to_avoid()
+        )
+
+    def _find(self, failure: FuzzFailure) -> _KnownFailure:
+        for known in self._known:
+            if known.failure.same_as(failure):
+                return known
+        # All earlier matches could meet it, too.
+        self._known.append(_KnownFailure(failure, met=self._matches))
+        return self._known[-1]
 
 
 def needed_inputs(script: InputScript) -> tuple[str, ...]:

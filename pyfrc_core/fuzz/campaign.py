@@ -208,6 +208,7 @@ class _Runner:
             for schedule, played in zip(schedules, results, strict=True):
                 new = {line: at_us for line, at_us in played.reached.items() if line not in self._reached}
                 self._scheduler.learn(schedule, new)
+                self._scheduler.note_end(schedule, played.failure)
                 self._reached |= new.keys()
                 self.campaign.real_time = self.campaign.real_time or played.real_time
                 progress.matches += 1
@@ -244,7 +245,7 @@ class _Runner:
         if shrinker.repeats and shrinker.play_again():
             self._save(shrinker.script, shrinker.failure, shrinker.runs)
             if not played.went_on:
-                self._scheduler.avoid(shrinker.script)
+                self._scheduler.avoid(shrinker.failure, shrinker.script)
         else:
             self._save(played.script, played.failure, shrinker.runs, repeats=False)
         self._shrinking = None

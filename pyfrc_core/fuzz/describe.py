@@ -9,7 +9,7 @@ from itertools import groupby
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript
-from ..runtime.scripts.targets import MATCH_TIME, MODE
+from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING
 from .failure import FuzzFailure
 from .values import NOT_PRESSED, Value
 
@@ -32,6 +32,7 @@ _NAMES = {
     "control.eStop": "emergency stop",
     "control.fmsAttached": "field attached",
     MATCH_TIME: "seconds left",
+    REMAINING: "seconds left",
 }
 
 

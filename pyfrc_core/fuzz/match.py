@@ -30,6 +30,7 @@ from .goals import Goal
 from .input_generator import InputGenerator
 from .inputs import Input
 from .lines import RobotLines
+from .match_plan import length_of
 from .misbehavior_notes import MisbehaviorNotes, NotedFailure
 from .network_reads import watch_network_reads
 from .oracle import attach_oracle
@@ -153,9 +154,17 @@ def invariants_of(project: Project) -> tuple[Invariant, ...]:
     return load_invariants(project)
 
 
+def match_seconds(project: Project, schedule: SeedSchedule) -> float:
+    """Return the length of a match with this schedule, in seconds."""
+    return length_of(schedule.seeds[0][1], project.settings.fuzz.match_seconds, project.settings.match)
+
+
 def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
     lines = robot_lines(project)
-    seconds = project.settings.fuzz.match_seconds
+    seconds = match_seconds(project, task.schedule)
+    ends_us = to_us(seconds)
+    if (continued_us := task.schedule.seeds[-1][0]) > 0:  # a match that continues a long one is not as long again
+        ends_us = min(ends_us, continued_us + to_us(project.settings.fuzz.match_seconds))
     rng = task.schedule.rng()
     before_us = 0
     reseed_until_us = task.schedule.seeds[-1][0] + PACKET_US
@@ -182,7 +191,7 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
                 generator.left_out = task.schedule.left_out_at(now_us)
             before_us = now_us
             states.after_packet(now_us)
-            if not fuzz_run.on_packet(now):
+            if not fuzz_run.on_packet(now) or now_us >= ends_us:
                 run.clock.halted = True
 
         run.clock.before_packet.insert(0, step)

@@ -31,7 +31,17 @@ from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .fuzz_run import read_journal
 from .goals import Line
 from .inputs import prepare_sensor_search
-from .match import ROBOT_SEED, FuzzTask, MatchResult, ReplayTask, Task, play, robot_constants, robot_lines
+from .match import (
+    ROBOT_SEED,
+    FuzzTask,
+    MatchResult,
+    ReplayTask,
+    Task,
+    match_seconds,
+    play,
+    robot_constants,
+    robot_lines,
+)
 
 Answer = TypeVar("Answer")
 
@@ -116,7 +126,7 @@ class MatchExecutor(ABC):
         if isinstance(task, ReplayTask):
             return MatchResult(failure, task.script)
         steps = tuple(read_journal(task.journal)) if task.journal is not None else ()
-        end_us = to_us(self.project.settings.fuzz.match_seconds)
+        end_us = to_us(match_seconds(self.project, task.schedule))
         return MatchResult(failure, InputScript(steps, end_us, robot=self.project.main_file.name, seed=ROBOT_SEED))
 
 

@@ -9,10 +9,13 @@ from dataclasses import dataclass
 from ..config.settings import MatchSettings
 from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
-from ..runtime.scripts.targets import MATCH_TIME, MODE, plugged
+from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING, plugged
 from .values import Value
 
 _STATIONS = ("red1", "red2", "red3", "blue1", "blue2", "blue3")
+
+#: The share of matches that are as long as a real one, and how much longer than the others these are at most.
+_WHOLE, _LONGER = 1 / 40, 6
 
 #: How often each port's joystick is unplugged, relative to the others: the driver's most often.
 _UNPLUGGED = (20, 6, 1, 1, 1, 1)
@@ -35,8 +38,14 @@ class MatchEvent:
 
 @dataclass(frozen=True)
 class _Period:
+    """A period of a match.
+
+    :param undisturbed: whether nothing happens in it except its drivers' and sensors' inputs
+    """
+
     mode: str
     seconds: float
+    undisturbed: bool = False
 
 
 def plan_match(
@@ -47,7 +56,7 @@ def plan_match(
     :param seconds: the length of the match; its periods are as long as `settings` says, or shorter
     :param messages: the messages that the field may send, if they are known
     """
-    planner = _Planner(rng, tuple(messages))
+    planner = _Planner(rng, settings, tuple(messages))
     now = 0.0
     planner.before()
     for period in _periods(rng, seconds, settings):
@@ -59,7 +68,9 @@ def plan_match(
 
 
 def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> list[_Period]:
-    """Return the periods of a match; in some cases those of a pit test, or of a match that is restarted."""
+    """Return the periods of a match; in some cases those of a pit test, of a match that is restarted or the second one
+    of a robot program, or of a program that starts in the middle of a match.
+    """
     before = min(settings.before, 0.05 * seconds)
     autonomous = min(settings.autonomous, 0.3 * seconds)
     pause = min(settings.pause, 0.05 * seconds)
@@ -71,20 +82,35 @@ def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> lis
         periods = [_Period("disabled", before)]
     elif how < 0.14:  # the pit crew tries test mode
         periods = [_Period("disabled test", before), _Period("test", 0.1 * teleop), *periods]
-    elif how < 0.24:  # the first autonomous period is aborted
+    elif how < 0.22:  # the first autonomous period is aborted
         periods = [ready, _Period("autonomous", rng.uniform(0.1, 0.9) * autonomous), *periods]
-    elif how < 0.29:  # the drivers practise before
+    elif how < 0.27:  # the drivers practise before
         periods = [_Period("disabled", before), _Period("teleop", 0.3 * teleop), *periods]
-    elif how < 0.4:  # no pause
+    elif how < 0.34:  # no pause
         periods[-1] = _Period("disabled", PACKET_US / 1_000_000)
+    elif how < 0.44:  # autonomous at its real length
+        autonomous = max(autonomous, min(settings.autonomous, 0.6 * seconds))
+        periods[1] = _Period("autonomous", autonomous, undisturbed=rng.random() < 0.7)
+    elif how < 0.51:  # the robot program is restarted in teleoperated, after a crash or a brown-out
+        periods = []
+    elif how < 0.54:  # in autonomous
+        periods = [_Period("autonomous", rng.uniform(0.2, 0.9) * autonomous), _Period("disabled", pause)]
+    elif how < 0.61:  # a second match without a restart of the robot program
+        first = [ready, _Period("autonomous", 0.5 * autonomous), _Period("disabled", pause)]
+        periods = [*first, _Period("teleop", rng.uniform(0.1, 0.4) * teleop), *periods]
     return [*periods, _Period("teleop", seconds - sum(period.seconds for period in periods))]
 
 
 class _Planner:
-    def __init__(self, rng: random.Random, messages: tuple[str, ...]) -> None:
+    def __init__(self, rng: random.Random, settings: MatchSettings, messages: tuple[str, ...]) -> None:
         self.events: list[MatchEvent] = []
         self._rng = rng
         self._messages = messages
+        #: Whether the match time begins with the period's real length.
+        self._real_times = rng.random() < 0.25
+        #: Whether there is no match time, as without a field when the driver station is not in practice mode.
+        self._untimed = False
+        self._settings = settings
         #: When the field sends the game message: before the match, with autonomous, with teleoperated (2020), or never.
         self._message_with = rng.choice(("at once", "autonomous", "autonomous", "autonomous", "teleop", "never"))
 
@@ -112,6 +138,10 @@ class _Planner:
         if rng.random() < 0.5:
             now |= {"control.fmsAttached": True, "event.match_type": rng.choice(("qualification", "elimination"))}
             now["event.match_number"] = rng.randint(1, 90)
+        else:
+            self._untimed = rng.random() < 0.3
+            if self._untimed:
+                now[REMAINING] = -1.0
         if self._message_with == "at once":
             now["event.game_specific_message"] = self._message()
         self.add(0, now)
@@ -119,7 +149,9 @@ class _Planner:
     def period(self, start: float, period: _Period) -> None:
         """Add one period and its disturbances."""
         rng, enabled = self._rng, period.mode in _BEFORE
-        now: dict[str, Value] = {MODE: period.mode, MATCH_TIME: round(period.seconds, 3) if enabled else 0.0}
+        now: dict[str, Value] = {MODE: period.mode}
+        if not self._untimed:
+            now[MATCH_TIME] = round(self._seconds_left(period), 3) if enabled else 0.0
         if period.mode == self._message_with:
             late = 0.0 if rng.random() < 0.7 else rng.uniform(0, period.seconds)
             if late:
@@ -127,12 +159,20 @@ class _Planner:
             else:
                 now["event.game_specific_message"] = self._message()
         self.add(start, now)
-        if enabled and period.seconds > 1:
+        if period.undisturbed:
+            return
+        if period.mode == "autonomous" and rng.random() < 0.05:  # the drivers stop it, and the match goes on
+            self.add(start + rng.uniform(0.05, 0.9) * period.seconds, {MODE: "disabled"})
+        elif enabled and period.seconds > 1:
             # Each disturbance has its own part of the period, so that no two overlap.
             parts = rng.choice((0, 1, 1, 2, 2, 3, 4))
             for part in range(parts):
                 length = period.seconds / parts
                 self._disturbance(start + part * length, length, period.mode)
+
+    def _seconds_left(self, period: _Period) -> float:
+        real = {"autonomous": self._settings.autonomous, "teleop": self._settings.teleop}.get(period.mode, 0.0)
+        return max(period.seconds, real) if self._real_times else period.seconds
 
     def _disturbance(self, start: float, length: float, mode: str) -> None:
         """Add a disturbance that begins after `start` and ends within `length` seconds of it."""
@@ -169,6 +209,16 @@ def _sides(rng: random.Random) -> str:
     if rng.random() < 0.6:
         return "".join(rng.choice("LR") for _ in range(3))
     return rng.choice("RGBY")
+
+
+def length_of(first_seed: str, usual: float, settings: MatchSettings) -> float:
+    """Return the length of a fuzzed match, in seconds: some are as long as a real one.
+
+    :param first_seed: the seed with which the match begins
+    :param usual: the length of the others
+    """
+    whole = random.Random(f"length {first_seed}").random() < _WHOLE
+    return max(usual, min(_LONGER * usual, seconds_of(settings))) if whole else usual
 
 
 def seconds_of(settings: MatchSettings) -> float:

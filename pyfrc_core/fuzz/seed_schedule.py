@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.script import InputScript
 from .avoidance import KnownFailures, LeftOut
+from .failure import FuzzFailure
 from .goals import BRANCH, LINE, NEAR, STATE, Goal, kind_of
 
 #: The share of matches that continue an earlier one, when there are any worth continuing.
@@ -83,9 +84,13 @@ class SeedScheduler:
         left_out_before = tuple(turn for turn in base.schedule.left_out if turn[0] < from_us)
         return SeedSchedule((*before, (from_us, own)), (*left_out_before, (from_us, left_out)))
 
-    def avoid(self, script: InputScript) -> None:
-        """Leave out what this shortest script of a failure needs, in most of the matches that follow."""
-        self._known.add(script)
+    def avoid(self, failure: FuzzFailure, script: InputScript) -> None:
+        """Leave out what this shortest script of a failure needs in many later matches, if it ends many."""
+        self._known.add(failure, script)
+
+    def note_end(self, schedule: SeedSchedule, failure: FuzzFailure | None) -> None:
+        """Note the failure that ended a match, or that none did."""
+        self._known.note(schedule.left_out[-1][1], failure)
 
     def learn(self, schedule: SeedSchedule, reached: Mapping[Goal, int]) -> None:
         """Note the goals that a match was the first to reach.

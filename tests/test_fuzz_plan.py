@@ -1,0 +1,100 @@
+"""What fuzzed matches have of a season: stages at their real length, second enables, a program that is restarted."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from pyfrc_core.config.settings import MatchSettings
+from pyfrc_core.fuzz.match_plan import MatchEvent, length_of, plan_match
+
+SETTINGS = MatchSettings()
+SECONDS = 30.0
+
+Moments = list[tuple[float, str]]
+
+
+def modes_of(plan: list[MatchEvent]) -> Moments:
+    """When each mode begins, in seconds."""
+    found: Moments = []
+    for event in plan:
+        mode = str(event.writes.get("mode", ""))
+        if mode and (not found or mode != found[-1][1]):
+            found.append((event.at_us / 1e6, mode))
+    return found
+
+
+def enabled(modes: Moments) -> list[str]:
+    return [mode for _, mode in modes if not mode.startswith("disabled")]
+
+
+def has_whole_autonomous(modes: Moments) -> bool:
+    return any(mode == "autonomous" and end - start >= 14.9 for (start, mode), (end, _) in pairwise(modes))
+
+
+SEASON: dict[str, Callable[[Moments], bool]] = {
+    "autonomous of 15 s": has_whole_autonomous,
+    "no autonomous": lambda modes: "autonomous" not in enabled(modes),
+    "test mode first": lambda modes: enabled(modes)[:1] == ["test"],
+    "a second autonomous at once": lambda modes: enabled(modes)[:2] == ["autonomous", "autonomous"],
+    "autonomous after teleoperated": lambda modes: ("teleop", "autonomous") in pairwise(enabled(modes)),
+    "teleoperated enabled four times": lambda modes: enabled(modes).count("teleop") >= 4,
+    "the program starts in teleoperated": lambda modes: modes[0] == (0.0, "teleop"),
+    "the program starts in autonomous": lambda modes: modes[0] == (0.0, "autonomous"),
+}
+
+
+@pytest.mark.parametrize("what", SEASON)
+def test_what_a_season_has_comes_every_fifty_matches(what: str) -> None:
+    plans = [modes_of(plan_match(random.Random(seed), SECONDS, SETTINGS)) for seed in range(200)]
+    assert sum(map(SEASON[what], plans)) >= 4
+
+
+def test_the_match_time_counts_to_zero_or_begins_as_in_a_real_match_or_there_is_none() -> None:
+    begins: dict[str, int] = {"short": 0, "real": 0, "none": 0}
+    for seed in range(100):
+        plan = plan_match(random.Random(seed), SECONDS, SETTINGS)
+        if plan[0].writes.get("time.remaining") == -1.0:
+            assert not any("match_time" in event.writes for event in plan)
+            assert "control.fmsAttached" not in plan[0].writes
+            begins["none"] += 1
+        else:
+            (*_, left) = (event.writes["match_time"] for event in plan if event.writes.get("mode") == "teleop"
+                          and "match_time" in event.writes)  # fmt: skip
+            begins["real" if left == SETTINGS.teleop else "short"] += 1
+    assert min(begins.values()) >= 5
+    assert begins["short"] > 50
+
+
+def test_some_matches_are_as_long_as_real_ones() -> None:
+    lengths = [length_of(f"fuzz 1 {number}", SECONDS, SETTINGS) for number in range(400)]
+    assert set(lengths) == {30.0, 154.0}
+    assert 4 <= lengths.count(154.0) <= 16
+    assert max(length_of(f"fuzz 1 {number}", 4.0, SETTINGS) for number in range(400)) == 24.0
+    assert max(length_of(f"fuzz 1 {number}", 300.0, SETTINGS) for number in range(400)) == 300.0
+
+
+def test_a_bug_late_in_a_match_and_one_of_a_restart_are_found(make_project: Any) -> None:
+    robot = """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def disabledInit(self):
+                self.stored = 0.5
+
+            def teleopInit(self):
+                self.begun = wpilib.Timer.getFPGATimestamp()
+                print(self.stored)
+
+            def teleopPeriodic(self):
+                if wpilib.Timer.getFPGATimestamp() - self.begun > 8:
+                    raise RuntimeError("late")
+        """
+    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5.0\n"})
+    result = project.run("fuzz", "--seed", "1", "--runs", "160")
+    assert f"{project.place('robot.py', 'print')}: AttributeError" in result.stdout, result.output
+    assert f"{project.place('robot.py', 'raise')}: RuntimeError: late" in result.stdout
