@@ -102,6 +102,8 @@ class FuzzSettings:
     slow_loops: bool = True
     #: A motor command while the robot is disabled.
     motors_while_disabled: bool = True
+    #: A motor that runs on in teleop with what autonomous has set.
+    motors_left_running: bool = True
     #: A motor command with the value NaN.
     not_a_number: bool = True
     #: A motor command greater than 1 or less than -1.

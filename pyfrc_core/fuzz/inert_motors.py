@@ -50,6 +50,10 @@ class InertMotors:
             return all(self.is_inert(member) for member in members)
         return not isinstance(motor, wpilib.PWMMotorController)
 
+    def in_group(self, motor: Any) -> bool:
+        """Return whether a motor belongs to a drive or a group."""
+        return any(motor is member for members in self._members.values() for member in members)
+
     def _init(self, real: Callable[..., None]) -> Callable[..., None]:
         members = self._members
 

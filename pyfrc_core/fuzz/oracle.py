@@ -26,6 +26,7 @@ from ..runtime.timed_loop import Periodic
 from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
 from .inert_motors import InertMotors
+from .left_running import STOPS_WITHIN_US, MotorsLeftRunning
 from .misbehavior_notes import LastMisbehavior
 from .motor_calls import intercept_motor_calls
 
@@ -51,7 +52,8 @@ def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends
     with ExitStack() as closing:
         reports = closing.enter_context(hal_reports()) if settings.hal_errors else None
         oracle = _Oracle(run, files, settings, reports, ends_run)
-        if settings.not_a_number or settings.out_of_range or settings.motors_while_disabled:
+        of_motors = (settings.not_a_number, settings.out_of_range, settings.motors_while_disabled)
+        if any(of_motors) or settings.motors_left_running:
             closing.enter_context(intercept_motor_calls(oracle.on_motor_call))
             closing.enter_context(oracle.inert_motors.watched())
         if settings.slow_loops:
@@ -88,6 +90,7 @@ class _Oracle:
         self._reports = reports
         self._ends_run = ends_run
         self.inert_motors = InertMotors(run.hal_data)
+        self._left_running = MotorsLeftRunning(self.inert_motors.in_group)
         self._mode = ""
         self._mode_since_us = 0
         #: When the robot was last in the selected mode.
@@ -110,6 +113,8 @@ class _Oracle:
     def on_motor_call(self, motor: Any, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
         """Check a call of a motor controller or a drive."""
         settings = self._settings
+        if settings.motors_left_running:
+            self._left_running.on_call(motor, get_frame(1), self._files)
         for number in numbers:
             if number != number:  # NaN
                 if settings.not_a_number:
@@ -144,6 +149,7 @@ class _Oracle:
         mode: str = modes.get_mode() if modes.is_attached() else "disabled"
         if mode != self._mode:
             self._mode, self._mode_since_us = mode, self._run.clock.now_us
+            self._left_running.on_mode(mode, self._run.clock.now_us)
 
     def after_packet(self, now: float) -> None:
         """Check the run after a packet; robot code may be in the middle of a longer call."""
@@ -154,6 +160,13 @@ class _Oracle:
             self._misbehaved(f"the HAL reports an error: {report}", "hal_errors", ("", ""))
         if self._settings.stuck_modes:
             self._check_mode(frame)
+        for motor in self._left_running.found(self._run.clock.now_us):
+            place = f"{self._files.relative(motor.code.co_filename)}:{motor.line}" if motor.code else ""
+            what = (
+                f"the motor still runs at {motor.power:.2f}, as autonomous has set it here, "
+                f"{STOPS_WITHIN_US / 1e6:g} s after the beginning of teleop: no code has set it since"
+            )
+            self._misbehaved(what, "motors_left_running", (place, motor.code.co_name if motor.code else ""))
 
     def _waiting_frame(self, frame: FrameType | None) -> FrameType | None:
         """Return the frame of robot code that waits for this packet, if there is one.
