@@ -48,6 +48,14 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     metavar="N",
     help="How many matches run at the same time. Default: the number of processors.",
 )
+@click.option(
+    "--from",
+    "recorded",
+    metavar="LOG",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="Begin with a recorded match: a WPILib data log (.wpilog) or an input script. May be repeated.",
+)
 def command(
     directory: Path | None,
     main: Path | None,
@@ -56,6 +64,7 @@ def command(
     runs: int | None,
     seed: int,
     jobs: int | None,
+    recorded: tuple[Path, ...],
 ) -> None:
     """Play many matches with random inputs, and save the shortest script of each failure.
 
@@ -71,12 +80,15 @@ def command(
     from pyfrc_core.compat.real_time_devices import explain_real_time
     from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
     from pyfrc_core.processors import usable_processors
+    from pyfrc_core.runtime.scripts.script import load_script
 
     project = chosen_project(directory, main, robot_class)
     if seconds is None and runs is None:
         seconds = _DEFAULT_SECONDS
     printer = _ProgressPrinter(verbosity().quiet)
-    campaign = run_campaign(project, CampaignOptions(seed, runs, seconds, jobs or usable_processors()), printer)
+    scripts = tuple(load_script(file) for file in recorded)
+    options = CampaignOptions(seed, runs, seconds, jobs or usable_processors(), scripts)
+    campaign = run_campaign(project, options, printer)
     printer.end(campaign.progress)
     if campaign.real_time:
         hint(explain_real_time(campaign.real_time))

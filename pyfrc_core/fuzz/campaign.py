@@ -40,12 +40,14 @@ class CampaignOptions:
     :param seconds: when to start no more matches, in seconds of real time, or None; failures found by then are still
         shrunk
     :param jobs: how many matches to run at a time
+    :param recorded: recorded matches to begin with
     """
 
     seed: int
     runs: int | None
     seconds: float | None
     jobs: int
+    recorded: tuple[InputScript, ...] = ()
 
 
 @dataclass
@@ -149,7 +151,7 @@ class _Runner:
         self._deadline = deadline
         self._listener = listener
         self._corpus = Corpus(executor.project)
-        self._scheduler = SeedScheduler(options.seed)
+        self._scheduler = SeedScheduler(options.seed, options.recorded)
         self._all_lines = executor.lines
         self._reached: frozenset[Goal] = frozenset()
         self._failures: list[FuzzFailure] = []

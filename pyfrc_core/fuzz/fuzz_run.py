@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO
 
+from ..errors import PyfrcError
 from ..runtime.clock import PACKET_US
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript, Step
@@ -28,6 +29,8 @@ class FuzzRun:
         self._run = run
         self._generator = generator
         self._journal = journal
+        #: Whether inputs may be left out that this robot does not have: a recorded match may be another robot's.
+        self.may_lack_targets = False
         self._targets = Targets(run.hal_data, run.connection.packet)
         generator.write_at_once = self._apply
 
@@ -47,11 +50,21 @@ class FuzzRun:
 
     def _apply(self, writes: Mapping[str, Value]) -> None:
         now_us = self._run.clock.now_us
+        if self.may_lack_targets:
+            writes = {target: value for target, value in writes.items() if self._is_there(target)}
         self.steps.append(Step(now_us, writes))
         if self._journal is not None:
             self._journal.write(pickle.dumps(self.steps[-1]))
         for target, value in writes.items():
             self._targets.write(target, value, now_us)
+
+    def _is_there(self, target: str) -> bool:
+        try:
+            self._targets.check(target)
+            self._targets.check_made(target)
+        except (PyfrcError, LookupError, TypeError):
+            return False
+        return True
 
     def script(self, robot: str, seed: int) -> InputScript:
         """Return the inputs up to now as a script that ends after this packet."""

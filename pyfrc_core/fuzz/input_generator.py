@@ -12,6 +12,7 @@ from ..config.settings import MatchSettings
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.targets import MODE
 from .avoidance import LeftOut, without
+from .base_match import BaseMatch
 from .dashboard_generator import DashboardGenerator, find_dashboard
 from .gamepads import find_gamepads
 from .inputs import Input, SensorFinder, find_controls
@@ -51,6 +52,7 @@ class InputGenerator:
     :param game_messages: the messages that the field may send, if they are known
     :param network_reads: the entries of NetworkTables that the robot reads; None if they are not watched
     :param constants: the constants of the robot's code
+    :param base: the recorded match with which this one begins
     """
 
     def __init__(
@@ -64,6 +66,7 @@ class InputGenerator:
         game_messages: Sequence[str] = (),
         network_reads: NetworkReads | None = None,
         constants: RobotConstants = UNKNOWN,
+        base: BaseMatch | None = None,
     ) -> None:
         #: The inputs found so far, by target.
         self.inputs: dict[str, Input] = {}
@@ -71,7 +74,9 @@ class InputGenerator:
         self._run = run
         self._hal_data = run.hal_data
         self._end_us = to_us(seconds)
-        self._plan = plan_match(rng, seconds, settings or MatchSettings(), game_messages)
+        self._plan = base.plan() if base else plan_match(rng, seconds, settings or MatchSettings(), game_messages)
+        #: Inputs are generated from this time on.
+        self._from_us = base.until_us if base else 0
         self._planned = 0
         self._sticks = JoystickGenerator(rng)
         self._sensors = SensorGenerator(rng, self._hal_data)
@@ -118,13 +123,14 @@ class InputGenerator:
         parts: list[JoystickGenerator | SensorGenerator | DashboardGenerator] = [self._sensors]
         if self._attached:  # else no input of the drivers arrives
             parts += [self._sticks, self._dashboard]
-        for part in parts:
+        for part in parts if now_us >= self._from_us else ():
             if part.next_us <= now_us:
                 part.write(now_us, found)
         if self.left_out:
             found = without(self.left_out, found)
         plan = self._plan[self._planned].at_us if self._planned < len(self._plan) else self._end_us
-        self.next_us = min(self._find_us, self._check_us, plan, *(part.next_us for part in parts))
+        parts_us = max(self._from_us, min(part.next_us for part in parts))
+        self.next_us = min(self._find_us, self._check_us, plan, parts_us)
         return found
 
     def _apply_event(self, now_us: int, event: Mapping[str, Value], found: dict[str, Value]) -> None:
@@ -161,7 +167,8 @@ class InputGenerator:
     def _before_first_read(self, read: NetworkRead) -> None:
         """Write an entry before the robot first reads it, as if it had been there before the robot was started."""
         run = self._run
-        if self.write_at_once is None or not run.started or run.clock.now_us > 0 or not self._attached:
+        at_start = run.started and run.clock.now_us == self._from_us == 0
+        if self.write_at_once is None or not at_start or not self._attached:
             return
         writes = without(self.left_out, self._dashboard.before_first_read(read))
         if writes:

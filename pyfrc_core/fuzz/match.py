@@ -156,6 +156,8 @@ def invariants_of(project: Project) -> tuple[Invariant, ...]:
 
 def match_seconds(project: Project, schedule: SeedSchedule) -> float:
     """Return the length of a match with this schedule, in seconds."""
+    if schedule.base is not None:
+        return schedule.base.end_us(to_us(project.settings.fuzz.match_seconds)) / 1_000_000
     return length_of(schedule.seeds[0][1], project.settings.fuzz.match_seconds, project.settings.match)
 
 
@@ -177,9 +179,11 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
             game_messages=project.game_specific_messages,
             network_reads=closing.enter_context(watch_network_reads(project.files)),
             constants=robot_constants(project),
+            base=task.schedule.base,
         )
         generator.left_out = task.schedule.left_out_at(0)
         fuzz_run = FuzzRun(run, generator, closing.enter_context(task.journal.open("wb", 0)) if task.journal else None)
+        fuzz_run.may_lack_targets = task.schedule.base is not None
 
         states = RobotStates(run, project.files, task.known)
 

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.script import InputScript
 from .avoidance import KnownFailures, LeftOut
+from .base_match import BaseMatch
 from .failure import FuzzFailure
 from .goals import BRANCH, LINE, NEAR, STATE, Goal, kind_of
 
 #: The share of matches that continue an earlier one, when there are any worth continuing.
 _CONTINUED = 0.5
+#: The share of new matches that begin with a recorded one, when there are any.
+_FROM_RECORDED = 0.8
 #: A match that continues another equals it for at most this long after that one first reached a goal.
 _SAME_FOR_US = 1_000_000
 #: How many matches worth continuing are remembered for each kind of goal: the latest, which have reached the goals that
@@ -29,10 +32,12 @@ class SeedSchedule:
 
     :param seeds: pairs of a time in microseconds and the seed that holds from then on; the first time is 0
     :param left_out: pairs of a time in microseconds and the inputs that the match does without from then on
+    :param base: the recorded match with which it begins
     """
 
     seeds: tuple[tuple[int, str], ...]
     left_out: tuple[tuple[int, LeftOut], ...] = ()
+    base: BaseMatch | None = None
 
     def rng(self) -> random.Random:
         """Return the random number generator for the start of the match; `reseed` keeps it up to date."""
@@ -62,10 +67,13 @@ class _Worthwhile:
 class SeedScheduler:
     """Chooses the seeds of a campaign's matches: the same choices for the same seed and the same goals, reported in the
     same order.
+
+    :param recorded: matches to begin with: each is played once as it is, and most others begin with one of them
     """
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, recorded: Sequence[InputScript] = ()) -> None:
         self._seed = seed
+        self._recorded = recorded
         self._worthwhile: dict[str, list[_Worthwhile]] = {kind: [] for kind in _WEIGHTS}
         self._known = KnownFailures()
 
@@ -73,16 +81,26 @@ class SeedScheduler:
         """Return the seeds of the match with this number."""
         own = f"fuzz {self._seed} {number}"
         rng = random.Random(f"recipe {own}")
+        if number < len(self._recorded):
+            whole = BaseMatch(self._recorded[number], self._recorded[number].end_us)
+            return SeedSchedule(((0, own),), ((0, frozenset()),), whole)
         left_out = self._known.left_out(random.Random(f"left out {own}"))
         kinds = [kind for kind, worthwhile in self._worthwhile.items() if worthwhile]
         if not kinds or rng.random() >= _CONTINUED:
-            return SeedSchedule(((0, own),), ((0, left_out),))
+            return SeedSchedule(((0, own),), ((0, left_out),), self._base(own))
         (kind,) = rng.choices(kinds, [_WEIGHTS[kind] for kind in kinds])
         base = rng.choice(self._worthwhile[kind])
         from_us = rng.choice(base.reached_us) + rng.randrange(0, _SAME_FOR_US, PACKET_US)
         before = tuple(turn for turn in base.schedule.seeds if turn[0] < from_us)
         left_out_before = tuple(turn for turn in base.schedule.left_out if turn[0] < from_us)
-        return SeedSchedule((*before, (from_us, own)), (*left_out_before, (from_us, left_out)))
+        seeds, left_outs = (*before, (from_us, own)), (*left_out_before, (from_us, left_out))
+        return SeedSchedule(seeds, left_outs, base.schedule.base)
+
+    def _base(self, own: str) -> BaseMatch | None:
+        rng = random.Random(f"base {own}")
+        if not self._recorded or rng.random() >= _FROM_RECORDED:
+            return None
+        return BaseMatch.choose(rng.choice(self._recorded), rng)
 
     def avoid(self, failure: FuzzFailure, script: InputScript) -> None:
         """Leave out what this shortest script of a failure needs in many later matches, if it ends many."""

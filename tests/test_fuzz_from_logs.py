@@ -1,0 +1,114 @@
+"""`pyfrc fuzz --from`: fuzzed matches begin with a recorded one."""
+
+from __future__ import annotations
+
+import pytest
+
+from pyfrc_core.fuzz.base_match import BaseMatch
+from pyfrc_core.fuzz.seed_schedule import SeedScheduler
+from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
+
+#: It fails only after a sequence that no random match has: four buttons in this order, then a stick.
+ROBOT = """
+    import wpilib
+
+    ORDER = [7, 2, 5, 1]
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            wpilib.DataLogManager.start()
+            wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog())
+            self.pad = wpilib.Joystick(0)
+            self.motor = wpilib.PWMSparkMax(0)
+            self.done = 0
+
+        def teleopPeriodic(self):
+            self.motor.set(0.1 * self.done)
+            for button in range(1, 11):
+                if self.pad.getRawButtonPressed(button):
+                    right = self.done < len(ORDER) and ORDER[self.done] == button
+                    self.done = self.done + 1 if right else self.done if self.done == len(ORDER) else 0
+            if self.done == len(ORDER) and self.pad.getRawAxis(1) < -0.5:
+                raise ValueError("the order was entered")
+"""
+SETTINGS = "[tool.pyfrc.fuzz]\nmatch_seconds = 4.0\n"
+
+STEPS = "\n".join(
+    f'{{"t": {1.5 + 0.2 * index:.2f}, "set": {{"joysticks[0].buttons[{button}]": {pressed}}}}}'
+    for index, (button, pressed) in enumerate((button, p) for button in (7, 2, 5, 1) for p in ("true", "false"))
+)
+ENTERED = f"""{{"format": "pyfrc-input 1", "end": 5.0}}
+{{"t": 1, "set": {{"mode": "teleop"}}}}
+{STEPS}
+{{"t": 4.5, "set": {{"mode": "disabled"}}}}
+"""
+
+
+def robot() -> dict[str, str]:
+    return {"robot.py": ROBOT, "pyproject.toml": SETTINGS, "entered.jsonl": ENTERED}
+
+
+def test_a_campaign_goes_on_from_a_log(make_project) -> None:
+    project = make_project(robot())
+    assert project.run("sim", "--ui", "none", "--script", "entered.jsonl").code == 0
+    (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
+    log.rename(project.path / "match.wpilog")
+    assert project.run("fuzz", "--seed", "1", "--runs", "32").code == 0
+    result = project.run("fuzz", "--seed", "1", "--runs", "32", "--from", "match.wpilog")
+    assert result.code == 1, result.output
+    assert "ValueError: the order was entered" in result.stdout
+    script = load_script(project.path / "tests/fuzz/valueerror-robot-teleopperiodic.jsonl")
+    assert sum(len(step.writes) for step in script.steps) <= 8
+    assert project.run("replay", "tests/fuzz/valueerror-robot-teleopperiodic.jsonl").code == 1
+
+
+def test_a_recorded_match_that_fails_is_found_at_once(make_project) -> None:
+    project = make_project(
+        robot() | {"failed.jsonl": ENTERED.replace('"mode": "disabled"', '"joysticks[0].axes[1]": -1')}
+    )
+    result = project.run("fuzz", "--runs", "1", "--from", "failed.jsonl")
+    assert result.code == 1, result.output
+    assert "ValueError: the order was entered" in result.stdout
+
+
+def test_what_a_robot_does_not_have_is_left_out(make_project) -> None:
+    recorded = ENTERED.replace('"mode": "teleop"', '"mode": "teleop", "dio[4].value": false, "CAN.Gyro.Yaw": 3.0')
+    project = make_project(robot() | {"other.jsonl": recorded})
+    result = project.run("fuzz", "--runs", "2", "--from", "other.jsonl")
+    assert result.code == 0, result.output
+
+
+@pytest.mark.parametrize(("name", "message"), [("none.wpilog", "there is no file"), ("robot.py", "robot.py:")])
+def test_what_cannot_be_read_is_refused(name: str, message: str, make_project) -> None:
+    result = make_project(robot()).run("fuzz", "--from", name)
+    assert result.code == 2
+    assert message in result.output
+
+
+def test_the_course_of_the_match_is_the_recorded_one() -> None:
+    steps = (
+        Step(0, {"alliance_station": "red2"}),
+        Step(1_000_000, {"mode": "teleop", "joysticks[0].axes[1]": 1.0}),
+        Step(2_000_000, {"joysticks[0].axes[1]": 0.0, "packet": True}),
+        Step(3_000_000, {"mode": "disabled"}),
+    )
+    base = BaseMatch(InputScript(steps, 4_000_000), 1_500_000)
+    assert [(event.at_us, event.writes) for event in base.plan()] == [
+        (0, {"alliance_station": "red2"}),
+        (1_000_000, {"mode": "teleop", "joysticks[0].axes[1]": 1.0}),
+        (3_000_000, {"mode": "disabled"}),
+    ]
+    assert base.end_us(1_000_000) == 2_500_000
+    assert base.end_us(9_000_000) == 4_000_000
+
+
+def test_each_recorded_match_is_first_played_as_it_is() -> None:
+    recorded = [InputScript((), 1_000_000), InputScript((), 2_000_000)]
+    scheduler = SeedScheduler(1, recorded)
+    assert [scheduler.schedule(number).base for number in (0, 1)] == [
+        BaseMatch(recorded[0], 1_000_000),
+        BaseMatch(recorded[1], 2_000_000),
+    ]
+    bases = [scheduler.schedule(number).base for number in range(2, 102)]
+    assert 60 <= sum(base is not None for base in bases) <= 95
+    assert [SeedScheduler(1, recorded).schedule(number).base for number in range(2, 102)] == bases
