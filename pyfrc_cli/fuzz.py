@@ -80,13 +80,13 @@ def command(
     from pyfrc_core.compat.real_time_devices import explain_real_time
     from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
     from pyfrc_core.processors import usable_processors
-    from pyfrc_core.runtime.scripts.script import load_script
+    from pyfrc_core.runtime.scripts.inputs_file import load_inputs
 
     project = chosen_project(directory, main, robot_class)
     if seconds is None and runs is None:
         seconds = _DEFAULT_SECONDS
     printer = _ProgressPrinter(verbosity().quiet)
-    scripts = tuple(load_script(file) for file in recorded)
+    scripts = tuple(load_inputs(file) for file in recorded)
     options = CampaignOptions(seed, runs, seconds, jobs or usable_processors(), scripts)
     campaign = run_campaign(project, options, printer)
     printer.end(campaign.progress)

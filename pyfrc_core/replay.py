@@ -28,8 +28,9 @@ from .runtime.loop_limit import LoopLimit
 from .runtime.patches import patches
 from .runtime.robot import RobotRun
 from .runtime.scripts.files import traced
+from .runtime.scripts.inputs_file import load_inputs
 from .runtime.scripts.player import Player
-from .runtime.scripts.script import InputScript, load_script, trace_beside
+from .runtime.scripts.script import InputScript, trace_beside
 from .runtime.seeds import seed_generators
 from .runtime.trace import repeatable_part
 
@@ -81,7 +82,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     """
     from .fuzz.oracle import oracle_if_fuzzed
 
-    script = load_script(file)
+    script = load_inputs(file)
     if script.story and (ended := _process_failure(project, script)) is not None:
         return ReplayResult(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
     patches.install(project.files)

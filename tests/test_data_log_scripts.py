@@ -10,9 +10,11 @@ import pytest
 from wpiutil import DataLogWriter
 from wpiutil.log import DoubleLogEntry
 
-from pyfrc_core.runtime.scripts.script import ScriptError, load_script
+from pyfrc_core.runtime.scripts.inputs_file import load_inputs
+from pyfrc_core.runtime.scripts.script import ScriptError
 
 ROBOT = """
+    import ntcore
     import wpilib
 
     class MyRobot(wpilib.TimedRobot):
@@ -33,7 +35,9 @@ ROBOT = """
             self.motors[0].set(self.chooser.getSelected() if self.timer.get() < 1.0 else 0.1)
 
         def teleopPeriodic(self):
-            self.motors[0].set(self.pad.getRawAxis(1))
+            seen = ntcore.NetworkTableInstance.getDefault().getTable("limelight")
+            tag, pose = seen.getEntry("tid").getInteger(0), seen.getEntry("botpose").getDoubleArray([0.0])
+            self.motors[0].set(self.pad.getRawAxis(1) + tag / 100 + sum(pose) / 10)
             self.motors[1].set(0.5 if self.pad.getRawButton(3) else self.pad.getPOV() / 400)
             self.motors[2].set(wpilib.DriverStation.getMatchTime() / 200)
             self.motors[3].set(len(wpilib.DriverStation.getGameSpecificMessage()) / 10 + self.alliance())
@@ -47,7 +51,8 @@ SETTINGS = "[tool.pyfrc.match]\nautonomous = 2.0\nteleop = 3.0\n"
 
 DRIVEN = """{"format": "pyfrc-input 1", "end": 6.0}
 {"t": 0, "set": {"alliance_station": "blue2", "event.game_specific_message": "LRL"}}
-{"t": 0.5, "set": {"nt:/SmartDashboard/Auto/selected": "Go"}}
+{"t": 0.5, "set": {"nt:/SmartDashboard/Auto/selected": "Go", "nt:/limelight/tx": 3.5}}
+{"t": 0.6, "set": {"nt:int:/limelight/tid": 7, "nt:double[]:/limelight/botpose": [1.0, 2.0]}}
 {"t": 1, "set": {"mode": "autonomous", "match_time": 2}}
 {"t": 3, "set": {"mode": "disabled", "match_time": 0}}
 {"t": 3.5, "set": {"mode": "teleop", "match_time": 2.0, "joysticks[0].axes[1]": -0.4}}
@@ -117,6 +122,6 @@ def test_what_is_no_log_is_refused(content: bytes, tmp_path: Path) -> None:
     file = tmp_path / "match.wpilog"
     file.write_bytes(content)
     with pytest.raises(ScriptError, match="data log"):
-        load_script(file)
+        load_inputs(file)
     with pytest.raises(ScriptError, match="there is no file"):
-        load_script(tmp_path / "other.wpilog")
+        load_inputs(tmp_path / "other.wpilog")

@@ -12,7 +12,7 @@ from pathlib import Path
 from ..errors import UsageError
 from ..interruption import ending_like_ctrl_c
 from ..project import Project
-from ..runtime.scripts.script import load_script
+from ..runtime.scripts.inputs_file import load_inputs
 from .c_exit import calling_at_c_exit
 from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
@@ -71,7 +71,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     options = SimOptions(
         speed=request.speed if request.speed is not None else 0.0 if unattended else 1.0,
         paused=request.paused or not kind.interactive,
-        script=None if request.script is None else load_script(request.script),
+        script=None if request.script is None else load_inputs(request.script),
         start_at=request.start_at,
         run_until=request.seconds,
         recording=kind.interactive or request.record is not None or request.watch,
@@ -141,7 +141,7 @@ def draw_script(project: Project, script: Path, picture: Path, until: float | No
     from .ui.picture import check_pictures, draw_picture
 
     check_pictures(picture)
-    options = SimOptions(speed=0, paused=True, script=load_script(script), recording=False)
+    options = SimOptions(speed=0, paused=True, script=load_inputs(script), recording=False)
     simulation = Simulation(project, options)
     headless = Headless(lambda text: None, seconds=until)
     headless.run(simulation)

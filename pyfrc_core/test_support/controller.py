@@ -14,8 +14,8 @@ from ..invariants.watch import watch_invariants
 from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
 from ..runtime.match import MatchPeriods
+from ..runtime.scripts.inputs_file import load_inputs
 from ..runtime.scripts.player import Player
-from ..runtime.scripts.script import load_script
 from ..runtime.seeds import seed_generators
 from .fake_time import FakeTime
 
@@ -180,7 +180,7 @@ class TestController:
         """
         __tracebackhide__ = True
         self._begin("replay")
-        script = load_script(Path(path))
+        script = load_inputs(Path(path))
         if script.seed != self.seed:  # otherwise they were seeded before the robot was constructed
             seed_generators(script.seed)
         with ExitStack() as closing:

@@ -19,8 +19,9 @@ from wpiutil.log import DataLogReader, DataLogRecord
 
 from ...hal.modes import AXES, BUTTONS, EVENT_NAME, JOYSTICKS, NOT_PRESSED, POVS
 from ..robot_time import PACKET_US
+from .network_entries import entry_target
 from .script import InputScript, ScriptError, Step
-from .targets import MATCH_TIME, MODE, NETWORK, REMAINING, plugged
+from .targets import MATCH_TIME, MODE, REMAINING, plugged
 
 _READ: dict[str, Callable[[DataLogRecord], Any]] = {
     "boolean": DataLogRecord.getBoolean,
@@ -28,12 +29,22 @@ _READ: dict[str, Callable[[DataLogRecord], Any]] = {
     "float": DataLogRecord.getFloat,
     "int64": DataLogRecord.getInteger,
     "string": DataLogRecord.getString,
+    "string[]": DataLogRecord.getStringArray,
     "boolean[]": DataLogRecord.getBooleanArray,
     "double[]": DataLogRecord.getDoubleArray,
     "float[]": DataLogRecord.getFloatArray,
     "int64[]": DataLogRecord.getIntegerArray,
 }
-_SCALARS = (bool, int, float, str)
+#: The types of NetworkTables that a target has to name, by their names in a log.
+_NAMED_TYPES = {
+    "int64": "int",
+    "float": "float",
+    "boolean[]": "boolean[]",
+    "double[]": "double[]",
+    "float[]": "float[]",
+    "int64[]": "int[]",
+    "string[]": "string[]",
+}
 
 _FMS = "NT:/FMSInfo/"
 _HAL = "/hal_data/"
@@ -58,6 +69,7 @@ _CONTROLS: dict[str, tuple[int, Any]] = {
 class _Record:
     at_us: int
     name: str
+    type_name: str
     value: Any
 
 
@@ -84,6 +96,7 @@ def script_from_log(file: Path) -> InputScript:
     for at_us, together in groupby(records, key=lambda record: _packet(record.at_us - base_us)):
         for record in together:
             state.values[record.name] = record.value
+            state.types[record.name] = record.type_name
         if at_us > 0 and (writes := dict(state.changes())):  # before the first packet, no driver station is connected
             steps.append(Step(at_us, writes))
     last_us = _packet(records[-1].at_us - base_us)
@@ -96,16 +109,15 @@ def _records(file: Path) -> Iterator[_Record]:
     reader = DataLogReader(str(file))
     if not reader.isValid():
         raise ScriptError("this is not a WPILib data log", where=file.name)
-    entries: dict[int, tuple[str, Callable[[DataLogRecord], Any]]] = {}
+    entries: dict[int, tuple[str, str]] = {}
     for record in reader:
         if record.isStart():
             start = record.getStartData()
-            read = _READ.get(start.type)
-            if read is not None and start.name.startswith(("DS:", "NT:", _HAL)):
-                entries[start.entry] = start.name, read
+            if start.type in _READ and start.name.startswith(("DS:", "NT:", _HAL)):
+                entries[start.entry] = start.name, start.type
         elif not record.isControl() and record.getEntry() in entries:
-            name, read = entries[record.getEntry()]
-            yield _Record(record.getTimestamp(), name, read(record))
+            name, type_name = entries[record.getEntry()]
+            yield _Record(record.getTimestamp(), name, type_name, _READ[type_name](record))
 
 
 def _packet(at_us: int) -> int:
@@ -118,6 +130,7 @@ class _State:
     """The latest values of a log, and what was written of them."""
 
     values: dict[str, Any] = field(default_factory=dict)
+    types: dict[str, str] = field(default_factory=dict)
     _written: dict[str, Any] = field(default_factory=dict)
 
     def changes(self) -> Iterator[tuple[str, Any]]:
@@ -130,8 +143,9 @@ class _State:
             for stick in range(JOYSTICKS):
                 yield from self._joystick(stick)
         for name, value in self.values.items():
-            if _FROM_OUTSIDE.fullmatch(name) and isinstance(value, _SCALARS):
-                yield from self._changed(NETWORK + name.removeprefix("NT:"), value, None)
+            if _FROM_OUTSIDE.fullmatch(name):
+                target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(self.types[name], ""))
+                yield from self._changed(target, value, None)
 
     def _changed(self, target: str, value: Any, initially: Any) -> Iterator[tuple[str, Any]]:
         if self._written.get(target, initially) != value:

@@ -22,8 +22,6 @@ from ...text_files import write_whole
 from ..robot_time import to_us
 
 FORMAT = "pyfrc-input 1"
-#: The suffix of WPILib's data logs.
-DATA_LOG = ".wpilog"
 
 #: Longer files are no input scripts; a match that mashes everything at each packet takes a tenth of this.
 _MOST_BYTES = 64 * 1024 * 1024
@@ -104,14 +102,10 @@ class InputScript:
 
 
 def load_script(file: Path) -> InputScript:
-    """Read an input script, or the inputs in a WPILib data log (``.wpilog``).
+    """Read an input script.
 
     :raises ScriptError: naming the line and what is wrong with it
     """
-    if file.suffix.lower() == DATA_LOG:
-        from .data_log import script_from_log  # imports WPILib
-
-        return script_from_log(file)
     name = file.name
     try:
         size = file.stat().st_size
