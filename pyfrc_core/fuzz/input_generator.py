@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..compat.wpilib_private import simulation_periodic_of
@@ -53,6 +53,7 @@ class InputGenerator:
     :param network_reads: the entries of NetworkTables that the robot reads; None if they are not watched
     :param constants: the constants of the robot's code
     :param base: the recorded match with which this one begins
+    :param asked_controls: the targets of the controls that the robot has asked for so far
     """
 
     def __init__(
@@ -67,6 +68,7 @@ class InputGenerator:
         network_reads: NetworkReads | None = None,
         constants: RobotConstants = UNKNOWN,
         base: BaseMatch | None = None,
+        asked_controls: Container[str] = (),
     ) -> None:
         #: The inputs found so far, by target.
         self.inputs: dict[str, Input] = {}
@@ -78,7 +80,7 @@ class InputGenerator:
         #: Inputs are generated from this time on.
         self._from_us = base.until_us if base else 0
         self._planned = 0
-        self._sticks = JoystickGenerator(rng)
+        self._sticks = JoystickGenerator(rng, asked_controls)
         self._sensors = SensorGenerator(rng, self._hal_data)
         self._sensor_finder = SensorFinder(self._hal_data)
         self._dashboard = DashboardGenerator(rng, network_reads, constants)

@@ -1,17 +1,18 @@
 """Generate joystick inputs: a pose of several controls, held for a while, then another.
 
 Bugs need chords. Two buttons with a stick at its end are one pose in a few hundred; if each control changed
-independently, they would be one moment in millions.
+independently, they would be one moment in millions. Controls that the robot asks for are pressed more often. How long a
+pose is held, and what changes, is a driver's habit.
 """
 
 from __future__ import annotations
 
-import math
 import random
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 
 from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
+from .habits import Habit, draw_habit
 from .inputs import Input
 from .values import NOT_PRESSED, InputKind, Value, draw
 
@@ -23,18 +24,21 @@ _UNKNOWN = (40, 15, 3, 1, 1, 1)
 #: How often the ports with and without a joystick of the robot are used when they are found.
 _KNOWN, _OTHERS = 100, 1
 
-#: The number of buttons and axes in a pose, drawn from these.
-_BUTTONS = (0, 0, 1, 1, 2, 2, 2, 3, 3, 4)
-_AXES = (0, 0, 1, 1, 1, 2, 2, 2, 4)
+#: How often a control is used that the robot has asked for, one that every gamepad has, and any other.
+_ASKED, _COMMON, _RARE = 80, 8, 1
 
 _RELEASED: dict[InputKind, float] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": NOT_PRESSED}
 
 
 class JoystickGenerator:
-    """Generates one match's joystick inputs."""
+    """Generates one match's joystick inputs.
 
-    def __init__(self, rng: random.Random) -> None:
+    :param asked: the targets of the controls that the robot has asked for; they may become more
+    """
+
+    def __init__(self, rng: random.Random, asked: Container[str] = ()) -> None:
         self._rng = rng
+        self._asked = asked
         self.next_us = 0
         #: Ports without a joystick: writing to them would plug one in.
         self.unplugged: set[int] = set()
@@ -93,21 +97,21 @@ class JoystickGenerator:
         self.next_us = min([self._pose_until_us, *step, *(at for at, _, _ in self._taps)])
 
     def _pose(self, now_us: int, found: dict[str, Value]) -> None:
-        rng = self._rng
+        rng, habit = self._rng, draw_habit(self._rng)
         self._finish(found)
-        for control in [control for control in self._held if rng.random() < 0.75]:
+        for control in [control for control in self._held if rng.random() < habit.let_go]:
             self._set(control, _RELEASED[control.kind], found)
         there = [port for port in range(JOYSTICKS) if port not in self.unplugged and any(self._ports[port])]
-        # Evenly over the orders of magnitude from two packets to two seconds.
-        lasts_us = max(PACKET_US, round(math.exp(rng.uniform(math.log(0.04), math.log(2))) * 50) * PACKET_US)
-        self._pose_until_us = now_us + lasts_us
+        self._pose_until_us = now_us + max(PACKET_US, round(habit.duration(rng) * 50) * PACKET_US)
         if not there or rng.random() < 0.1:  # hands off
             for control in list(self._held):
                 self._set(control, _RELEASED[control.kind], found)
             return
         ports = rng.choices(there, [self._weights[port] for port in there], k=rng.choice((1, 1, 1, 2)))
+        if habit.together:
+            ports = [port for port in there if self._weights[port] == max(self._weights[each] for each in there)]
         for port in dict.fromkeys(ports):
-            self._press(*self._ports[port], now_us, found)
+            self._press(*self._ports[port], habit, now_us, found)
 
     def _finish(self, found: dict[str, Value]) -> None:
         """Taps end with the pose, and moving sticks arrive where they were going."""
@@ -121,12 +125,18 @@ class JoystickGenerator:
         self._taps, self._moving, self._trembling = [], {}, None
 
     def _press(
-        self, buttons: list[Input], axes: list[Input], povs: list[Input], now_us: int, found: dict[str, Value]
+        self,
+        buttons: list[Input],
+        axes: list[Input],
+        povs: list[Input],
+        habit: Habit,
+        now_us: int,
+        found: dict[str, Value],
     ) -> None:
         rng = self._rng
-        for button in _some(rng, buttons, rng.choice(_BUTTONS)):
+        for button in self._some(buttons, rng.choice(habit.buttons)):
             self._set(button, True, found)
-        for axis in _some(rng, axes, rng.choice(_AXES)):
+        for axis in self._some(axes, rng.choice(habit.axes)):
             value = draw(axis.kind, rng)
             how = rng.random()
             if how < 0.2:
@@ -135,17 +145,37 @@ class JoystickGenerator:
                 self._set(axis, value, found)
                 if how < 0.25 and axis.kind == "axis":
                     self._trembling = axis
-        if povs and rng.random() < 0.35:
+        if povs and rng.random() < habit.pov:
             self._set(rng.choice(povs), draw("pov", rng), found)
-        for button in _some(rng, buttons, rng.choice((0, 0, 1, 2))):
+        for button in self._some(buttons, rng.choice(habit.taps)):
             if button not in self._held:
-                pressed_us = now_us + rng.randint(0, 10) * PACKET_US
-                if pressed_us + PACKET_US <= self._pose_until_us:
-                    self._taps += [
-                        (pressed_us, button, True),
-                        (pressed_us + rng.randint(1, 3) * PACKET_US, button, False),
-                    ]
+                self._tap(button, rng.choice(habit.times), now_us)
         self._taps.sort()
+
+    def _tap(self, button: Input, times: int, now_us: int) -> None:
+        rng = self._rng
+        pressed_us = now_us + rng.randint(0, 10) * PACKET_US
+        for _ in range(times):
+            released_us = pressed_us + rng.randint(1, 3) * PACKET_US
+            if pressed_us + PACKET_US <= self._pose_until_us:
+                self._taps += [(pressed_us, button, True), (released_us, button, False)]
+            pressed_us = released_us + rng.randint(1, 10) * PACKET_US
+
+    def _some(self, controls: Sequence[Input], count: int) -> list[Input]:
+        """Return this many different controls. What the robot asks for is more likely, and then low numbers: gamepads
+        have those, and robots read them.
+        """
+        left, found = list(controls), []
+        for _ in range(min(count, len(left))):
+            # The first ten (axes: six) are on every gamepad.
+            common = 10 if left[0].kind == "button" else 6
+            weights = [
+                _ASKED if control.target in self._asked else _COMMON if index < common else _RARE
+                for index, control in enumerate(left)
+            ]
+            (chosen,) = self._rng.choices(range(len(left)), weights)
+            found.append(left.pop(chosen))
+        return found
 
     def _set(self, control: Input, value: float, found: dict[str, Value]) -> None:
         released = _RELEASED[control.kind]
@@ -156,15 +186,3 @@ class JoystickGenerator:
             del self._held[control]
         else:
             self._held[control] = value
-
-
-def _some(rng: random.Random, controls: Sequence[Input], count: int) -> list[Input]:
-    """Return this many different controls. Low numbers are more likely: gamepads have those, and robots read them."""
-    left, found = list(controls), []
-    for _ in range(min(count, len(left))):
-        # The first ten (axes: six) are on every gamepad.
-        common = 10 if left[0].kind == "button" else 6
-        weights = [8 if index < common else 1 for index in range(len(left))]
-        (chosen,) = rng.choices(range(len(left)), weights)
-        found.append(left.pop(chosen))
-    return found

@@ -24,6 +24,7 @@ from ..runtime.robot import RobotRun
 from ..runtime.scripts.player import Player
 from ..runtime.scripts.script import InputScript, ScriptError
 from ..runtime.seeds import seed_generators
+from .asked_controls import watch_controls
 from .failure import FuzzFailure, failure_of
 from .fuzz_run import FuzzRun
 from .goals import Goal
@@ -180,6 +181,7 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
             network_reads=closing.enter_context(watch_network_reads(project.files)),
             constants=robot_constants(project),
             base=task.schedule.base,
+            asked_controls=closing.enter_context(watch_controls()).targets,
         )
         generator.left_out = task.schedule.left_out_at(0)
         fuzz_run = FuzzRun(run, generator, closing.enter_context(task.journal.open("wb", 0)) if task.journal else None)

@@ -11,6 +11,7 @@ import random
 from pathlib import Path
 from typing import Any
 
+from ..fuzz.asked_controls import watch_controls
 from ..fuzz.fuzz_run import FuzzRun
 from ..fuzz.input_generator import InputGenerator
 from ..fuzz.lines import RobotLines
@@ -37,7 +38,7 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
     """Run through a whole match with random inputs."""
     __tracebackhide__ = True
     clock, project, seed = fake_time.run.clock, control.project or find_project(), control.seed
-    with watch_network_reads(project.files) as reads:
+    with watch_network_reads(project.files) as reads, watch_controls() as asked:
         generator = InputGenerator(
             random.Random(f"fuzz {seed}"),  # not the generator that the robot's code uses
             fake_time.run,
@@ -46,6 +47,7 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
             game_messages=project.game_specific_messages,
             network_reads=reads,
             constants=find_constants(RobotLines(project.files).functions),
+            asked_controls=asked.targets,
         )
         fuzz_run = FuzzRun(fake_time.run, generator)
         fuzz_run.write()

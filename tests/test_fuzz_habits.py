@@ -1,0 +1,118 @@
+"""Drivers' habits in fuzzed matches: they press what the robot asks for, hold, tap twice, and press together."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import pytest
+import wpilib
+from wpilib.event import EventLoop
+
+from pyfrc_core.fuzz.asked_controls import watch_controls
+from pyfrc_core.fuzz.inputs import Input
+from pyfrc_core.fuzz.joystick_generator import JoystickGenerator
+from pyfrc_core.fuzz.values import Value
+from pyfrc_core.runtime.clock import PACKET_US
+
+ASKED = ("joysticks[0].buttons[3]", "joysticks[0].buttons[9]", "joysticks[1].buttons[2]", "joysticks[0].axes[5]")
+
+
+def controls() -> Iterator[Input]:
+    for port in (0, 1):
+        device = f"joysticks[{port}]"
+        yield from (Input(f"{device}.axes[{axis}]", "axis", device) for axis in range(6))
+        yield from (Input(f"{device}.buttons[{button}]", "button", device) for button in range(1, 11))
+        yield Input(f"{device}.povs[0]", "pov", device)
+
+
+def matches(seed: int, asked: tuple[str, ...] = ASKED) -> list[tuple[float, dict[str, Value]]]:
+    """The writes of the drivers in ten minutes: the time in seconds, and the values."""
+    generator = JoystickGenerator(random.Random(seed), asked)
+    generator.set_controls(controls(), [0, 1])
+    found = []
+    for now_us in range(0, 600_000_000, PACKET_US):
+        if now_us >= generator.next_us:
+            writes: dict[str, Value] = {}
+            generator.write(now_us, writes)
+            found.append((now_us / 1e6, writes))
+    return found
+
+
+def presses(button: str, seed: int = 1) -> list[tuple[float, float]]:
+    """When a button is pressed, and when it is let go."""
+    changes = [(at, writes[button]) for at, writes in matches(seed) if button in writes]
+    return [(start, end) for (start, pressed), (end, _) in pairwise(changes) if pressed]
+
+
+def test_controls_that_the_robot_asks_for_are_used_most() -> None:
+    pressed = [target for _, writes in matches(1) for target, value in writes.items() if ".buttons" in target and value]
+    assert sum(target in ASKED for target in pressed) > 0.4 * len(pressed)
+    assert {f"joysticks[0].buttons[{number}]" for number in range(1, 11)} < set(pressed)
+
+
+def test_buttons_are_held_for_seconds() -> None:
+    held = [end - start for start, end in presses(ASKED[0])]
+    assert sum(seconds > 2 for seconds in held) > 10
+    assert any(seconds > 4 for seconds in held)
+
+
+def test_buttons_are_tapped_twice() -> None:
+    gaps = [after - before for (before, _), (after, _) in pairwise(presses(ASKED[0]))]
+    assert sum(gap < 0.3 for gap in gaps) > 20
+
+
+def test_both_drivers_press_at_the_same_time() -> None:
+    both = sum(writes.get(ASKED[1]) is True and writes.get(ASKED[2]) is True for _, writes in matches(1))
+    assert both > 5
+
+
+@pytest.mark.parametrize(
+    ("joystick", "call", "target"),
+    [
+        (wpilib.XboxController, lambda stick: stick.getLeftBumper(), "buttons[5]"),
+        (wpilib.XboxController, lambda stick: stick.getAButtonPressed(), "buttons[1]"),
+        (wpilib.XboxController, lambda stick: stick.getLeftTriggerAxis(), "axes[2]"),
+        (wpilib.XboxController, lambda stick: stick.rightTrigger(EventLoop()), "axes[3]"),
+        (wpilib.XboxController, lambda stick: stick.start(EventLoop()), "buttons[8]"),
+        (wpilib.XboxController, lambda stick: stick.getRawAxis(axis=4), "axes[4]"),
+        (wpilib.XboxController, lambda stick: stick.getPOV(), "povs[0]"),
+        (wpilib.XboxController, lambda stick: stick.POVUp(EventLoop()), "povs[0]"),
+        (wpilib.PS4Controller, lambda stick: stick.getL2Axis(), "axes[3]"),
+        (wpilib.PS4Controller, lambda stick: stick.getL2Button(), "buttons[7]"),
+        (wpilib.StadiaController, lambda stick: stick.getLeftTriggerButton(), "buttons[13]"),
+        (wpilib.Joystick, lambda stick: stick.getTrigger(), "buttons[1]"),
+        (wpilib.Joystick, lambda stick: stick.getTopPressed(), "buttons[2]"),
+        (wpilib.Joystick, lambda stick: stick.getTwist(), "axes[2]"),
+        (wpilib.Joystick, lambda stick: stick.getRawButtonReleased(7), "buttons[7]"),
+        (wpilib.Joystick, lambda stick: wpilib.DriverStation.getStickButton(2, 6), "buttons[6]"),
+    ],
+)
+def test_what_counts_as_asking(joystick: Any, call: Any, target: str) -> None:
+    with watch_controls() as asked:
+        call(joystick(2))
+    assert list(asked.targets) == [f"joysticks[2].{target}"]
+    call(joystick(1))
+    assert len(asked.targets) == 1
+
+
+CHORD = """
+    import wpilib
+    import commands2
+    from commands2.button import CommandXboxController
+
+    class MyRobot(commands2.TimedCommandRobot):
+        def robotInit(self):
+            self.driver, self.operator = CommandXboxController(0), CommandXboxController(1)
+            (self.driver.leftBumper() & self.driver.back() & self.operator.y()).onTrue(
+                commands2.cmd.runOnce(lambda: 1 / 0)
+            )
+    """
+
+
+def test_a_chord_of_triggers_by_both_drivers_is_found(make_project: Any) -> None:
+    project = make_project({"robot.py": CHORD, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 8.0\n"})
+    result = project.run("fuzz", "--seed", "1", "--runs", "32")
+    assert f"{project.place('robot.py', '1 / 0')}: ZeroDivisionError" in result.stdout, result.output
