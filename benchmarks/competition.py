@@ -1,10 +1,12 @@
 """What pyfrc adds to a competition robot's own processor time in a practice match.
 
-    python benchmarks/competition.py [ROBOT]... [--rounds N]
+    python benchmarks/competition.py [ROBOT]... [--rounds N] [--todays]
 
 For each robot in tests/robots/competition: its code in a bare loop (bare_loop.py), and `pyfrc test` with the ready-made
-practice match of the same length, without and with `--trace` and `--record`. Processor time of all processes of a
-command, medians. It needs a POSIX system, an environment with pyfrc's development requirements, and an idle machine.
+practice match of the same length, without and with `--trace` and `--record`. With `--todays` also a test of the same
+length, in turn with us and with the pyfrc of the 2026 season (installed beside, with the vendors' packages), both
+without physics.py, since two robots' physics use what only ours has. Processor time of all processes of a command,
+medians. It needs a POSIX system, an environment with pyfrc's development requirements, and an idle machine.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+from comparison import TODAYS, Environment
 from competition_robots import NAMES, copy_robot
 
 HERE = Path(__file__).resolve().parent
@@ -27,6 +30,20 @@ MATCH = "\n[tool.pyfrc.match]\nbefore = 1\nautonomous = 15\npause = 3\nteleop = 
 #: The targets: of the bare loop and one import, and of the run without a trace.
 MOST, MOST_TRACED = 1.15, 1.2
 SECONDS = 154
+#: The same length in a test that both sides can run.
+BOTH = """\
+def test_match(control, robot):
+    with control.run_robot():
+        control.step_timing(seconds=1, autonomous=False, enabled=False)
+        control.step_timing(seconds=15, autonomous=True, enabled=True)
+        control.step_timing(seconds=3, autonomous=False, enabled=False)
+        control.step_timing(seconds=135, autonomous=False, enabled=True)
+"""
+VENDORS = (
+    *("phoenix6", "photonlibpy", "robotpy-commands-v2", "robotpy-navx", "robotpy-pathplannerlib", "robotpy-rev"),
+    *("robotpy-urcl", "robotpy-wpilib-utilities"),
+)
+CACHE = HERE / ".cache"
 
 
 def main() -> None:
@@ -34,9 +51,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("robots", nargs="*", metavar="ROBOT", help=f"default: {', '.join(NAMES)}")
     parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--todays", action="store_true", help="compare with the pyfrc of the 2026 season, too")
     options = parser.parse_args()
     if unknown := set(options.robots) - set(NAMES):
         parser.error(f"no such robot: {', '.join(sorted(unknown))}")
+    todays = provide_todays() if options.todays else None
     print(f"CPU seconds for a match of {SECONDS} s, medians of {options.rounds} rounds")
     print(f"{'robot':14}{'bare loop':>10}{'import':>8}{'pyfrc test':>12}{'ratio':>8}{'--trace':>9}{'--record':>10}")
     for name in options.robots or NAMES:
@@ -46,6 +65,10 @@ def main() -> None:
             (project / "tests").mkdir()
             (project / "tests" / "practice_test.py").write_text("from pyfrc.tests import test_practice\n")
             print_row(name, project, options.rounds)
+            if todays is not None:
+                (project / "physics.py").unlink()
+                (project / "tests" / "practice_test.py").write_text(BOTH)
+                print_todays(project, todays, options.rounds)
 
 
 def print_row(name: str, project: Path, rounds: int) -> None:
@@ -63,6 +86,23 @@ def print_row(name: str, project: Path, rounds: int) -> None:
     verdict = "met" if ratio <= MOST and max(trace, record) <= MOST_TRACED * ours else "MISSED"
     figures = f"{loop:10.2f}{imports:8.2f}{ours:12.2f}{ratio:8.2f}{trace / ours:9.2f}{record / ours:10.2f}"
     print(f"{name:14}{figures}  {verdict}", flush=True)
+
+
+def provide_todays() -> Environment:
+    """Install the pyfrc of the 2026 season and the vendors' packages, beside."""
+    CACHE.mkdir(exist_ok=True)
+    (CACHE / ".gitignore").write_text("*\n")
+    todays = Environment(CACHE, "todays-vendors")
+    todays.provide(*TODAYS, *VENDORS)
+    return todays
+
+
+def print_todays(project: Path, todays: Environment, rounds: int) -> None:
+    """Compare with today's tool, in turn."""
+    command = [todays.python, "-m", "robotpy", "test"]
+    pairs = [(test(project), cpu_seconds(lambda: run(command, project))) for _ in range(rounds)]
+    ours, others = (statistics.median(side) for side in zip(*pairs, strict=True))
+    print(f"{'':14}without physics: pyfrc test {ours:.2f}, today's {others:.2f}, ratio {ours / others:.2f}", flush=True)
 
 
 def bare_loop(project: Path) -> dict[str, float]:
