@@ -72,7 +72,7 @@ def test_a_log_is_flushed_in_robot_time_at_most_once_a_packet(
     monkeypatch.setattr(timeline.clock, "every", lambda period, rank, action: periods.append((period, rank)))
     for period in (0.25, 0.001, 0.0200001, 1.0):
         logs.open("", "log", period)
-    assert periods == [(250_000, 5), (20_000, 5), (20_000, 5), (1_000_000, 5)]
+    assert periods == [(250_000, 6), (20_000, 6), (20_000, 6), (1_000_000, 6)]
     logs.close()
 
 

@@ -80,7 +80,7 @@ def test_an_error_is_told_by_the_users_line(import_text: Import, files: RobotFil
     leave_out_pyfrc(error, files)
     elsewhere = raised_by(lambda: {}["key"])
     assert headline(elsewhere, files) is None
-    assert str(as_robot_code_error(elsewhere, files)) == "KeyError: 'key'"
+    assert str(as_robot_code_error(elsewhere, files)).startswith("KeyError: 'key' (in ")
     named = UsageError("wrong", where="robot.py:7")
     assert headline(named, files) == "robot.py:7: wrong"
     assert as_robot_code_error(named, files) is named
