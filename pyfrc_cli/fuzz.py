@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from pathlib import Path
@@ -15,7 +16,8 @@ from .project_options import chosen_project, project_options
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
-    from pyfrc_core.fuzz.campaign import CampaignProgress, FuzzFinding
+    from pyfrc_core.fuzz.campaign import CampaignOptions, CampaignProgress, FuzzFinding
+    from pyfrc_core.project import Project
 
 _DEFAULT_SECONDS = 60.0
 
@@ -56,6 +58,12 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     type=click.Path(path_type=Path),
     help="Begin with a recorded match: a WPILib data log (.wpilog) or an input script. May be repeated.",
 )
+@click.option(
+    "--against",
+    "revision",
+    metavar="REV",
+    help="Give the same inputs to the code of this git commit, and say where outputs first differ.",
+)
 def command(
     directory: Path | None,
     main: Path | None,
@@ -65,6 +73,7 @@ def command(
     seed: int,
     jobs: int | None,
     recorded: tuple[Path, ...],
+    revision: str | None,
 ) -> None:
     """Play many matches with random inputs, and save the shortest script of each failure.
 
@@ -88,6 +97,8 @@ def command(
     printer = _ProgressPrinter(verbosity().quiet)
     scripts = tuple(load_inputs(file) for file in recorded)
     options = CampaignOptions(seed, runs, seconds, jobs or usable_processors(), scripts)
+    if revision is not None:
+        sys.exit(_compare(project, revision, options))
     campaign = run_campaign(project, options, printer)
     printer.end(campaign.progress)
     if campaign.real_time:
@@ -99,6 +110,27 @@ def command(
     if not campaign.findings:
         hint("Nothing was found.")
     sys.exit(1 if campaign.findings else 2 if campaign.interrupted else 0)
+
+
+def _compare(project: Project, revision: str, options: CampaignOptions) -> int:
+    """Print whether the robot does the same as with another commit; return the exit code."""
+    from pyfrc_core.fuzz.against import compare
+
+    try:
+        compared = compare(project, revision, options)
+    except KeyboardInterrupt:
+        click.echo("interrupted")
+        return 2
+    matches = f"{counted(compared.matches, 'match', 'matches')}, {compared.seconds / 3600:.2f} h of robot time"
+    if compared.file is None:
+        hint(f"{matches}: the outputs are those of {compared.revision}")
+        return 0
+    click.secho(f"The outputs differ from those of {compared.revision}, first", fg="red")
+    for line in (*compared.story, compared.difference):
+        click.echo(f"  {line}")
+    click.echo(f"  pyfrc replay {os.path.relpath(compared.file)}")
+    hint(matches)
+    return 1
 
 
 class _ProgressPrinter:

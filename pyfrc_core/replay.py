@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
-from typing import Any
 
 from .errors import PyfrcError, RobotCodeError
 from .invariants.load import load_invariants
@@ -32,23 +29,7 @@ from .runtime.scripts.inputs_file import load_inputs
 from .runtime.scripts.player import Player
 from .runtime.scripts.script import InputScript, trace_beside
 from .runtime.seeds import seed_generators
-from .runtime.trace import repeatable_part
-
-
-@dataclass(frozen=True)
-class Difference:
-    """The first difference between two traces.
-
-    :param now: robot time, in seconds
-    :param path: the path in `hal_data`
-    :param recorded: the recorded value; None when there is none, or it did not change
-    :param replayed: the value in the replay
-    """
-
-    now: float
-    path: str
-    recorded: Any
-    replayed: Any
+from .runtime.trace_difference import Difference, first_difference
 
 
 @dataclass(frozen=True)
@@ -111,7 +92,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
                 with _collected(failures, project):
                     run.close()
         beside = trace_beside(file)
-        difference = _first_difference(beside, written, run_us=until_us) if beside.is_file() else None
+        difference = first_difference(beside, written, run_us=until_us) if beside.is_file() else None
     whole = until_us is None or until_us >= script.end_us
     equal = script.trace == recorder.digest() if script.trace and whole else None
     return ReplayResult(seconds, failures[0] if failures else None, recorder.digest(), equal, difference, real_time)
@@ -152,28 +133,3 @@ def _process_failure(project: Project, script: InputScript) -> str | None:
     with open_match_executor(project, jobs=1) as executor:
         failure = executor.replay(script).failure
     return failure.text if failure is not None and failure.kind == PROCESS_ENDED else None
-
-
-def _first_difference(recorded: Path, replayed: Path, run_us: int | None) -> Difference | None:
-    for old, new in zip_longest(_changes(recorded), _changes(replayed)):
-        if old == new:
-            continue
-        moments = [change["t"] for change in (old, new) if change is not None]
-        now = min(moments)
-        if run_us is not None and to_us(now) >= run_us:
-            return None
-        before = old.get("set", {}) if old is not None and old["t"] == now else {}
-        after = new.get("set", {}) if new is not None and new["t"] == now else {}
-        for path in sorted({*before, *after}):
-            if before.get(path) != after.get(path) or (path in before) != (path in after):
-                return Difference(now, path, before.get(path), after.get(path))
-        return Difference(now, "what there is", (old or {}).get("gone"), (new or {}).get("gone"))
-    return None
-
-
-def _changes(trace: Path) -> Iterator[dict[str, Any]]:
-    with trace.open(encoding="utf-8") as lines:
-        for line in lines:
-            change = json.loads(line)
-            if "t" in change and (repeats := repeatable_part(change)) is not None:
-                yield repeats

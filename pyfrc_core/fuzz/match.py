@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -21,6 +21,7 @@ from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.patches import patches
 from ..runtime.robot import RobotRun
+from ..runtime.scripts.files import traced
 from ..runtime.scripts.player import Player
 from ..runtime.scripts.script import InputScript, ScriptError
 from ..runtime.seeds import seed_generators
@@ -68,12 +69,14 @@ class ReplayTask:
     :param use_oracle: whether misbehavior without an exception is a failure
     :param ends_with: misbehavior that ends the run; other misbehavior is noted
     :param hang_seconds: processor seconds without progress that count as a hang; None: those of the project's settings
+    :param trace: where to write a trace
     """
 
     script: InputScript
     use_oracle: bool = True
     ends_with: FuzzFailure | None = None
     hang_seconds: float | None = None
+    trace: Path | None = None
 
 
 Task = FuzzTask | ReplayTask
@@ -223,7 +226,7 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
 def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:
     script = task.script
     robot = _robot(project, log, script.seed, task.use_oracle, task.ends_with, task.hang_seconds)
-    with robot as (run, notes):
+    with robot as (run, notes), traced(run, task.trace) if task.trace else nullcontext():
         failure = None
         try:
             construct(project, run, load(project))
