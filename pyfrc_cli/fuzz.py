@@ -81,8 +81,8 @@ def command(
     is repaired.
 
     \b
-    Exit codes: 0 nothing was found; 1 a failure was found, or an earlier one is still there; 2 wrong usage, no such
-    project, or interrupted before anything was found.
+    Exit codes: 0 nothing was found; 1 a failure was found, or an earlier one is still there, or the outputs differ from
+    those of --against; 2 wrong usage, no such project or commit, or interrupted before anything was found.
     """
     if seconds is not None and runs is not None:
         raise click.UsageError("--time and --runs are mutually exclusive.")
