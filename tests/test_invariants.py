@@ -184,7 +184,14 @@ def test_a_file_that_is_wrong_is_named_by_each_command(mistake: str, project) ->
     for command in ("fuzz", "--runs", "1"), ("replay", "script.jsonl"), ("test",):
         result = project.run(*command)
         assert result.code != 0
-        assert message in result.output, result.output
+        assert result.output.count(message) == 1, result.output
+
+
+def test_a_rule_that_hangs_is_named(project) -> None:
+    settings = SETTINGS.replace("match_seconds = 10", "match_seconds = 2\n    hang_seconds = 0.2")
+    project.write({RULES: rule("while True: pass"), "pyproject.toml": settings})
+    result = project.run("fuzz", "--runs", "1")
+    assert f"{RULES}:3: it_holds() hangs" in result.output, result.output
 
 
 #: Errors of a rule while the robot runs: its body, and what is said of it.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import CodeType, FrameType, TracebackType
 
@@ -75,9 +76,10 @@ def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
         return FuzzFailure(error.kind, error.place, error.function, _ADDRESS.sub("", str(error)))
     if isinstance(error, LoopWaitsError):  # the line that waits varies
         return FuzzFailure(WAITS, error.begins_at, error.function, str(error))
-    code, line = _innermost(error.__traceback__, files)
+    code, line = _innermost(error.__traceback__, files.is_robot_code)
     text = _ADDRESS.sub("", headline(error, files) or with_library_calls(text_of(error), error, files))
     if isinstance(error, TestFroze):
+        code = code or _innermost(error.__traceback__, files.is_project_file)[0]  # a rule
         place, function = _place(code, files), code.co_name if code else ""
         return FuzzFailure(HANGS, place, function, f"{place}: {function}() hangs" if place else "the robot code hangs")
     place = f"{files.relative(code.co_filename)}:{line}" if code else ""
@@ -99,10 +101,10 @@ def place_of(frame: FrameType | None, files: RobotFiles) -> tuple[str, str]:
     return f"{files.relative(frame.f_code.co_filename)}:{frame.f_lineno}", frame.f_code.co_name
 
 
-def _innermost(traceback: TracebackType | None, files: RobotFiles) -> tuple[CodeType | None, int]:
+def _innermost(traceback: TracebackType | None, is_ours: Callable[[str], bool]) -> tuple[CodeType | None, int]:
     code, line = None, 0
     while traceback is not None:
-        if files.is_robot_code(traceback.tb_frame.f_code.co_filename):
+        if is_ours(traceback.tb_frame.f_code.co_filename):
             code, line = traceback.tb_frame.f_code, traceback.tb_lineno
         traceback = traceback.tb_next
     return code, line

@@ -231,6 +231,16 @@ class PyFrcPlugin:
         except PyfrcError as wrong:
             raise pytest.Collector.CollectError(str(wrong)) from None
 
+    @pytest.hookimpl(trylast=True)
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        """Import the rules; a mistake in them is reported once, and not by every test."""
+        if self._robot_class is None or session.testsfailed:
+            return
+        try:
+            self.invariants  # noqa: B018
+        except PyfrcError as wrong:
+            raise pytest.UsageError(str(wrong)) from None
+
     def pytest_sessionstart(self) -> None:
         self._former_logs = self._data_logs()
 
