@@ -148,6 +148,9 @@ FAULTY = """
             self.motor = wpilib.PWMSparkMax(0)
             self.switch = wpilib.DigitalInput(0)
 
+        def disabledInit(self):
+            self.motor.set(0)
+
         def autonomousPeriodic(self):
             {}
     """
