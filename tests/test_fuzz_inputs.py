@@ -10,6 +10,7 @@ import ntcore
 import pytest
 
 from pyfrc_core.errors import UsageError
+from pyfrc_core.fuzz.field_data import FieldData
 from pyfrc_core.fuzz.network_reads import NetworkRead
 from pyfrc_core.fuzz.network_values import NetworkValues
 from pyfrc_core.fuzz.robot_constants import UNKNOWN, RobotConstants, find_constants
@@ -78,6 +79,24 @@ KINDS = {
         "SmartDashboard.putString('side', 'none')",
         "if SmartDashboard.getString('side', 'none') == 'left': raise ValueError",
     ),
+    "a distance beside constants": (
+        "self.lift = wpilib.Encoder(0, 1); self.lift.setDistancePerPulse(0.005)",
+        "if 10.0 <= self.lift.getDistance() <= 10.05: raise ValueError",
+    ),
+    "an absolute encoder that begins again": (
+        "self.absolute, self.last = wpilib.DutyCycleEncoder(0), 0.5",
+        "now = self.absolute.get(); 1 / (not self.last > 0.97 > 0.03 > now); self.last = now",
+    ),
+    "the controller's temperature": ("pass", "if RobotController.getCPUTemp() > 80: raise ValueError"),
+    "a brown-out": ("pass", "if RobotController.isBrownedOut(): raise ValueError"),
+    "the controller's comment": (
+        "self.is_practice = RobotController.getComments() == 'practice'",
+        "if self.is_practice: raise ValueError",
+    ),
+    "time that is not counted": ("pass", "if DriverStation.getMatchTime() < 0: raise ValueError"),
+    "an event's name": ("pass", "if 'casj' in DriverStation.getEventName(): raise ValueError"),
+    "a joystick with few axes": ("pass", "if 0 < self.pad.getAxisCount() < 5: raise ValueError"),
+    "a button that most joysticks lack": ("pass", "if self.pad.getRawButton(14): raise ValueError"),
 }
 
 
@@ -162,6 +181,19 @@ def test_values_of_entries_become_simpler() -> None:
     assert list(simpler("entry", 3.141))[:2] == [0.0, 1.0]
     assert next(iter(simpler("entry", (1.5, 2.25)))) == ()
     assert list(simpler("entry", True)) == []
+
+
+def test_what_the_field_says() -> None:
+    found = [FieldData(random.Random(seed)) for seed in range(300)]
+    late = [each.later[0] for each in found if each.at_start["alliance_station"] == "unknown" and each.later]
+    assert min(late) < 0.5
+    assert max(late) > 10
+    assert {each.at_start.get("event.name") for each in found} >= {None, "", "CASJ"}
+    assert {each.at_start.get("event.match_type") for each in found} == {
+        None, "practice", "qualification", "elimination"
+    }  # fmt: skip
+    assert any(not each.counts for each in found)
+    assert all(each.counts for each in found if "control.fmsAttached" in each.at_start)
 
 
 # -- constants ---------------------------------------------------------------------------------------------------------

@@ -17,6 +17,7 @@ from .dashboard_generator import DashboardGenerator, find_dashboard
 from .gamepads import find_gamepads
 from .inputs import Input, SensorFinder, find_controls
 from .joystick_generator import JoystickGenerator
+from .joystick_models import choose_models
 from .match_plan import plan_match
 from .network_reads import NetworkRead, NetworkReads
 from .robot_constants import UNKNOWN, RobotConstants
@@ -36,6 +37,9 @@ _CHECK_EVERY_US = 5 * PACKET_US
 
 #: How long a robot with a simulation is enabled before its sensors are written: the simulation drives some of them.
 _DRIVEN_US = 5 * _SECOND_US
+
+#: What tells a team's robots from each other, by the function with which code asks for it, and its maximum length.
+_DESCRIBED = {"getComments": ("roborio.comments", 64), "getSerialNumber": ("roborio.serial_number", 8)}
 
 _PLUGGED = re.compile(r"joysticks\[(\d)\]\.plugged")
 
@@ -80,9 +84,11 @@ class InputGenerator:
         #: Inputs are generated from this time on.
         self._from_us = base.until_us if base else 0
         self._planned = 0
-        self._sticks = JoystickGenerator(rng, asked_controls)
-        self._sensors = SensorGenerator(rng, self._hal_data)
-        self._sensor_finder = SensorFinder(self._hal_data)
+        self._constants = constants
+        self._models = {} if base else choose_models(rng)
+        self._sticks = JoystickGenerator(rng, asked_controls, constants)
+        self._sensors = SensorGenerator(rng, self._hal_data, constants)
+        self._sensor_finder = SensorFinder(self._hal_data, constants)
         self._dashboard = DashboardGenerator(rng, network_reads, constants)
         #: Applies writes at once, while the robot starts. Set by the match.
         self.write_at_once: Callable[[Mapping[str, Value]], None] | None = None
@@ -117,6 +123,12 @@ class InputGenerator:
             self._apply_event(now_us, without(self.left_out, self._plan[self._planned].writes), found)
             self._planned += 1
         if now_us == 0:  # the robot has not been started
+            for port, model in self._models.items():
+                found |= without(self.left_out, model.writes(port))
+            for function, (target, longest) in () if self._from_us else _DESCRIBED.items():
+                texts = [text for text in self._constants.texts if len(text) <= longest]
+                if self._constants.asks(function) and texts and self._rng.random() < 0.5:
+                    found[target] = self._rng.choice(texts)
             return found
         if now_us >= self._find_us:
             self._find_inputs(now_us)
@@ -143,7 +155,10 @@ class InputGenerator:
             elif target == "control.dsAttached":
                 self._attached = bool(value)
             elif (stick := _PLUGGED.fullmatch(target)) is not None:
-                (self._sticks.plug_in if value else self._sticks.unplug)(int(stick[1]))
+                port = int(stick[1])
+                (self._sticks.plug_in if value else self._sticks.unplug)(port)
+                if value and port in self._models:
+                    found |= without(self.left_out, self._models[port].writes(port))
 
     def _enter(self, mode: str, now_us: int) -> None:
         if self._enabled_since_us is not None:

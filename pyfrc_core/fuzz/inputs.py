@@ -17,6 +17,7 @@ from ..hal import HalData, format_path
 from ..hal.devices import KINDS
 from ..hal.sim_device_list import Signature
 from .gamepads import TRIGGERS
+from .robot_constants import UNKNOWN, RobotConstants
 from .values import InputKind
 
 
@@ -68,7 +69,32 @@ _MODULES: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "pdp": (("voltage", "battery"), *((f"current[{channel}]", "amperes") for channel in range(24))),
 }
 
-#: Patterns for the names of a SimDevice's numeric values; the first match counts.
+_RAILS: tuple[tuple[str, str, InputKind], ...] = (
+    ("getVoltage", "voltage", "rail"),
+    ("getCurrent", "current", "amperes"),
+    ("getEnabled", "active", "switch"),
+    ("getFaultCount", "faults", "whole"),
+)
+#: What the robot's controller measures, by the function with which code asks for it: only then it is varied.
+_ASKED: dict[str, tuple[str, InputKind]] = {
+    "getCPUTemp": ("roborio.cpu_temp", "celsius"),
+    "getInputCurrent": ("power.vin_current", "amperes"),
+    **{
+        function + rail: (f"power.user_{value}_{rail.lower()}", kind)
+        for rail in ("3V3", "5V", "6V")
+        for function, value, kind in _RAILS
+    },
+}
+
+#: Patterns for a SimDevice and its numeric value, as ``device/value``; the first match counts.
+_OF_DEVICES: tuple[tuple[str, InputKind], ...] = (
+    (r"^SPARK.*(?<!ABSOLUTE ENCODER)(?<!ANALOG SENSOR)/Position$", "rotations"),
+    (r"^SPARK.*/Velocity$", "rpm"),
+    (r"(CANcoder|Talon FX).*/rawPosition", "rotations"),
+    (r"Pigeon.*/rawYaw", "angle"),
+    (r"Pigeon.*/angularVel", "turning"),
+)
+#: Patterns for the names of other numeric values; the first match counts.
 _NAMED: tuple[tuple[str, InputKind], ...] = (
     (r"rate|velocity", "turning"),
     (r"yaw|pitch|roll", "half turns"),
@@ -84,8 +110,9 @@ _NAMED: tuple[tuple[str, InputKind], ...] = (
 class SensorFinder:
     """Finds what the robot's sensors measure; searches again only after a device was created or removed."""
 
-    def __init__(self, hal_data: HalData) -> None:
+    def __init__(self, hal_data: HalData, constants: RobotConstants = UNKNOWN) -> None:
         self._hal_data = hal_data
+        self._constants = constants
         self._seen: object = None
         self._found: list[Input] = []
 
@@ -94,7 +121,7 @@ class SensorFinder:
         there = self._devices()
         if there != self._seen:
             self._seen = there
-            self._found = sorted(find_sensors(self._hal_data))
+            self._found = sorted(find_sensors(self._hal_data, self._constants))
         return self._found
 
     def _devices(self) -> _Devices:
@@ -133,8 +160,14 @@ def _used() -> tuple[tuple[str, int], ...]:
     return tuple([channel for channel, exists in _channels() if exists()])
 
 
-def find_sensors(hal_data: HalData) -> Iterator[Input]:
-    """Return what the robot's sensors measure; outputs of SimDevices are left out."""
+def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN) -> Iterator[Input]:
+    """Return what the robot's sensors measure; outputs of SimDevices are left out.
+
+    :param constants: tells what the robot's code asks its controller for
+    """
+    for function, (target, kind) in _ASKED.items():
+        if constants.asks(function):
+            yield Input(target, kind, target)
     channels = _used()
     yield Input("power.vin_voltage", "battery", "power")
     yield Input("fpga_button", "switch", "fpga_button")
@@ -148,6 +181,8 @@ def find_sensors(hal_data: HalData) -> Iterator[Input]:
                 yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
     for key, values in _MODULES.items():
         for number in hal_data[key]:
+            if key == "pdp" and constants.asks("getTemperature"):
+                yield Input(f"pdp[{number}].temperature", "celsius", f"pdp[{number}]")
             for value, kind in values:
                 yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
     for name in hal_data["CAN"]:
@@ -160,6 +195,13 @@ def _wired(hal_data: HalData, channels: Iterable[tuple[str, int]]) -> set[tuple[
     return {("dio", wire) for config in encoders for wire in config.values()} | {
         ("analog_in", number) for key, number in channels if key == "analog_gyro"
     }
+
+
+def _kind_of_number(device: str, value: str) -> InputKind:
+    for pattern, kind in _OF_DEVICES:
+        if re.search(pattern, f"{device}/{value}"):
+            return kind
+    return next((kind for pattern, kind in _NAMED if re.search(pattern, value, re.IGNORECASE)), "turns")
 
 
 def _of_sim_device(name: str) -> Iterator[Input]:
@@ -175,7 +217,7 @@ def _of_sim_device(name: str) -> Iterator[Input]:
         elif sort == "ENUM":
             kind, options = "option", tuple(SimDeviceSim.getEnumOptions(device.getEnum(value)))
         elif sort == "DOUBLE":
-            kind = next((kind for pattern, kind in _NAMED if re.search(pattern, value, re.IGNORECASE)), "turns")
+            kind = _kind_of_number(name, value)
         else:
             kind = "celsius" if re.search("temperature", value, re.IGNORECASE) else "whole"
         if kind == "battery" and name.endswith("ANALOG SENSOR"):

@@ -14,6 +14,7 @@ from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
 from .habits import Habit, draw_habit
 from .inputs import Input
+from .robot_constants import UNKNOWN, RobotConstants
 from .values import NOT_PRESSED, InputKind, Value, draw
 
 #: Packets come 50 times a second, and hands move no faster.
@@ -34,11 +35,13 @@ class JoystickGenerator:
     """Generates one match's joystick inputs.
 
     :param asked: the targets of the controls that the robot has asked for; they may become more
+    :param constants: the constants of the robot's code
     """
 
-    def __init__(self, rng: random.Random, asked: Container[str] = ()) -> None:
+    def __init__(self, rng: random.Random, asked: Container[str] = (), constants: RobotConstants = UNKNOWN) -> None:
         self._rng = rng
         self._asked = asked
+        self._constants = constants
         self.next_us = 0
         #: Ports without a joystick: writing to them would plug one in.
         self.unplugged: set[int] = set()
@@ -137,7 +140,7 @@ class JoystickGenerator:
         for button in self._some(buttons, rng.choice(habit.buttons)):
             self._set(button, True, found)
         for axis in self._some(axes, rng.choice(habit.axes)):
-            value = draw(axis.kind, rng)
+            value = draw(axis.kind, rng, constants=self._constants)
             how = rng.random()
             if how < 0.2:
                 self._moving[axis] = (now_us, self._held.get(axis, 0.0), value)

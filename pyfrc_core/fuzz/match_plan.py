@@ -10,9 +10,8 @@ from ..config.settings import MatchSettings
 from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING, plugged
+from .field_data import NOT_COUNTED, FieldData
 from .values import Value
-
-_STATIONS = ("red1", "red2", "red3", "blue1", "blue2", "blue3")
 
 #: The share of matches that are as long as a real one, and how much longer than the others these are at most.
 _WHOLE, _LONGER = 1 / 40, 6
@@ -108,9 +107,8 @@ class _Planner:
         self._messages = messages
         #: Whether the match time begins with the period's real length.
         self._real_times = rng.random() < 0.25
-        #: Whether there is no match time, as without a field when the driver station is not in practice mode.
-        self._untimed = False
         self._settings = settings
+        self._field = FieldData(rng)
         #: When the field sends the game message: before the match, with autonomous, with teleoperated (2020), or never.
         self._message_with = rng.choice(("at once", "autonomous", "autonomous", "autonomous", "teleop", "never"))
 
@@ -127,21 +125,11 @@ class _Planner:
 
     def before(self) -> None:
         """Add the state in which the robot starts."""
-        rng = self._rng
-        now: dict[str, Value] = {}
-        station = rng.choice(_STATIONS)
-        if rng.random() < 0.1:  # the robot is ready before its driver station
-            now |= {"control.dsAttached": False, "alliance_station": "unknown"}
-            self.add(rng.uniform(0.1, 0.5), {"control.dsAttached": True, "alliance_station": station})
-        else:
-            now["alliance_station"] = station
-        if rng.random() < 0.5:
-            now |= {"control.fmsAttached": True, "event.match_type": rng.choice(("qualification", "elimination"))}
-            now["event.match_number"] = rng.randint(1, 90)
-        else:
-            self._untimed = rng.random() < 0.3
-            if self._untimed:
-                now[REMAINING] = -1.0
+        now = dict(self._field.at_start)
+        if not self._field.counts:
+            now[REMAINING] = NOT_COUNTED
+        if self._field.later is not None:
+            self.add(*self._field.later)
         if self._message_with == "at once":
             now["event.game_specific_message"] = self._message()
         self.add(0, now)
@@ -150,7 +138,7 @@ class _Planner:
         """Add one period and its disturbances."""
         rng, enabled = self._rng, period.mode in _BEFORE
         now: dict[str, Value] = {MODE: period.mode}
-        if not self._untimed:
+        if self._field.counts:
             now[MATCH_TIME] = round(self._seconds_left(period), 3) if enabled else 0.0
         if period.mode == self._message_with:
             late = 0.0 if rng.random() < 0.7 else rng.uniform(0, period.seconds)
@@ -195,10 +183,14 @@ class _Planner:
         rng = self._rng
         known = rng.choice(self._messages) if self._messages else _sides(rng)
         sort = rng.random()
-        if sort < 0.8:
+        if sort < 0.75:
             return known
+        if sort < 0.8:
+            return known.lower()
         if sort < 0.9:
             return ""
+        if sort < 0.94 and not self._messages:
+            return known * rng.randint(2, 6)
         return "".join(rng.choice("LRXBGY?") for _ in known)
 
 

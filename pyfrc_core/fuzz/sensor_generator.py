@@ -11,6 +11,7 @@ from ..hal import HalData
 from ..hal.paths import Segment
 from ..runtime.clock import PACKET_US
 from .inputs import Input
+from .robot_constants import UNKNOWN, RobotConstants
 from .values import SPANS, Value, can_be, draw, nearest
 
 #: Interval of the updates while a value changes gradually.
@@ -22,6 +23,10 @@ _PAUSE, _SHORTEST_PAUSE = 1.0, 0.1
 #: Devices that change a quarter as often as the others.
 _SELDOM = ("power", "fpga_button", "pdp")
 
+#: Kinds that begin again at their end, and those that are 0 without their sensor.
+_WRAPS = ("half turns", "heading", "turns")
+_DROPS_OUT = ("volts", "turns", "range")
+
 #: Adds the next writes; returns when to call it again, or None when it is finished.
 _Change = Callable[[int, dict[str, Value]], "int | None"]
 
@@ -29,8 +34,9 @@ _Change = Callable[[int, dict[str, Value]], "int | None"]
 class SensorGenerator:
     """Generates one match's sensor values."""
 
-    def __init__(self, rng: random.Random, hal_data: HalData) -> None:
+    def __init__(self, rng: random.Random, hal_data: HalData, constants: RobotConstants = UNKNOWN) -> None:
         self._rng = rng
+        self._constants = constants
         self._hal_data = hal_data
         self.next_us = 0
         #: Devices that are not written.
@@ -125,15 +131,23 @@ class SensorGenerator:
             if rng.random() < 0.5:
                 return now_us + rng.choice((1, 1, 2, 5, 25)) * PACKET_US, _back(each, before)
             return None
-        value = draw(each.kind, rng, each.options)
+        if each.kind in _DROPS_OUT and rng.random() < 0.08:  # a wire is off
+            found[each.target] = 0.0
+            return now_us + rng.choice((1, 2, 5, 25, 50)) * PACKET_US, _back(each, before)
+        value = draw(each.kind, rng, each.options, constants=self._constants)
         if each.kind not in SPANS or SPANS[each.kind].whole or rng.random() < 0.6 or not can_be(each.kind, before):
             found[each.target] = value
             return None
         end_us = now_us + round(rng.uniform(0.3, 4) * 50) * PACKET_US
+        span = SPANS[each.kind]
+        around = span.high - span.low if each.kind in _WRAPS else 0.0
+        if around and rng.random() < 0.5:  # past the end, where the sensor begins again
+            value = before + rng.choice((-1, 1)) * rng.uniform(0.2, 1.5) * around
 
         def go(at_us: int, found: dict[str, Value]) -> int | None:
             done = min(1.0, (at_us - now_us) / (end_us - now_us))
-            found[each.target] = nearest(each.kind, before + (value - before) * done)
+            now = before + (value - before) * done
+            found[each.target] = nearest(each.kind, (now - span.low) % around + span.low if around else now)
             return at_us + _STEP_US if at_us < end_us else None
 
         return now_us + _STEP_US, go
@@ -144,8 +158,10 @@ class SensorGenerator:
         target, rate_target = f"{device}.count", f"{device}.rate"
         how = rng.random()
         if how < 0.25:  # turned by hand, or the belt has slipped
+            per_count = hal_data.read(f"{device}.distance_per_pulse")
+            near = self._constants.near(rng, -1e6, 1e6) if rng.random() < 0.5 and per_count else None
             jump = rng.choice((-1, 1)) * rng.choice((1, 10, 500, 20_000))
-            found[target] = nearest("count", hal_data.read(target) + jump)
+            found[target] = nearest("count", hal_data.read(target) + jump if near is None else near / per_count)
             return None
         speed = rng.choice((-1, 1)) * math.exp(rng.uniform(math.log(10), math.log(5000)))
         end_us = now_us + round(rng.uniform(0.1, 2) * 50) * PACKET_US

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
+from .robot_constants import UNKNOWN, RobotConstants
+
 #: The value of an input.
 Value: TypeAlias = bool | int | float | str | tuple[bool | int | float | str, ...]
 
@@ -32,10 +34,13 @@ InputKind = Literal[
     "heading",
     "turning",
     "turns",
+    "rotations",
+    "rpm",
     "acceleration",
     "amperes",
     "celsius",
     "hertz",
+    "rail",
     "range",
     "whole",
     "option",
@@ -79,6 +84,9 @@ SPANS: dict[InputKind, Span] = {
     "heading": Span(0, 360, (0.0, 90.0, 180.0, 270.0, 359.9)),
     "turning": Span(-720, 720, (0.0, 0.0, 1.0, -1.0)),
     "turns": Span(0, 1, (0.0, 0.0, 0.25, 0.5, 0.75, 0.999, 1.0)),
+    "rotations": Span(-1000, 1000, (0.0, 0.0, 1.0, -1.0, 10.0, 100.0, -100.0)),
+    "rpm": Span(-7000, 7000, (0.0, 0.0, 100.0, -100.0, 3000.0, 5676.0, -5676.0)),
+    "rail": Span(0, 7, (0.0, 3.3, 5.0, 6.0, 4.5)),
     "acceleration": Span(-2, 2, (0.0, 1.0, -1.0, 2.0, -2.0)),
     "amperes": Span(0, 120, (0.0, 2.0, 40.0, 120.0)),
     # Motor controllers and what protects motors act at 60 to 100 °C.
@@ -94,16 +102,44 @@ NOT_PRESSED = -1
 #: By what a user may multiply a number in a dashboard.
 _FACTORS = (0.5, 1.0, 2.0)
 
+#: How often a value is near one of the constants in the robot's code.
+_NEAR, _NEAR_ON_STICKS = 0.35, 0.15
+_STICKS = ("axis", "trigger")
+
+#: How sensors' values relate to the constants in code, which may be in other units: degrees, radians, turns, and the
+#: travel of a potentiometer.
+_UNSCALED = (1.0,)
+_DEGREES = (1.0, 1.0, 180 / math.pi, 360.0)
+_SCALES: dict[InputKind, tuple[float, ...]] = {
+    "angle": _DEGREES,
+    "half turns": _DEGREES,
+    "heading": _DEGREES,
+    "turning": _DEGREES,
+    "turns": (1.0, 1 / 360, 0.5 / math.pi),
+    "volts": (1.0, 1.0, 5 / 360, 5 / 270, 0.5 / math.pi * 5),
+}
+
 _DIGITS = 3
 
 
-def draw(kind: InputKind, rng: random.Random, options: tuple[str, ...] = (), now: float = 0) -> Any:
+def draw(
+    kind: InputKind,
+    rng: random.Random,
+    options: tuple[str, ...] = (),
+    now: float = 0,
+    constants: RobotConstants = UNKNOWN,
+) -> Any:
     """Return a random value of this kind.
 
     :param options: the possible values, for kinds with a few values only
     :param now: the input's current value
+    :param constants: the constants of the robot's code: values near them are more likely
     """
     span = SPANS.get(kind)
+    if span is not None and constants.numbers and rng.random() < (_NEAR_ON_STICKS if kind in _STICKS else _NEAR):
+        near = constants.near(rng, span.low, span.high, _SCALES.get(kind, _UNSCALED))
+        if near is not None:
+            return nearest(kind, near)
     if kind == "axis":
         return _axis(rng)
     if kind == "pov":

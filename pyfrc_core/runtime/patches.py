@@ -91,6 +91,7 @@ class Patches:
             *driver_station.patches(lambda: active_run.run),
             *self._timed_robot(),
             *self._directories(),
+            Patch(wpilib.RobotController, "isBrownedOut", _is_browned_out),
             *robot_stack.patches(lambda: self._files),
             *data_logs.patches(lambda: None if active_run.run is None else active_run.run.data_logs),
             *udp_ports.patches(),
@@ -271,6 +272,12 @@ class Patches:
             Patch(wpilib, "getOperatingDirectory", lambda: str(Path(self._files.root))),
             Patch(wpilib, "getDeployDirectory", lambda: str(Path(self._files.root, "deploy"))),
         ]
+
+
+def _is_browned_out() -> bool:
+    """Return whether the battery is too weak for the roboRIO's outputs: the simulated HAL always returns False."""
+    controller = wpilib.RobotController
+    return controller.getBatteryVoltage() < controller.getBrownoutVoltage()
 
 
 class _Instant(float):

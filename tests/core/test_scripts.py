@@ -352,3 +352,13 @@ def test_a_player_writes_when_it_is_due_and_stops_when_it_is_told(run: RobotRun)
     assert run.clock.now_us == 99_999
     assert math.isclose(wpilib.DriverStation.getMatchTime(), 10 - 0.06, abs_tol=1e-6)
     deliver_packet()
+
+
+def test_a_script_may_say_how_many_buttons_a_joystick_has() -> None:
+    targets, hal_data = Targets(HalData()), HalData()
+    targets.check("joysticks[0].buttons[14]")
+    targets.write("joysticks[0].button_count", 14, 0)
+    targets.write("joysticks[0].buttons[14]", True, 0)
+    assert hal_data["joysticks"][0]["buttons"][14]
+    with pytest.raises(LookupError):
+        targets.check("joysticks[0].buttons[33]")

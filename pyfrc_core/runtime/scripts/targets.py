@@ -19,6 +19,7 @@ import wpilib
 
 from ...errors import UsageError
 from ...hal import HalData, LiveDict, format_path, modes, parse_path
+from ...hal.driver_station import MAX_BUTTONS
 from ...hal.timing import deliver_packet
 from ..clock import to_us
 from .network_entries import NETWORK, NetworkEntries
@@ -32,6 +33,7 @@ REMAINING = "time.remaining"
 _COMES_WITH_THE_ROBOT = {"CAN", "robot", "custom", "pcm", "ph", "compressor", "pcm_compressor", "ph_compressor", "pdp"}
 
 _CONTROL = re.compile(r"joysticks\[\d+\]\.(?:axes|buttons|povs)\[\d+\]$")
+_BUTTON = re.compile(r"joysticks\[[0-5]\]\.buttons\[(\d+)\]")
 _PLUGGED = re.compile(r"joysticks\[([0-5])\]\.plugged")
 
 
@@ -110,6 +112,9 @@ class Targets:
         """
         if self._is_path(target):
             root = parse_path(target)[0]
+            button = _BUTTON.fullmatch(target)
+            if button is not None and int(button[1]) <= MAX_BUTTONS:
+                return  # the script may write how many buttons the joystick has
             if root not in _COMES_WITH_THE_ROBOT:
                 self._hal_data.read(target)
 
