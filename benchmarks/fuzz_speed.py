@@ -82,7 +82,7 @@ def measure(directory: Path, matches: int) -> tuple[float, float]:
     with open_match_executor(project, 1) as executor:
         before = cpu_seconds()
         for number in range(matches):
-            (played,) = executor.play([FuzzTask(SeedSchedule(((0, f"fuzz 1 {number}"),)), known)])
+            (played,) = executor.play([FuzzTask(SeedSchedule(((0, f"fuzz 1 {number}"),)), known, known)])
             known |= played.reached.keys()
             now = cpu_seconds()
             if played.failure is None:

@@ -39,10 +39,23 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     "--seed",
     type=click.IntRange(min=0),
     metavar="N",
-    default=0,
-    show_default=True,
-    help="Random seed: with --runs, the same seed repeats the same campaign.",
+    help="Random seed: with --runs, the same seed repeats the same campaign. Default: 0. Without --seed and --runs, a"
+    " campaign goes on where the last one ended.",
 )
+@click.option(
+    "--continue",
+    "resume",
+    is_flag=True,
+    help="Go on where the last campaign with this seed ended; its matches count in --runs.",
+)
+@click.option(
+    "--shard",
+    metavar="I/N",
+    callback=lambda context, option, value: _parse_shard(value),
+    help="Play only part I of N parts of the campaign: for several machines, with the same --seed and --runs.",
+)
+@click.option("--merge", is_flag=True, help="Play nothing: copy the scripts that shards have saved, from DIRECTORIES.")
+@click.argument("directories", nargs=-1, type=click.Path(exists=True, file_okay=False, path_type=Path))
 @click.option(
     "-j",
     "--jobs",
@@ -70,7 +83,11 @@ def command(
     robot_class: str | None,
     seconds: float | None,
     runs: int | None,
-    seed: int,
+    seed: int | None,
+    resume: bool,
+    shard: tuple[int, int],
+    merge: bool,
+    directories: tuple[Path, ...],
     jobs: int | None,
     recorded: tuple[Path, ...],
     revision: str | None,
@@ -86,17 +103,27 @@ def command(
     """
     if seconds is not None and runs is not None:
         raise click.UsageError("--time and --runs are mutually exclusive.")
+    if resume and recorded:
+        raise click.UsageError("--continue and --from are mutually exclusive.")
+    if merge != bool(directories):
+        raise click.UsageError("--merge and DIRECTORIES belong together.")
     from pyfrc_core.compat.real_time_devices import explain_real_time
     from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
+    from pyfrc_core.fuzz.stream import Shard
     from pyfrc_core.processors import usable_processors
     from pyfrc_core.runtime.scripts.inputs_file import load_inputs
 
     project = chosen_project(directory, main, robot_class)
+    if merge:
+        _merge(project, directories)
+        return
+    resume = resume or (seed is None and runs is None and not recorded)
     if seconds is None and runs is None:
         seconds = _DEFAULT_SECONDS
-    printer = _ProgressPrinter(verbosity().quiet)
+    printer = _ProgressPrinter(verbosity().quiet, project)
     scripts = tuple(load_inputs(file) for file in recorded)
-    options = CampaignOptions(seed, runs, seconds, jobs or usable_processors(), scripts)
+    jobs = jobs or usable_processors()
+    options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume)
     if revision is not None:
         sys.exit(_compare(project, revision, options))
     campaign = run_campaign(project, options, printer)
@@ -133,11 +160,36 @@ def _compare(project: Project, revision: str, options: CampaignOptions) -> int:
     return 1
 
 
+def _parse_shard(text: str | None) -> tuple[int, int]:
+    """Return the number of a shard, from 1, and the number of shards."""
+    if text is None:
+        return 1, 1
+    from pyfrc_core.fuzz.stream import STREAMS
+
+    number, slash, count = text.partition("/")
+    if not (slash and number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count) <= STREAMS):
+        raise click.BadParameter(f"{text!r} is not I/N with I from 1 to N and N up to {STREAMS}, such as 1/4.")
+    return int(number), int(count)
+
+
+def _merge(project: Project, directories: tuple[Path, ...]) -> None:
+    from pyfrc_core.fuzz.corpus import Corpus
+
+    entries = Corpus(project).merge(directories)
+    for entry in entries:
+        click.secho(str(entry.script.found.get("failure", "")), fg="red")
+        click.echo(f"  pyfrc replay {entry.display_path}")
+    if not entries:
+        hint("Nothing was found.")
+    sys.exit(1 if entries else 0)
+
+
 class _ProgressPrinter:
     """Prints the progress: on a terminal in one line that is rewritten, elsewhere in a new line now and then."""
 
-    def __init__(self, quiet: bool) -> None:
+    def __init__(self, quiet: bool, project: Project) -> None:
         self._quiet = quiet
+        self._project = project
         self._on_terminal = sys.stdout.isatty() and not quiet
         self._printed = time.monotonic()
 
@@ -166,6 +218,8 @@ class _ProgressPrinter:
             else:
                 click.echo("  This failure did not repeat in a replay. The script of the whole match is saved:")
             click.echo(f"  pyfrc replay {found.entry.display_path}")
+        if os.environ.get("GITHUB_ACTIONS") == "true":
+            click.echo(_annotation(found, self._project.main_file.parent))
 
     def end(self, progress: CampaignProgress) -> None:
         self._clear()
@@ -175,6 +229,22 @@ class _ProgressPrinter:
     def _clear(self) -> None:
         if self._on_terminal:
             click.echo("\r\033[K", nl=False)
+
+
+def _annotation(found: FuzzFinding, root: Path) -> str:
+    """Return GitHub's workflow command that shows a failure at the user's line."""
+    file, colon, line = found.failure.place.rpartition(":")
+    where = ""
+    if colon:
+        path = os.path.relpath(root / file, os.environ.get("GITHUB_WORKSPACE") or ".").replace(os.sep, "/")
+        where = f"file={_escaped(path, in_property=True)},line={line},"
+    story = "\n".join([*found.story, f"pyfrc replay {found.entry.display_path}"])
+    return f"::error {where}title=pyfrc fuzz::{_escaped(story)}"
+
+
+def _escaped(text: str, in_property: bool = False) -> str:
+    text = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+    return text.replace(":", "%3A").replace(",", "%2C") if in_property else text
 
 
 def _line(progress: CampaignProgress) -> str:

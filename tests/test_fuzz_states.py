@@ -82,7 +82,7 @@ GOALS = """
     found, known = [], frozenset()
     with open_match_executor(find_project(), 1) as executor:
         for number in range(3):
-            (played,) = executor.play([FuzzTask(SeedSchedule(((0, "a"),)), known)])
+            (played,) = executor.play([FuzzTask(SeedSchedule(((0, "a"),)), known, known)])
             found.append([played.failure and played.failure.text, sorted(map(repr, played.reached))])
             known |= played.reached.keys()
     print(json.dumps(found))
@@ -124,36 +124,40 @@ def test_states_branches_and_comparisons_are_goals(make_project) -> None:
 def test_a_comparison_that_comes_nearer_is_a_goal() -> None:
     measured = Nearness()
     goal = (NEAR, "robot.py", 3, 12)
+    known = frozenset({(BRANCH, "robot.py", 3, 12, 0)})
     comparison = measured.comparison(goal)
     measured.begin(frozenset(), lambda: 5)
     for pair in (("a", "b"), (True, False), (float("nan"), 1.0), (10**400, 1.5)):
         comparison[pair]
-    assert measured.reached() == {}
+    assert measured.reached(known) == {}
     levels = []
     for left in (100.0, 40.0, 41.0, 7.5):
         comparison[left, 0]
-        (reached,) = measured.reached()
+        (reached,) = measured.reached(known)
         levels.append(reached[-1])
     assert levels[0] < levels[1] == levels[2] < levels[3]
 
-    measured.begin(frozenset({(*goal, levels[3]), (*goal, levels[0])}), lambda: 5)
+    measured.begin(known | frozenset({(*goal, levels[3]), (*goal, levels[0])}), lambda: 5)
     comparison[7.5, 0]
-    assert measured.reached() == {}
+    assert measured.reached(known) == {}
     comparison[0.5, 0]
-    assert list(measured.reached().values()) == [5]
+    assert list(measured.reached(known).values()) == [5]
+    assert measured.reached(frozenset()) == {}
+    assert measured.reached(known | {(BRANCH, "robot.py", 3, 12, 1)}) == {}
 
 
 @pytest.mark.parametrize("difference", range(1, 16))
 def test_counts_come_nearer_one_by_one(difference: int) -> None:
     measured = Nearness()
     goal = (NEAR, "robot.py", 3, 12)
+    known = frozenset({(BRANCH, "robot.py", 3, 12, 0)})
     measured.comparison(goal)
     measured.begin(frozenset(), lambda: 0)
     measured.comparison(goal)[difference + 1, 0]
-    known = frozenset(measured.reached())
+    known |= frozenset(measured.reached(known))
     measured.begin(known, lambda: 0)
     measured.comparison(goal)[difference, 0]
-    assert measured.reached()
+    assert measured.reached(known)
 
 
 def test_matches_with_every_kind_of_goal_are_continued() -> None:

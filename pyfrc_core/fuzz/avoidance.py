@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from ..runtime.scripts.script import InputScript
 from ..runtime.scripts.targets import MODE
@@ -21,6 +22,8 @@ LeftOut = frozenset[str]
 #: The share of matches that leave out something of a failure which ends this share of the other matches, or more. A
 #: failure that ends fewer is left out less often.
 _AVOIDED, _OFTEN = 0.9, 0.3
+#: A failure is frequent if it ends this share of the matches that can meet it, and at least so many.
+_FREQUENT, _LEAST_ENDED = 0.1, 2
 
 
 @dataclass
@@ -65,6 +68,26 @@ class KnownFailures:
             if left_out.isdisjoint(known.needed):
                 known.met += 1
                 known.ended += known.failure.same_as(failure)
+
+    def frequent(self) -> list[FuzzFailure]:
+        """Return the failures that have ended many matches, and of which it is not known what they need."""
+        return [
+            known.failure
+            for known in self._known
+            if not known.needed and known.ended >= _LEAST_ENDED and known.ended >= _FREQUENT * known.met
+        ]
+
+    def state(self) -> dict[str, Any]:
+        """Return what `restore` needs, as values of JSON."""
+        return {"matches": self._matches, "failures": [asdict(known) for known in self._known]}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on where an earlier campaign ended."""
+        self._matches = int(state["matches"])
+        self._known = [
+            _KnownFailure(FuzzFailure(**each["failure"]), tuple(each["needed"]), int(each["met"]), int(each["ended"]))
+            for each in state["failures"]
+        ]
 
     def left_out(self, rng: random.Random) -> LeftOut:
         """Choose what a match leaves out: an input of each failure that ends many matches."""

@@ -1,28 +1,37 @@
-"""Run a campaign: many matches, guided by the lines they reach. Each distinct failure is shrunk and saved once.
+"""Run a campaign: many matches, guided by the goals they reach. Each distinct failure is shrunk and saved once.
 
 Matches are generated in batches, and their results are used in the order of their numbers. So the result of a campaign
-depends on its seed alone, and not on the number of processes.
+depends on its seed alone, and not on the number of processes. With a number of matches, or when several machines play
+its parts, a campaign consists of streams, which do not guide each other. With a limit of time on one machine, its
+result depends on the machine's speed anyway: all matches are one stream.
 """
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from ..project import Project
 from ..runtime.scripts.script import InputScript
-from .corpus import Corpus, CorpusEntry
+from .corpus import Corpus, CorpusEntry, found_in
 from .describe import late_failure, story_of
 from .failure import PROCESS_ENDED, FuzzFailure
 from .goals import Goal, share
+from .kept_guidance import KeptGuidance
 from .match import FuzzTask, MatchResult, ReplayTask
 from .match_executor import MatchExecutor, open_match_executor
-from .seed_schedule import SeedScheduler
+from .seed_schedule import SeedSchedule
 from .shrink import MOST_RUNS, Shrinker
+from .stream import ALL, STREAMS, Shard, Stream
 
 _BATCH = 32
+#: How many matches of an earlier campaign are played again when the robot's code has changed.
+_MOST_REVISITED = 64
+#: The least time between two writes of what guides the campaign.
+_KEPT_EVERY_SECONDS = 5.0
 
 #: A robot that fails within this time without any input fails in every match.
 _START_US = 2_000_000
@@ -41,6 +50,8 @@ class CampaignOptions:
         shrunk
     :param jobs: how many matches to run at a time
     :param recorded: recorded matches to begin with
+    :param shard: which part of the campaign to run
+    :param resume: whether to go on where the last campaign with this seed ended; its matches count in `runs`
     """
 
     seed: int
@@ -48,6 +59,8 @@ class CampaignOptions:
     seconds: float | None
     jobs: int
     recorded: tuple[InputScript, ...] = ()
+    shard: Shard = ALL
+    resume: bool = False
 
 
 @dataclass
@@ -138,7 +151,17 @@ def run_campaign(project: Project, options: CampaignOptions, listener: CampaignL
         except KeyboardInterrupt:
             runner.campaign.interrupted = True
             runner.save_unshrunk()
+        finally:
+            runner.keep_guidance()
         return runner.campaign
+
+
+@dataclass(frozen=True)
+class _Match:
+    stream: Stream
+    schedule: SeedSchedule
+    #: None for a match of an earlier campaign.
+    number: int | None = None
 
 
 class _Runner:
@@ -151,12 +174,23 @@ class _Runner:
         self._deadline = deadline
         self._listener = listener
         self._corpus = Corpus(executor.project)
-        self._scheduler = SeedScheduler(options.seed, options.recorded)
         self._all_lines = executor.lines
-        self._reached: frozenset[Goal] = frozenset()
+        shard = options.shard
+        count = STREAMS if options.runs is not None or shard.count > 1 else 1
+        played = [index for index in range(count) if shard.plays(index)]
+        self._streams = [Stream(options.seed, index, count, options.recorded) for index in played]
+        self._stream_batch = _BATCH // count
+        self._guidance = KeptGuidance(executor.project, options.seed, shard, count, self._streams)
+        #: What guides the campaign after the last complete batch.
+        self._guided: str | None = None
+        self._kept_at = time.monotonic()
+        self._is_one_stream = count == 1
+        #: The shortest scripts of failures, by the match in which they were found.
+        self._shortest: dict[tuple[int | None, str], InputScript] = {}
+        self._reached: set[Goal] = set()
         self._failures: list[FuzzFailure] = []
         #: Failures that are not shrunk yet.
-        self._waiting: list[MatchResult] = []
+        self._waiting: list[tuple[int | None, MatchResult]] = []
         self._shrinking: Shrinker | None = None
 
     def replay_corpus(self) -> None:
@@ -168,20 +202,47 @@ class _Runner:
                     if each.failure is not None and self._is_new(each.failure):
                         self._report(FuzzFinding(each.failure, story_of(entry.script, each.failure), entry, known=True))
 
+    def _resume(self) -> None:
+        """Go on where the last campaign with this seed ended, if the options say so."""
+        if not self._options.resume or not self._guidance.restore():
+            self._reached.update(*(stream.reached for stream in self._streams))
+            return
+        most = _MOST_REVISITED // len(self._streams)
+        revisited = [_Match(stream, schedule) for stream in self._streams for schedule in stream.worthwhile()[-most:]]
+        for stream in self._streams:
+            stream.forget()
+        for start in range(0, len(revisited), _BATCH):
+            self._play(revisited[start : start + _BATCH])
+            self._shrink_waiting()
+
     def run(self) -> None:
         """Run batch after batch."""
-        number = 0
         if self._fails_at_start():
             return
-        while not self._over(number):
-            size = _BATCH if self._options.runs is None else min(_BATCH, self._options.runs - number)
-            self._play(range(number, number + size))
-            number += size
+        self._resume()
+        while not self._is_late():
+            batches = [stream.next_numbers(self._stream_batch, self._options.runs) for stream in self._streams]
+            matches = [
+                (number, stream) for stream, numbers in zip(self._streams, batches, strict=True) for number in numbers
+            ]
+            if not matches:
+                return
+            matches.sort(key=lambda each: each[0])
+            self._play([_Match(stream, stream.schedule(number), number) for number, stream in matches])
             self._shrink_waiting()
+            if self._is_late():  # perhaps before the end of the batch, which is then played again
+                return
+            self._avoid_frequent_failures()
+            for stream, numbers in zip(self._streams, batches, strict=True):
+                stream.skip(numbers)
+            # Without the recorded matches, what guides the campaign is of no use.
+            self._guided = None if self._options.recorded else self._guidance.snapshot()
+            if time.monotonic() - self._kept_at > _KEPT_EVERY_SECONDS:
+                self.keep_guidance()
 
     def _shrink_waiting(self) -> None:
         while self._waiting:
-            self._shrink(self._waiting[0])
+            self._shrink(*self._waiting[0])
             self._waiting.pop(0)
         self.campaign.progress.doing = ""
 
@@ -193,35 +254,37 @@ class _Runner:
         self.campaign.always_fails = True
         self.campaign.progress.matches = 1
         if self._is_new(played.failure):
-            self._waiting.append(played)
+            self._waiting.append((None, played))
             self._shrink_waiting()
         return True
 
-    def _over(self, number: int) -> bool:
-        if self._deadline is not None and time.monotonic() >= self._deadline:
-            return True
-        return self._options.runs is not None and number >= self._options.runs
+    def keep_guidance(self) -> None:
+        """Keep what guides the campaign after the last complete batch."""
+        if self._guided is not None:
+            self._guidance.write(self._guided)
+            self._kept_at, self._guided = time.monotonic(), None
 
-    def _play(self, numbers: range) -> None:
+    def _is_late(self) -> bool:
+        return self._deadline is not None and time.monotonic() >= self._deadline
+
+    def _play(self, matches: Sequence[_Match]) -> None:
         progress = self.campaign.progress
-        schedules = [self._scheduler.schedule(number) for number in numbers]
-        known = self._reached
-        with closing(self._executor.play(FuzzTask(schedule, known) for schedule in schedules)) as results:
-            for schedule, played in zip(schedules, results, strict=True):
-                new = {line: at_us for line, at_us in played.reached.items() if line not in self._reached}
-                self._scheduler.learn(schedule, new)
-                self._scheduler.note_end(schedule, played.failure)
-                self._reached |= new.keys()
+        known_to_all = frozenset.intersection(*(stream.reached for stream in self._streams))
+        tasks = [FuzzTask(match.schedule, match.stream.reached, known_to_all) for match in matches]
+        with closing(self._executor.play(tasks)) as results:
+            for match, played in zip(matches, results, strict=True):
+                match.stream.learn(match.schedule, match.number, played)
+                self._reached |= played.reached.keys()
                 self.campaign.real_time = self.campaign.real_time or played.real_time
                 progress.matches += 1
                 progress.simulated += played.script.end_us / 1e6
                 progress.covered = share(self._reached, self._all_lines) if self._reached else None
                 for each in played.each_failure():
                     if each.failure is not None and self._is_new(each.failure):
-                        self._waiting.append(each)
+                        self._waiting.append((match.number, each))
                         progress.crashes = len(self._failures)
                 self._listener.on_progress(progress)
-                if self._over(0):
+                if self._is_late():
                     return
 
     def _is_new(self, failure: FuzzFailure) -> bool:
@@ -232,7 +295,7 @@ class _Runner:
 
     # -- saving -----------------------------------------------------------------------------------------------
 
-    def _shrink(self, played: MatchResult) -> None:
+    def _shrink(self, number: int | None, played: MatchResult) -> None:
         assert played.failure is not None
         progress = self.campaign.progress
 
@@ -240,31 +303,55 @@ class _Runner:
             progress.doing = f"shrinking: run {runs}"
             self._listener.on_progress(progress)
 
-        most_runs = _MOST_REAL_TIME_RUNS if self.campaign.real_time else MOST_RUNS
-        shrinker = Shrinker(self._executor, played.script, played.failure, played.inputs, most_runs, on_run=report_run)
-        self._shrinking = shrinker
+        self._shrinking = shrinker = self._shrinker(played, report_run)
         shrinker.shrink()
         if shrinker.repeats and shrinker.play_again():
-            self._save(shrinker.script, shrinker.failure, shrinker.runs)
-            if not played.went_on:
-                self._scheduler.avoid(shrinker.failure, shrinker.script)
+            self._save(number, shrinker.script, shrinker.failure, shrinker.runs)
+            self._shortest[number, shrinker.failure.cause] = shrinker.script
+            if self._is_one_stream and not played.went_on:
+                self._streams[0].avoid(shrinker.failure, shrinker.script)
         else:
-            self._save(played.script, played.failure, shrinker.runs, repeats=False)
+            self._save(number, played.script, played.failure, shrinker.runs, repeats=False)
         self._shrinking = None
+
+    def _shrinker(self, played: MatchResult, on_run: Callable[[int], None]) -> Shrinker:
+        assert played.failure is not None
+        most_runs = _MOST_REAL_TIME_RUNS if self.campaign.real_time else MOST_RUNS
+        return Shrinker(self._executor, played.script, played.failure, played.inputs, most_runs, on_run=on_run)
+
+    def _avoid_frequent_failures(self) -> None:
+        """Have each of several streams avoid what leads to failures that end many of its matches.
+
+        Each needs a script of its own: what the other streams find is not known on another machine.
+        """
+        for stream in () if self._is_one_stream else self._streams:
+            for number, played in stream.frequent_failures():
+                assert played.failure is not None
+                script = self._shortest.get((number, played.failure.cause))
+                if script is None:
+                    shrinker = self._shrinker(played, lambda runs: self._listener.on_progress(self.campaign.progress))
+                    shrinker.shrink()
+                    if not shrinker.repeats:
+                        continue
+                    script = shrinker.script
+                stream.avoid(played.failure, script)
 
     def save_unshrunk(self) -> None:
         """Save the remaining failures as they are, after an interrupt."""
-        for played in self._waiting:
+        for number, played in self._waiting:
             assert played.failure is not None
             shrinker, self._shrinking = self._shrinking, None
             if shrinker is None:
-                self._save(played.script, played.failure, 0)
+                self._save(number, played.script, played.failure, 0)
             else:
-                self._save(shrinker.script, shrinker.failure, shrinker.runs)
+                self._save(number, shrinker.script, shrinker.failure, shrinker.runs)
         self._waiting.clear()
 
-    def _save(self, script: InputScript, failure: FuzzFailure, runs: int, repeats: bool = True) -> None:
+    def _save(
+        self, number: int | None, script: InputScript, failure: FuzzFailure, runs: int, repeats: bool = True
+    ) -> None:
         """Save a script, and report it: the shortest one, or of a failure that did not repeat the whole match's."""
+        script = replace(script, found=found_in(self._options.seed, number, failure))
         entry = (self._corpus.add if repeats else self._corpus.keep)(script, failure)
         writes = sum(len(step.writes) for step in script.steps)
         self._report(FuzzFinding(failure, story_of(script, failure), entry, repeats, runs=runs, writes=writes))

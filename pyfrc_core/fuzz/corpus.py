@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 from ..project import Project
 from ..runtime.scripts.script import InputScript, load_script
@@ -73,9 +74,7 @@ class Corpus:
         complete = _complete(script, failure)
         file = self._free_name(_name_of(failure))
         complete.save(file)
-        test_file = self._tests / TEST_FILE
-        if not test_file.exists():
-            write_whole(test_file, [_TEST])
+        self._write_test()
         return CorpusEntry(file, complete)
 
     def keep(self, script: InputScript, failure: FuzzFailure) -> CorpusEntry:
@@ -85,6 +84,43 @@ class Corpus:
         complete.save(file)
         return CorpusEntry(file, complete)
 
+    def merge(self, directories: Iterable[Path]) -> list[CorpusEntry]:
+        """Copy the scripts that shards of one campaign have found, as if one machine had found them; return the copies.
+
+        Of several scripts of the same failure, the one of the earliest match is taken.
+
+        :param directories: where the shards' scripts are, or a directory above; a script that is here already is left
+            out
+        :raises ScriptError: when a file is not a valid script
+        """
+        shards = [
+            [CorpusEntry(file, load_script(file)) for file in sorted(each.rglob("*.jsonl"))] for each in directories
+        ]
+        own = {file.read_bytes() for file in (self._tests / DIRECTORY).rglob("*.jsonl")}
+        # The scripts that all shards began with are here, too.
+        contents = [{entry.file.read_bytes() for entry in shard} for shard in shards]
+        old = own.intersection(*contents)
+        found: dict[str, CorpusEntry] = {}
+        for entry in sorted((entry for shard in shards for entry in shard if entry.script.found), key=_order):
+            if entry.file.read_bytes() not in old:
+                found.setdefault(str(entry.script.found.get("failure")), entry)
+        return [self._copy(entry) for entry in found.values() if entry.file.read_bytes() not in own]
+
+    def _copy(self, entry: CorpusEntry) -> CorpusEntry:
+        name = _unnumbered(entry.file)[0]
+        if entry.script.repeats:
+            file = self._free_name(name)
+            self._write_test()
+        else:
+            file = self._tests / DIRECTORY / NOT_REPEATED / entry.file.name
+        write_whole(file, [entry.file.read_text("utf-8")])
+        return CorpusEntry(file, entry.script)
+
+    def _write_test(self) -> None:
+        test_file = self._tests / TEST_FILE
+        if not test_file.exists():
+            write_whole(test_file, [_TEST])
+
     def _free_name(self, name: str) -> Path:
         directory = self._tests / DIRECTORY
         number, file = 1, directory / f"{name}.jsonl"
@@ -92,6 +128,27 @@ class Corpus:
             number += 1
             file = directory / f"{name}-{number}.jsonl"
         return file
+
+
+def found_in(seed: int, match: int | None, failure: FuzzFailure) -> dict[str, Any]:
+    """Return the entry `found` of a script's header.
+
+    :param match: the number of the match in the campaign with this seed; None for a match of an earlier campaign
+    """
+    number = {} if match is None else {"match": match}
+    return {"seed": seed, **number, "failure": failure.cause}
+
+
+def _order(entry: CorpusEntry) -> tuple[int, int, str, int]:
+    """Return the key that sorts scripts as one campaign finds them."""
+    found = entry.script.found
+    return int(found.get("seed", 0)), int(found.get("match", -1)), *_unnumbered(entry.file)
+
+
+def _unnumbered(file: Path) -> tuple[str, int]:
+    """Return the name of a script's file without its number, and the number."""
+    numbered = re.fullmatch(r"(.*?)-(\d+)", file.stem)
+    return (numbered[1], int(numbered[2])) if numbered else (file.stem, 1)
 
 
 def _complete(script: InputScript, failure: FuzzFailure) -> InputScript:

@@ -61,13 +61,16 @@ class FuzzFailure:
 
     def same_as(self, other: FuzzFailure | None) -> bool:
         """Return whether both failures have the same cause."""
-        return other is not None and self._cause() == other._cause()
+        return other is not None and self.cause == other.cause
 
-    def _cause(self) -> tuple[str, str]:
+    @property
+    def cause(self) -> str:
+        """Return a text that is the same for failures with the same cause."""
         if self.kind in _ONCE:
-            return self.kind, ""
+            return self.kind
         # Errors of the HAL have no line of the robot's, but different texts.
-        return self.kind, _NUMBER.sub("0", self.text) if self.kind == "hal_errors" else self.place or self.calls
+        what = _NUMBER.sub("0", self.text) if self.kind == "hal_errors" else self.place or self.calls
+        return f"{self.kind} {what}".rstrip()
 
 
 def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:

@@ -71,14 +71,19 @@ class RobotLines:
         return frozenset(self._lines)
 
     @contextmanager
-    def watched(self, known: frozenset[Goal], now_us: Callable[[], int]) -> Iterator[dict[Goal, int]]:
+    def watched(
+        self, known: frozenset[Goal], known_to_all: frozenset[Goal], now_us: Callable[[], int]
+    ) -> Iterator[dict[Goal, int]]:
         """Record which unknown lines and branches are reached and when, until the context ends.
+
+        `known_to_all` are goals among them that other matches, which run in the same way, know too: code is prepared
+        for these, once for all the matches.
 
         Before Python 3.12, code that another tool traces is not observed. Python 3.10 observes only lines. Only Python
         3.11 measures how near comparisons are to another result.
         """
         if line_probes.SUPPORTED and sys.gettrace() is None:
-            with self._probes.inserted(self._functions, self._wanted(known), known, now_us) as reached:
+            with self._probes.inserted(self._functions, self._wanted(known_to_all), known, now_us) as reached:
                 yield reached
             return
         reached = {}
@@ -89,19 +94,19 @@ class RobotLines:
             with _traced(_only_lines(self._wanted(known)), reached, now_us):
                 yield reached
 
-    def prepare(self, known: frozenset[Goal]) -> None:
+    def prepare(self, known_to_all: frozenset[Goal]) -> None:
         """Prepare `watched` with these known goals: forks of this process then find it prepared."""
         if line_probes.SUPPORTED:
-            self._probes.prepare(self._wanted(known))
+            self._probes.prepare(self._wanted(known_to_all))
 
     def _wanted(self, known: frozenset[Goal]) -> _Wanted:
         if self._last is None or self._last[0] != known:
             found: dict[CodeType, Mapping[Place, Goal]] = {}
             for code, places in self._by_code.items():
                 wanted = {place: goal for place, goal in places.items() if goal not in known}
-                # Only a comparison with one known result can come nearer to the other one.
+                # A comparison with two known results cannot come nearer to another one.
                 for place in [place for place in wanted if isinstance(place, tuple) and place[1] is None]:
-                    if ((place[0], False) in wanted) == ((place[0], True) in wanted):
+                    if (place[0], False) not in wanted and (place[0], True) not in wanted:
                         del wanted[place]
                 if wanted:
                     found[code] = wanted
@@ -170,14 +175,16 @@ class LineProbes:
         reached = self._reached
         reached.clear()
         reached.times, reached.now_us = {}, now_us
+        new: dict[Goal, int] = {}
         before = [(function, function.__code__) for function in functions]
         for function, code in before:
             function.__code__ = self._with_probes(code, wanted)
         self._nearness.begin(known, now_us)
         try:
-            yield reached.times
+            yield new
         finally:
-            reached.times |= self._nearness.reached()
+            new |= {goal: at_us for goal, at_us in reached.times.items() if goal not in known}
+            new |= self._nearness.reached(known)
             for function, code in before:
                 function.__code__ = code
 

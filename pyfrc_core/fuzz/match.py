@@ -54,11 +54,13 @@ class FuzzTask:
 
     :param schedule: the random seeds
     :param known: the goals that were reached before
+    :param known_to_all: those among them that the matches know that are played at the same time
     :param journal: a file for the inputs, in case the process ends before it can return them
     """
 
     schedule: SeedSchedule
     known: frozenset[Goal] = frozenset()
+    known_to_all: frozenset[Goal] = frozenset()
     journal: Path | None = None
 
 
@@ -206,7 +208,7 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
         run.clock.before_packet.insert(0, step)
         run.clock.limit_us = max(run.clock.limit_us, to_us(seconds) + PACKET_US)
         failure = None
-        with lines.watched(task.known, lambda: run.clock.now_us) as reached:
+        with lines.watched(task.known, task.known_to_all, lambda: run.clock.now_us) as reached:
             try:
                 construct(project, run, load(project))
                 fuzz_run.write()

@@ -245,7 +245,7 @@ class ForkedMatchExecutor(MatchExecutor):
 
     def _begin(self, task: Task) -> ForkedCall[MatchResult]:
         if self._imported and isinstance(task, FuzzTask):
-            robot_lines(self.project).prepare(task.known)
+            robot_lines(self.project).prepare(task.known_to_all)
         work = ForkedCall(lambda log: play(self.project, task, log))
         self._running.append(work)
         return work

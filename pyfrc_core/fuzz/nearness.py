@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from .goals import NEAR, Goal
+from .goals import BRANCH, NEAR, Goal
 
 #: Whole numbers that are this near have a level for each difference: robots count to 3 or 5.
 _COUNTED = 16
@@ -73,10 +73,14 @@ class Nearness:
         for goal, comparison in self._comparisons.items():
             comparison.begin(levels.get(goal), now_us)
 
-    def reached(self) -> dict[Goal, int]:
-        """Return the highest level of each comparison that came nearer than known, and when."""
+    def reached(self, known: frozenset[Goal]) -> dict[Goal, int]:
+        """Return the highest level of each comparison that came nearer than known, and when.
+
+        Only a comparison with one known result can come nearer to the other one.
+        """
         return {
             (*goal, comparison.level): comparison.reached_us
             for goal, comparison in self._comparisons.items()
             if comparison.reached_us is not None and comparison.level is not None
+            if len(known.intersection({(BRANCH, *goal[1:], way) for way in (0, 1)})) == 1
         }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.script import InputScript
@@ -38,6 +39,19 @@ class SeedSchedule:
     seeds: tuple[tuple[int, str], ...]
     left_out: tuple[tuple[int, LeftOut], ...] = ()
     base: BaseMatch | None = None
+
+    def state(self) -> list[Any]:
+        """Return what `of_state` needs, as values of JSON."""
+        return [self.seeds, [(at_us, sorted(left_out)) for at_us, left_out in self.left_out]]
+
+    @staticmethod
+    def of_state(state: Sequence[Any]) -> SeedSchedule:
+        """Return the schedule with this state."""
+        seeds, left_out = state
+        return SeedSchedule(
+            tuple((int(at_us), str(seed)) for at_us, seed in seeds),
+            tuple((int(at_us), frozenset(targets)) for at_us, targets in left_out),
+        )
 
     def rng(self) -> random.Random:
         """Return the random number generator for the start of the match; `reseed` keeps it up to date."""
@@ -109,6 +123,31 @@ class SeedScheduler:
     def note_end(self, schedule: SeedSchedule, failure: FuzzFailure | None) -> None:
         """Note the failure that ended a match, or that none did."""
         self._known.note(schedule.left_out[-1][1], failure)
+
+    def worthwhile(self) -> list[SeedSchedule]:
+        """Return the seeds of the matches that are worth continuing, each once."""
+        return list(dict.fromkeys(each.schedule for kind in self._worthwhile.values() for each in kind))
+
+    def state(self) -> dict[str, Any]:
+        """Return what `restore` needs, as values of JSON."""
+        worthwhile = {
+            kind: [[each.schedule.state(), each.reached_us] for each in worthwhile]
+            for kind, worthwhile in self._worthwhile.items()
+        }
+        return {"worthwhile": worthwhile, "known": self._known.state()}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        """Go on where a scheduler with this state was."""
+        for kind in self._worthwhile:
+            self._worthwhile[kind] = [
+                _Worthwhile(SeedSchedule.of_state(schedule), tuple(reached_us))
+                for schedule, reached_us in state["worthwhile"][kind]
+            ]
+        self._known.restore(state["known"])
+
+    def frequent_failures(self) -> list[FuzzFailure]:
+        """Return the failures that have ended many matches, and for which `avoid` was not called."""
+        return self._known.frequent()
 
     def learn(self, schedule: SeedSchedule, reached: Mapping[Goal, int]) -> None:
         """Note the goals that a match was the first to reach.

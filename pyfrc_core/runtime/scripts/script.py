@@ -66,6 +66,7 @@ class InputScript:
     :param story: a description of what happens, in scripts that fuzzing has saved; a replay of these checks for all
         failures that fuzzing checks for
     :param repeats: False if fuzzing has saved it although the robot did not fail again with it
+    :param found: in scripts that fuzzing has saved: in which match of which campaign it was found, and its failure
     :param file: where it was read from, for errors
     """
 
@@ -78,6 +79,7 @@ class InputScript:
     trace: str | None = None
     story: tuple[str, ...] = ()
     repeats: bool = True
+    found: Mapping[str, Any] = field(default_factory=dict)
     file: str = field(default="script", compare=False)
 
     def lines(self) -> Iterator[str]:
@@ -92,6 +94,8 @@ class InputScript:
             header["story"] = list(self.story)
         if not self.repeats:
             header["repeats"] = False
+        if self.found:
+            header["found"] = dict(self.found)
         yield json.dumps(header, ensure_ascii=False)
         for step in self.steps:
             yield json.dumps({"t": step.at_us / 1_000_000, "set": dict(step.writes)}, ensure_ascii=False)
@@ -165,6 +169,7 @@ def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
         header.of_type("trace", str, "text", ""),
         header.texts("story"),
         header.flag("repeats", True),
+        header.of_type("found", dict, "an object", {}),
         name,
     )
 
