@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
+
+from pyfrc_cli.fuzz import command
+from pyfrc_core.fuzz.kept_guidance import DIRECTORY
 
 SETTINGS = "[tool.pyfrc.fuzz]\nmatch_seconds = 3.0\n"
 
@@ -130,6 +135,16 @@ def test_a_shard_that_does_not_exist(text: str, make_shared_project) -> None:
 def test_merge_needs_directories(make_shared_project) -> None:
     result = copy(make_shared_project).run("fuzz", "--merge")
     assert (result.code, "belong together" in result.stderr) == (2, True)
+
+
+def test_the_nightly_workflow_of_new_projects() -> None:
+    workflow = Path(__file__).parents[1] / "templates/base/github/workflows/fuzz.yml"
+    steps = yaml.safe_load(workflow.read_text("utf-8"))["jobs"]["fuzz"]["steps"]
+    (arguments,) = (shlex.split(step["run"])[4:] for step in steps if "pyfrc fuzz" in step.get("run", ""))
+    context = command.make_context("fuzz", arguments)
+    # Without --seed and --runs it goes on where the last night ended: with what is kept here.
+    assert context.params["seed"] is None is context.params["runs"]
+    assert {step["with"]["path"] for step in steps if "actions/cache" in step.get("uses", "")} == {DIRECTORY.as_posix()}
 
 
 def test_github_shows_a_failure_at_its_line(make_shared_project, monkeypatch) -> None:
