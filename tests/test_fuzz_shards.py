@@ -62,16 +62,16 @@ def copy(make_shared_project: Any) -> Any:
 
 def test_four_shards_find_together_what_one_machine_finds(make_shared_project, tmp_path: Path) -> None:
     whole = copy(make_shared_project)
-    campaign = ("--seed", "1", "--runs", "80")
+    campaign = ("--seed", "1", "--runs", "64")
     found = whole.run("fuzz", *campaign, "-j", "1")
-    assert (found.code, "80 matches" in found.stdout) == (1, True), found.output
+    assert (found.code, "64 matches" in found.stdout) == (1, True), found.output
     assert len([name for name in written(whole) if name.endswith(".jsonl")]) >= 3, found.output
 
     shards = []
     for number in (1, 2, 3, 4):
         shard = copy(make_shared_project)
         result = shard.run("fuzz", *campaign, "--shard", f"{number}/4")
-        assert "20 matches" in result.stdout, result.output
+        assert "16 matches" in result.stdout, result.output
         shards.append(tmp_path / str(number))
         if (shard.path / "tests").is_dir():
             shutil.copytree(shard.path / "tests", shards[-1])

@@ -23,7 +23,7 @@ LeftOut = frozenset[str]
 #: failure that ends fewer is left out less often.
 _AVOIDED, _OFTEN = 0.9, 0.3
 #: A failure is frequent if it ends this share of the matches that can meet it, and at least so many.
-_FREQUENT, _LEAST_ENDED = 0.1, 2
+_FREQUENT, _LEAST_ENDED = 0.25, 3
 
 
 @dataclass
