@@ -83,7 +83,7 @@ def measure(directory: Path, matches: int) -> tuple[float, float]:
         before = cpu_seconds()
         for number in range(matches):
             (played,) = executor.play([FuzzTask(SeedSchedule(((0, f"fuzz 1 {number}"),)), known, known)])
-            known |= played.reached.keys()
+            known = known.union(played.reached)
             now = cpu_seconds()
             if played.failure is None:
                 times.append(now - before)

@@ -84,7 +84,7 @@ GOALS = """
         for number in range(3):
             (played,) = executor.play([FuzzTask(SeedSchedule(((0, "a"),)), known, known)])
             found.append([played.failure and played.failure.text, sorted(map(repr, played.reached))])
-            known |= played.reached.keys()
+            known = known.union(played.reached)
     print(json.dumps(found))
     """
 

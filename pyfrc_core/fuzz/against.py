@@ -80,11 +80,11 @@ def compare(project: Project, revision: str, options: CampaignOptions) -> Compar
         while (options.runs is None or matches < options.runs) and (deadline is None or time.monotonic() < deadline):
             size = _BATCH if options.runs is None else min(_BATCH, options.runs - matches)
             schedules = [scheduler.schedule(number) for number in range(matches, matches + size)]
-            generated = list(executor.play(FuzzTask(schedule, reached) for schedule in schedules))
+            generated = list(executor.play(FuzzTask(schedule, reached, reached) for schedule in schedules))
             for schedule, match in zip(schedules, generated, strict=True):
                 new = {goal: at_us for goal, at_us in match.reached.items() if goal not in reached}
                 scheduler.learn(schedule, new)
-                reached |= new.keys()
+                reached = reached.union(new)
             tasks = [ReplayTask(match.script, use_oracle=False) for match in generated]
             with closing(both.play(tasks)) as results:
                 for match, played in zip(generated, results, strict=True):
