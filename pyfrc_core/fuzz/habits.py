@@ -43,16 +43,18 @@ class Habit:
 
 #: Several controls at once, then others.
 _POSE = Habit(50, 0.75, (0.04, 2), (0, 0, 1, 1, 2, 2, 2, 3, 3, 4), (0, 0, 1, 1, 1, 2, 2, 2, 4), 0.35, (0, 0, 1, 2))
+#: Many controls at once: what the robot has several conditions for.
+_CHORD = Habit(8, 0.5, (0.1, 1.5), (2, 3, 3, 4), (1, 1, 2), 0.7)
 #: One more control, while the others are held.
 _ONE_MORE = Habit(14, 0.1, (0.06, 1), (0, 1, 1, 1), (0, 0, 1), 0.15)
 #: A button that is held for seconds, while others are tapped.
-_HOLD = Habit(10, 0.6, (2, 6), (1, 1, 2), (0, 0, 1), 0.25, (0, 1, 2), (1, 2, 3))
+_HOLD = Habit(14, 0.6, (2, 6), (1, 1, 2), (0, 0, 1), 0.25, (0, 1, 2), (1, 2, 3))
 #: Double taps, and toggles.
 _TAPS = Habit(14, 0.3, (0.3, 1.5), (0, 0, 1), (0,), 0.1, (1, 1, 2), (2, 2, 3, 4))
 #: All drivers at the same time.
 _TOGETHER = Habit(12, 0.75, (0.1, 2), (1, 1, 2, 2, 3), (0, 1, 2), 0.3, (0, 1), together=True)
 
-_HABITS = (_POSE, _ONE_MORE, _HOLD, _TAPS, _TOGETHER)
+_HABITS = (_POSE, _CHORD, _ONE_MORE, _HOLD, _TAPS, _TOGETHER)
 _WEIGHTS = [habit.weight for habit in _HABITS]
 
 
