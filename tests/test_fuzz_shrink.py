@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from pyfrc_core.fuzz.describe import late_failure, story_of
@@ -186,3 +187,36 @@ def test_the_story_of_a_long_script_is_short() -> None:
     assert len(story) == 8
     assert story[0] == "(43 earlier moments are in the script)"
     assert story[1] == "at 22.00 s in teleoperated: joystick 0 button 1 pressed"
+
+
+def test_a_failure_between_two_packets_is_shortened() -> None:
+    def robot() -> Callable[[float, dict[str, object]], bool]:
+        before: tuple[object, object] = (None, None)
+
+        def fails(now: float, values: dict[str, object]) -> bool:
+            nonlocal before
+            (third, seventh), before = before, (values.get("dio[3].value"), values.get("dio[7].value"))
+            return third is True and seventh is not True and before[1] is True
+
+        return fails
+
+    class BetweenPackets(Simulated):
+        """A robot that fails 5 ms after a packet, as in a function with a period of its own."""
+
+        def _result(self, task: ReplayTask) -> MatchResult:
+            grid = [Step(-(-step.at_us // PACKET_US) * PACKET_US, step.writes) for step in task.script.steps]
+            merged: dict[int, dict[str, object]] = {}
+            for step in grid:
+                merged.setdefault(step.at_us, {}).update(step.writes)
+            steps = tuple(Step(at_us, writes) for at_us, writes in merged.items())
+            played = super()._result(replace(task, script=replace(task.script, steps=steps)))
+            late_us = 5_000 if played.failure is not None else 0
+            return MatchResult(played.failure, replace(task.script, end_us=played.script.end_us + late_us))
+
+    executor = BetweenPackets(robot, FAILURE)
+    script = script_of([*pressed(1, 2, 3), (25.8, "dio[3].value", True), (26, "dio[7].value", True)])
+    (first,) = executor.play([ReplayTask(script)])
+    shrinker = Shrinker(executor, first.script, FAILURE, {})
+    shrinker.shrink()
+    assert written(shrinker.script) == [("dio[3].value", True), ("dio[7].value", True)]
+    assert all(step.at_us % PACKET_US == 0 for step in shrinker.script.steps)

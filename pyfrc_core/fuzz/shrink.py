@@ -230,7 +230,7 @@ class Shrinker:
                 else:
                     high = middle
             # When writes have joined the previous moment, the next moment has this index.
-            index += 1 if high > 0 or not index else 0
+            index += 1 if high > 0 or gap == 0 or not index else 0
 
     def _moved(self, from_us: int, packets: int) -> tuple[Write, ...]:
         return without_overwritten(

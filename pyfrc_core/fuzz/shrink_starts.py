@@ -47,7 +47,8 @@ def starts_of(writes: Sequence[Write], end_us: int) -> list[Start]:
     """
     found = []
     for packets in _KEPT:
-        cut_us = end_us - packets * PACKET_US
+        # A failure may come between two packets; inputs are written with packets.
+        cut_us = (end_us // PACKET_US - packets) * PACKET_US
         for with_modes in (False, True):
             if cut_us > 0 and (not with_modes or packets in _KEPT_WITH_MODES):
                 start = _cut(writes, end_us, cut_us, with_modes)
