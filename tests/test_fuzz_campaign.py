@@ -372,7 +372,7 @@ def test_where_every_process_dies_the_share_of_lines_is_not_told(make_project) -
     project = make_project({"robot.py": EXITING.format("os._exit(3)", "pass", "pass").replace("sys", "os")})
     result = project.run("fuzz", "--runs", "2", "--seed", "1")
     assert result.code == 1, result.output
-    assert re.search("^2 matches, .*robot time, 1 failure$", result.stdout, re.MULTILINE), result.output
+    assert re.search("^1 match, .*robot time, 1 failure$", result.stdout, re.MULTILINE), result.output
 
 
 # -- schedules ---------------------------------------------------------------------------------------------------------

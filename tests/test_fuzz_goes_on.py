@@ -115,7 +115,7 @@ def test_later_matches_find_what_is_behind_a_known_failure(make_project) -> None
             ([0] * 6)[self.presses]
         """
     project = make(make_project, teleop=teleop.strip(), seconds=12)
-    result = project.run("fuzz", "--seed", "1", "--runs", "64")
+    result = project.run("fuzz", "--seed", "1", "--runs", "32")
     assert f"{project.place('robot.py', '1 / int(')}: ZeroDivisionError" in result.stdout, result.output
     assert f"{project.place('robot.py', '([0] * 6)')}: IndexError" in result.stdout
 

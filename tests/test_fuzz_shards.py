@@ -60,17 +60,25 @@ def copy(make_shared_project: Any) -> Any:
     return make_shared_project({"robot.py": ROBOT, "pyproject.toml": SETTINGS})
 
 
-def test_four_shards_find_together_what_one_machine_finds(make_shared_project, tmp_path: Path) -> None:
-    whole = copy(make_shared_project)
-    campaign = ("--seed", "1", "--runs", "64")
-    found = whole.run("fuzz", *campaign, "-j", "1")
+CAMPAIGN = ("--seed", "1", "--runs", "64")
+
+
+@pytest.fixture(scope="module")
+def whole(make_shared_project) -> Any:
+    """A project in which one process has played a whole campaign."""
+    project = copy(make_shared_project)
+    found = project.run("fuzz", *CAMPAIGN, "-j", "1")
     assert (found.code, "64 matches" in found.stdout) == (1, True), found.output
-    assert len([name for name in written(whole) if name.endswith(".jsonl")]) >= 3, found.output
+    return project
+
+
+def test_four_shards_find_together_what_one_machine_finds(whole, make_shared_project, tmp_path: Path) -> None:
+    assert len([name for name in written(whole) if name.endswith(".jsonl")]) >= 3
 
     shards = []
     for number in (1, 2, 3, 4):
         shard = copy(make_shared_project)
-        result = shard.run("fuzz", *campaign, "--shard", f"{number}/4")
+        result = shard.run("fuzz", *CAMPAIGN, "--shard", f"{number}/4")
         assert "16 matches" in result.stdout, result.output
         shards.append(tmp_path / str(number))
         if (shard.path / "tests").is_dir():
@@ -87,12 +95,10 @@ def test_four_shards_find_together_what_one_machine_finds(make_shared_project, t
     assert (again.code, written(merged)) == (0, written(whole)), again.output
 
 
-def test_an_interrupted_campaign_goes_on_where_it_was(make_shared_project) -> None:
-    whole, parts = copy(make_shared_project), copy(make_shared_project)
-    result = whole.run("fuzz", "--seed", "1", "--runs", "64")
-    assert "64 matches" in result.stdout, result.output
+def test_an_interrupted_campaign_goes_on_where_it_was(whole, make_shared_project) -> None:
+    parts = copy(make_shared_project)
     first = parts.run("fuzz", "--seed", "1", "--runs", "32", "-j", "1")
-    second = parts.run("fuzz", "--seed", "1", "--runs", "64", "--continue")
+    second = parts.run("fuzz", *CAMPAIGN, "--continue")
     assert re.search("^32 matches, ", second.stdout, re.MULTILINE), second.output
     assert written(parts) == written(whole)
     assert guidance(parts) == guidance(whole)
