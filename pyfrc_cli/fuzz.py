@@ -55,7 +55,7 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     help="Play only part I of N parts of the campaign: for several machines, with the same --seed and --runs.",
 )
 @click.option("--merge", is_flag=True, help="Play nothing: copy the scripts that shards have saved, from DIRECTORIES.")
-@click.argument("directories", nargs=-1, type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.argument("directories", nargs=-1, type=click.Path(path_type=Path))
 @click.option(
     "-j",
     "--jobs",
@@ -105,8 +105,14 @@ def command(
         raise click.UsageError("--time and --runs are mutually exclusive.")
     if resume and recorded:
         raise click.UsageError("--continue and --from are mutually exclusive.")
-    if merge != bool(directories):
+    if merge and not directories:
         raise click.UsageError("--merge and DIRECTORIES belong together.")
+    if directories and not merge:
+        plural = "s" if len(directories) > 1 else ""
+        raise click.UsageError(f"Got unexpected extra argument{plural} ({' '.join(map(str, directories))})")
+    for each in directories:
+        if not each.is_dir():
+            raise click.BadParameter(f"there is no directory {each}", param_hint="DIRECTORIES")
     from pyfrc_core.compat.real_time_devices import explain_real_time
     from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
     from pyfrc_core.fuzz.stream import Shard

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from typing import Any
 
 import pytest
+from skips import missing_programs, require
 
-pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
+require("comparing with another commit", missing_programs("git"))
 
 ROBOT = """
     import wpilib
