@@ -1,0 +1,13 @@
+"""command_camera_no_target: fails with the patch, passes without it.
+
+Needs: Y pressed; a piece in the intake (beam broken); camera sends nothing, or an empty list.
+"""
+
+
+def test_witness(control, hal_data, robot):
+    with control.run_robot():
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        hal_data["joysticks"][0]["buttons"][4] = True
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        hal_data["dio"][4]["value"] = False
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)

@@ -1,0 +1,16 @@
+"""rev_led_progress: fails with the patch, passes without it.
+
+Needs: operator's back pressed (climber armed); operator's A pressed (goal 0), or still stowed; operator's left
+trigger beyond 0.5.
+"""
+
+
+def test_witness(control, hal_data, robot):
+    operator = hal_data["joysticks"][1]
+    with control.run_robot():
+        control.step_timing(seconds=0.5, autonomous=False, enabled=True)
+        operator["buttons"][7] = True
+        operator["buttons"][1] = True
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        operator["axes"][2] = 1.0
+        control.step_timing(seconds=0.5, autonomous=False, enabled=True)

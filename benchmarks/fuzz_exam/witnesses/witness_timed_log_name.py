@@ -1,0 +1,16 @@
+"""timed_log_name: fails with the patch, passes without it.
+
+Needs: Back pressed; then Start pressed; no driver chosen on the dashboard.
+"""
+
+
+def test_witness(control, hal_data, robot):
+    buttons = hal_data["joysticks"][0]["buttons"]
+    with control.run_robot():
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        buttons[7] = True
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        buttons[7] = False
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        buttons[8] = True
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)

@@ -1,0 +1,13 @@
+"""timed_spinner_disabled: fails with the patch, passes without it.
+
+Needs: A pressed in teleop (an odd number of times); robot disabled afterwards.
+"""
+
+
+def test_witness(control, hal_data, robot):
+    with control.run_robot():
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        hal_data["joysticks"][0]["buttons"][1] = True
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        control.step_timing(seconds=1, autonomous=False, enabled=False)
+        assert all(hal_data["pwm"][channel]["value"] == 0 for channel in range(3))

@@ -1,0 +1,16 @@
+"""timedsample_double_press: fails with the patch, passes without it.
+
+Needs: button 2 pressed in teleop; released and pressed again within 0.3 s.
+"""
+
+
+def test_witness(control, hal_data, robot):
+    buttons = hal_data["joysticks"][0]["buttons"]
+    with control.run_robot():
+        control.step_timing(seconds=0.2, autonomous=False, enabled=True)
+        buttons[2] = True
+        control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+        buttons[2] = False
+        control.step_timing(seconds=0.06, autonomous=False, enabled=True)
+        buttons[2] = True
+        control.step_timing(seconds=0.1, autonomous=False, enabled=True)

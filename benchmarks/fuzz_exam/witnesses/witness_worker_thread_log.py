@@ -1,0 +1,12 @@
+"""worker_thread_log: fails with the patch, passes without it.
+
+Needs: sensor reads more than 0 V; then 0 V at the next sample; enabled.
+"""
+
+
+def test_witness(control, hal_data, robot):
+    with control.run_robot():
+        hal_data["analog_in"][0]["voltage"] = 2.0
+        control.step_timing(seconds=1, autonomous=False, enabled=True)
+        hal_data["analog_in"][0]["voltage"] = 0.0
+        control.step_timing(seconds=1, autonomous=False, enabled=True)
