@@ -113,10 +113,15 @@ class Environment:
         return dict(zip(packages, printed.split(), strict=True))
 
 
-def provide_environments(cache: Path) -> tuple[Environment, Environment]:
-    """Ours and today's, ready to be used."""
+def make_cache(cache: Path) -> None:
+    """Make the directory of the environments, which git ignores."""
     cache.mkdir(parents=True, exist_ok=True)
     (cache / ".gitignore").write_text("*\n", "utf-8")
+
+
+def provide_environments(cache: Path) -> tuple[Environment, Environment]:
+    """Ours and today's, ready to be used."""
+    make_cache(cache)
     ours, todays = Environment(cache, "ours"), Environment(cache, "todays")
     todays.provide(*TODAYS)
     ours.provide(str(CHECKOUT), always=True)

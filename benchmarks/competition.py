@@ -22,7 +22,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from comparison import TODAYS, Environment
+from comparison import TODAYS, Environment, make_cache
 from competition_robots import NAMES, copy_robot
 
 HERE = Path(__file__).resolve().parent
@@ -90,8 +90,7 @@ def print_row(name: str, project: Path, rounds: int) -> None:
 
 def provide_todays() -> Environment:
     """Install the pyfrc of the 2026 season and the vendors' packages, beside."""
-    CACHE.mkdir(exist_ok=True)
-    (CACHE / ".gitignore").write_text("*\n")
+    make_cache(CACHE)
     todays = Environment(CACHE, "todays-vendors")
     todays.provide(*TODAYS, *VENDORS)
     return todays

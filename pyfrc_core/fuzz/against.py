@@ -25,13 +25,13 @@ from ..text_files import keep_out_of_version_control
 from .campaign import CampaignOptions
 from .describe import story_of
 from .failure import FuzzFailure
-from .goals import Goal, Line
+from .goals import Line
 from .inputs import Input
 from .match import FuzzTask, MatchResult, ReplayTask, Task
 from .match_executor import MatchExecutor, open_match_executor
 from .revision import Revision, exported
-from .seed_schedule import SeedScheduler
 from .shrink import Shrinker
+from .stream import Stream
 
 #: The kind of a difference, which is shortened as a failure is.
 DIFFERS = "differs"
@@ -74,17 +74,15 @@ def compare(project: Project, revision: str, options: CampaignOptions) -> Compar
         executor.interruptible(),
     ):
         both = _BothVersions(executor, other.project, Path(traces))
-        scheduler = SeedScheduler(options.seed, options.recorded)
-        reached: frozenset[Goal] = frozenset()
+        stream = Stream(options.seed, 0, 1, options.recorded)
         matches, seconds = 0, 0.0
         while (options.runs is None or matches < options.runs) and (deadline is None or time.monotonic() < deadline):
             size = _BATCH if options.runs is None else min(_BATCH, options.runs - matches)
-            schedules = [scheduler.schedule(number) for number in range(matches, matches + size)]
-            generated = list(executor.play(FuzzTask(schedule, reached, reached) for schedule in schedules))
-            for schedule, match in zip(schedules, generated, strict=True):
-                new = {goal: at_us for goal, at_us in match.reached.items() if goal not in reached}
-                scheduler.learn(schedule, new)
-                reached = reached.union(new)
+            schedules = [stream.schedule(number) for number in range(matches, matches + size)]
+            known = stream.reached
+            generated = list(executor.play(FuzzTask(schedule, known, known) for schedule in schedules))
+            for number, (schedule, match) in enumerate(zip(schedules, generated, strict=True), matches):
+                stream.learn(schedule, number, match)
             tasks = [ReplayTask(match.script, use_oracle=False) for match in generated]
             with closing(both.play(tasks)) as results:
                 for match, played in zip(generated, results, strict=True):

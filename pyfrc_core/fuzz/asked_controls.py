@@ -14,7 +14,7 @@ from typing import Any
 import wpilib
 from wpilib.interfaces import GenericHID
 
-from ..runtime.patch_table import Patch, PatchTable
+from ..runtime.patch_table import Patch, patched
 
 #: Returns the key in `hal_data` and the number of the control that a call with these arguments reads.
 _Reads = Callable[..., "tuple[str, int]"]
@@ -78,13 +78,9 @@ class AskedControls:
 @contextmanager
 def watch_controls() -> Iterator[AskedControls]:
     """Watch until the context ends."""
-    asked, table = AskedControls(), PatchTable()
-    for patch in list(_patches(asked)):
-        table.patch(*patch)
-    try:
+    asked = AskedControls()
+    with patched(_patches(asked)):
         yield asked
-    finally:
-        table.undo()
 
 
 def _patches(asked: AskedControls) -> Iterator[Patch]:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
-from types import CodeType, FrameType, TracebackType
+from types import CodeType, FrameType
 
 from ..errors import text_of
 from ..invariants.watch import BrokenInvariantError
-from ..project.robot_files import RobotFiles
+from ..project.robot_files import RobotFiles, innermost_entry
 from ..runtime.exceptions import TestFroze
 from ..runtime.failures import NamesItsPlace, headline, library_calls, with_library_calls
 from ..runtime.loop_limit import LoopWaitsError
@@ -79,15 +78,20 @@ def failure_of(error: BaseException, files: RobotFiles) -> FuzzFailure:
         return FuzzFailure(error.kind, error.place, error.function, _ADDRESS.sub("", str(error)))
     if isinstance(error, LoopWaitsError):  # the line that waits varies
         return FuzzFailure(WAITS, error.begins_at, error.function, str(error))
-    code, line = _innermost(error.__traceback__, files.is_robot_code)
+    entry = innermost_entry(error.__traceback__, files.is_robot_code)
     text = _ADDRESS.sub("", headline(error, files) or with_library_calls(text_of(error), error, files))
     if isinstance(error, TestFroze):
-        code = code or _innermost(error.__traceback__, files.is_project_file)[0]  # a rule
+        entry = entry or innermost_entry(error.__traceback__, files.is_project_file)  # a rule
+        code = entry.tb_frame.f_code if entry else None
         place, function = _place(code, files), code.co_name if code else ""
         return FuzzFailure(HANGS, place, function, f"{place}: {function}() hangs" if place else "the robot code hangs")
-    place = f"{files.relative(code.co_filename)}:{line}" if code else ""
     calls = library_calls(error, files)
-    return FuzzFailure(type(error).__name__, place, code.co_name if code else calls.partition(",")[0], text, calls)
+    kind = type(error).__name__
+    if entry is None:
+        return FuzzFailure(kind, "", calls.partition(",")[0], text, calls)
+    code = entry.tb_frame.f_code
+    place = f"{files.relative(code.co_filename)}:{entry.tb_lineno}"
+    return FuzzFailure(kind, place, code.co_name, text, calls)
 
 
 def user_frame(frame: FrameType | None, files: RobotFiles) -> FrameType | None:
@@ -102,15 +106,6 @@ def place_of(frame: FrameType | None, files: RobotFiles) -> tuple[str, str]:
     if frame is None:
         return "", ""
     return f"{files.relative(frame.f_code.co_filename)}:{frame.f_lineno}", frame.f_code.co_name
-
-
-def _innermost(traceback: TracebackType | None, is_ours: Callable[[str], bool]) -> tuple[CodeType | None, int]:
-    code, line = None, 0
-    while traceback is not None:
-        if is_ours(traceback.tb_frame.f_code.co_filename):
-            code, line = traceback.tb_frame.f_code, traceback.tb_lineno
-        traceback = traceback.tb_next
-    return code, line
 
 
 def _place(code: CodeType | None, files: RobotFiles) -> str:

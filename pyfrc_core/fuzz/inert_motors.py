@@ -13,7 +13,7 @@ import wpilib
 from wpilib.interfaces import MotorController
 
 from ..hal import HalData
-from ..runtime.patch_table import PatchTable
+from ..runtime.patch_table import Patch, patched
 from .motor_calls import DRIVES
 
 _GROUPS = (wpilib.MotorControllerGroup, *(drive for drive, _ in DRIVES))
@@ -30,13 +30,8 @@ class InertMotors:
     @contextmanager
     def watched(self) -> Iterator[None]:
         """Note the motors of each group and drive that is created, until the context ends."""
-        table = PatchTable()
-        for owner in _GROUPS:
-            table.patch(owner, "__init__", self._init(owner.__init__))
-        try:
+        with patched(Patch(owner, "__init__", self._init(owner.__init__)) for owner in _GROUPS):
             yield
-        finally:
-            table.undo()
 
     def is_inert(self, motor: Any) -> bool:
         """Return whether a motor controller or drive is inert while the robot is disabled.

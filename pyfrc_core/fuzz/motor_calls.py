@@ -13,7 +13,7 @@ import wpilib
 import wpilib.drive
 import wpilib.interfaces
 
-from ..runtime.patch_table import Patch, PatchTable
+from ..runtime.patch_table import Patch, patched
 
 #: Called with the motor controller or drive, the function's name, its numeric arguments, and whether they are powers
 #: from -1 to 1.
@@ -29,13 +29,8 @@ DRIVES = (
 @contextmanager
 def intercept_motor_calls(on_motor_call: OnMotorCall) -> Iterator[None]:
     """Report every call to `on_motor_call` until the context ends; the robot's modules must be imported."""
-    table = PatchTable()
-    for patch in list(_patches(on_motor_call)):
-        table.patch(*patch)
-    try:
+    with patched(_patches(on_motor_call)):
         yield
-    finally:
-        table.undo()
 
 
 def _patches(on_motor_call: OnMotorCall) -> Iterator[Patch]:

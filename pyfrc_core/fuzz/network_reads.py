@@ -16,7 +16,7 @@ import wpilib
 
 from ..compat.cpython_private import get_frame
 from ..project.robot_files import RobotFiles
-from ..runtime.patch_table import Patch, PatchTable
+from ..runtime.patch_table import Patch, patched
 
 #: The names that NetworkTables gives to types, by the names in its functions.
 _TYPES = {
@@ -80,13 +80,9 @@ class NetworkReads:
 @contextmanager
 def watch_network_reads(files: RobotFiles) -> Iterator[NetworkReads]:
     """Watch until the context ends."""
-    reads, table = NetworkReads(files), PatchTable()
-    for patch in list(_patches(reads)):
-        table.patch(*patch)
-    try:
+    reads = NetworkReads(files)
+    with patched(_patches(reads)):
         yield reads
-    finally:
-        table.undo()
 
 
 def _patches(reads: NetworkReads) -> Iterator[Patch]:

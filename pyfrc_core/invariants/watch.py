@@ -9,7 +9,7 @@ from types import TracebackType
 from ..errors import text_of
 from ..hal import modes
 from ..hal.driver_station import program_state
-from ..project.robot_files import RobotFiles
+from ..project.robot_files import RobotFiles, innermost_entry
 from ..runtime.clock import CHECK, PACKET_US
 from ..runtime.exceptions import TestFroze
 from ..runtime.failures import NamesItsPlace
@@ -166,14 +166,8 @@ class _Watch:
 
 def _innermost(traceback: TracebackType | None, files: RobotFiles) -> Moment | None:
     """Return the innermost moment in a file of the project's tests."""
-    found = None
-    while traceback is not None:
-        frame = traceback.tb_frame
-        filename = frame.f_code.co_filename
-        if files.is_project_file(filename) and not files.is_robot_code(filename):
-            found = traceback
-        traceback = traceback.tb_next
-    if found is None:
+    entry = innermost_entry(traceback, lambda file: files.is_project_file(file) and not files.is_robot_code(file))
+    if entry is None:
         return None
-    frame = found.tb_frame
-    return Moment(frame.f_code, found.tb_lineno, {**frame.f_globals, **frame.f_locals})
+    frame = entry.tb_frame
+    return Moment(frame.f_code, entry.tb_lineno, {**frame.f_globals, **frame.f_locals})

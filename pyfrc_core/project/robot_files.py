@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from types import FrameType, TracebackType
 
@@ -58,16 +59,10 @@ class RobotFiles:
         A line of the robot program has precedence over a test's, which only called it. Without `tests`, lines of tests
         are ignored.
         """
-        robot_line = test_line = None
-        while traceback is not None:
-            filename = traceback.tb_frame.f_code.co_filename
-            place = f"{self.relative(filename)}:{traceback.tb_lineno}"
-            if self.is_robot_code(filename):
-                robot_line = place
-            elif self.is_project_file(filename):
-                test_line = place
-            traceback = traceback.tb_next
-        return robot_line or (test_line if tests else None)
+        entry = innermost_entry(traceback, self.is_robot_code)
+        if entry is None and tests:
+            entry = innermost_entry(traceback, self.is_project_file)
+        return f"{self.relative(entry.tb_frame.f_code.co_filename)}:{entry.tb_lineno}" if entry is not None else None
 
     def line_of_thread(self, ident: int) -> str | None:
         """Return the user's line that a running thread is at, such as ``robot.py:12``, if it is in the user's code."""
@@ -82,3 +77,16 @@ class RobotFiles:
         """Return the line that a frame is at, such as ``robot.py:12``, if it is in the user's code."""
         filename = frame.f_code.co_filename
         return f"{self.relative(filename)}:{frame.f_lineno}" if self.is_project_file(filename) else None
+
+
+def innermost_entry(traceback: TracebackType | None, is_ours: Callable[[str], bool]) -> TracebackType | None:
+    """Return the entry of a traceback nearest to where the exception was raised, of those in some files.
+
+    :param is_ours: returns whether a file, by its name, is one of them
+    """
+    found = None
+    while traceback is not None:
+        if is_ours(traceback.tb_frame.f_code.co_filename):
+            found = traceback
+        traceback = traceback.tb_next
+    return found

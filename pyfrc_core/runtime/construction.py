@@ -11,7 +11,7 @@ import wpilib
 
 from ..compat.wpilib_private import end_competition
 from ..errors import RobotCodeError
-from .patch_table import PatchTable
+from .patch_table import Patch, patched
 
 
 @contextmanager
@@ -22,18 +22,14 @@ def without_first_alarm() -> Iterator[None]:
     waits after ``super().__init__()`` would hang.
     """
     original = wpilib.TimedRobot.__init__
-    table = PatchTable()
 
     def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
         __tracebackhide__ = True
         original(self, *args, **kwargs)
         end_competition(self)
 
-    table.patch(wpilib.TimedRobot, "__init__", __init__)
-    try:
+    with patched([Patch(wpilib.TimedRobot, "__init__", __init__)]):
         yield
-    finally:
-        table.undo()
 
 
 def missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 _ABSENT: Any = object()
@@ -50,3 +52,15 @@ class PatchTable:
                 delattr(owner, name)
             else:
                 setattr(owner, name, original)
+
+
+@contextmanager
+def patched(patches: Iterable[Patch]) -> Iterator[None]:
+    """Replace these names until the context ends."""
+    table = PatchTable()
+    for patch in list(patches):  # all are made from the original values
+        table.patch(*patch)
+    try:
+        yield
+    finally:
+        table.undo()

@@ -1,6 +1,6 @@
 """elevatorarm_pov_presets: fails with the patch, passes without it.
 
-Needs: POV up pressed anew four times more often than POV down; teleop.
+Needs: POV up pressed four times more often than POV down; teleop.
 """
 
 
