@@ -58,15 +58,18 @@ def test_the_console_is_silent_without_a_driver_station(tmp_path: Path) -> None:
         robot.restart()
         roborio.said("this is a robot")
         assert robot.watch(0.5, unheard=0.1).output == ""
-        done = threading.Event()
+        connected, done = threading.Event(), threading.Event()
 
         def be_a_driver_station() -> None:
             with socket.socket(type=socket.SOCK_DGRAM) as packets:
-                while not done.wait(0.05):
+                while not done.is_set():
                     packets.sendto(b"packet", (roborio.host, 1110))
+                    connected.set()
+                    done.wait(0.05)
 
         driver_station = threading.Thread(target=be_a_driver_station)
         driver_station.start()
+        connected.wait()  # a program that printed before the first packet would not be heard
         try:
             robot.restart()
             assert "this is a robot" in robot.watch(20, unheard=20).output

@@ -30,7 +30,7 @@ LVUSER = ("--userspec=500:500", "--groups=")
 # What the robot's own start script does: one line, run as lvuser.
 PID_FILE = Path(ROOT, "run/natinst/FRC_UserProgram.pid")
 SUPERVISOR_SETTINGS = Path(ROOT, "etc/natinst/share/lvrt.conf")
-DRIVER_STATION_LOST = 1.0  # seconds without a packet of its
+DRIVER_STATION_LOST = 10.0  # seconds without a packet of its: more than a busy machine keeps a sender waiting
 PROGRAM = """
 cd /home/lvuser
 if [ -e /tmp/frcdebug ]; then file=robotDebugCommand; else file=robotCommand; fi
