@@ -291,7 +291,7 @@ class _Race:
         self._running += 1
         threading.Thread(target=lambda: self._finish(function(*arguments)), daemon=True).start()
 
-    def _finish(self, result: Any) -> None:
+    def _finish(self, result: object) -> None:
         if isinstance(result, FoundRobot) and self._over.is_set():
             result.connected.close()
             return
