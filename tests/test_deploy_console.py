@@ -14,6 +14,7 @@ import threading
 from collections.abc import Callable, Iterator
 
 import pytest
+from ports import address_without_servers
 from roborio import Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
 
@@ -83,10 +84,11 @@ def test_the_console_shows_what_the_program_prints_and_connects_again(option, ro
 
 def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> None:
     project = make_project({"robot.py": ROBOT})
+    host = address_without_servers()
     for option in ([], ["--nc-ds"]):
-        with running(project, "console", "--robot", "127.0.0.1", *option) as console:
+        with running(project, "console", "--robot", host, *option) as console:
             port = 1740 if option else 1741
-            wait_for(console, f"127.0.0.1:{port} refuses the connection: check the address, and that the robot is on")
+            wait_for(console, f"{host}:{port} refuses the connection: check the address, and that the robot is on")
         assert console.returncode == 0
 
 
