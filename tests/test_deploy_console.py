@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable, Iterator
 
 import pytest
-from ports import address_without_servers
+from ports import address_without_servers, refusing_port
 from roborio import Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
 
@@ -116,18 +116,17 @@ class ConsoleServer:
         assert not self._thread.is_alive()
 
     def _serve(self) -> None:
-        for content in self._connections:
-            with socket.create_server(("127.0.0.1", 0)) as console:
-                if content is None:
-                    console.close()
-                port = None if content is None else console.getsockname()[1]
-                asked, _ = self._ssh.accept()
-                with asked:
-                    asked.sendall(b"SSH-2.0-pyfrc_virtual_robot console=%d\r\n" % (port or closed_port()))
-                if content is not None:
-                    listener, _ = console.accept()
-                    with listener, contextlib.suppress(OSError):
-                        self._send(listener, content)
+        with refusing_port() as refusing:
+            for content in self._connections:
+                with socket.create_server(("127.0.0.1", 0)) as console:
+                    port = refusing if content is None else console.getsockname()[1]
+                    asked, _ = self._ssh.accept()
+                    with asked:
+                        asked.sendall(b"SSH-2.0-pyfrc_virtual_robot console=%d\r\n" % port)
+                    if content is not None:
+                        listener, _ = console.accept()
+                        with listener, contextlib.suppress(OSError):
+                            self._send(listener, content)
 
     def _send(self, listener: socket.socket, content: bytes) -> None:
         listener.sendall(content)
@@ -138,12 +137,6 @@ class ConsoleServer:
         listener.shutdown(socket.SHUT_WR)
         while listener.recv(1 << 16):
             pass
-
-
-def closed_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port: int = server.getsockname()[1]
-    return port
 
 
 def framed(body: bytes) -> bytes:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 
 import pytest
+from ports import refusing_port
 
 from pyfrc_core.deploy import discovery
 from pyfrc_core.deploy.discovery import Address, RobotNotFoundError, addresses_of, find_robot, parse_address
@@ -49,8 +50,7 @@ class Servers:
 
     def nobody(self) -> Address:
         """An address that refuses."""
-        with socket.create_server(("127.0.0.1", 0)) as listener:
-            return Address("127.0.0.1", listener.getsockname()[1])
+        return Address("127.0.0.1", self._stack.enter_context(refusing_port()))
 
 
 @pytest.fixture

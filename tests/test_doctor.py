@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 from packaging.requirements import Requirement
+from ports import refusing_port
 
 from pyfrc_core._version import __version__
 from pyfrc_core.doctor import CheckResult
@@ -315,14 +316,14 @@ def test_a_server_that_is_not_a_robot() -> None:
 
 def test_a_robot_that_is_off(make_project) -> None:
     """A robot that is not found is a problem if the user has specified it, else a hint."""
-    with socket.create_server(("127.0.0.1", 0)) as closed:
-        address = f"127.0.0.1:{closed.getsockname()[1]}"
-    preferences = {".wpilib/wpilib_preferences.json": json.dumps({"robotHostname": address})}
-    project = make_project({"robot.py": ROBOT} | preferences)
-    (*_, finding) = results_of(project.run("doctor", "--json"))["robot"]
-    assert (finding["status"], finding["text"]) == ("hint", f"{address}: no robot found")
-    (*_, finding) = results_of(project.run("doctor", "--json", "--robot", address))["robot"]
-    assert finding["status"] == "problem"
+    with refusing_port() as port:
+        address = f"127.0.0.1:{port}"
+        preferences = {".wpilib/wpilib_preferences.json": json.dumps({"robotHostname": address})}
+        project = make_project({"robot.py": ROBOT} | preferences)
+        (*_, finding) = results_of(project.run("doctor", "--json"))["robot"]
+        assert (finding["status"], finding["text"]) == ("hint", f"{address}: no robot found")
+        (*_, finding) = results_of(project.run("doctor", "--json", "--robot", address))["robot"]
+        assert finding["status"] == "problem"
 
 
 def test_a_team_number_that_is_none(make_project) -> None:
