@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from ports import address_without_servers, refusing_port
-from roborio import Roborio
+from roborio import PATIENCE, Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
 
 import pyfrc_core.deploy.console
@@ -46,7 +46,7 @@ def running(project, *args: str) -> Iterator[subprocess.Popen[str]]:
         stderr=subprocess.STDOUT,  # has the reports about the connection
         text=True,
     ) as it:
-        guard = threading.Timer(60, it.kill)
+        guard = threading.Timer(2 * PATIENCE, it.kill)
         guard.start()
         try:
             yield it
@@ -111,7 +111,7 @@ class ConsoleServer:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._thread.join(30)
+        self._thread.join(PATIENCE)
         self._ssh.close()
         assert not self._thread.is_alive()
 
@@ -240,7 +240,7 @@ def test_the_imitated_driver_station_stays_disabled_and_survives_a_closed_connec
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp,
     ):
         udp.bind(("127.0.0.1", 0))
-        udp.settimeout(30)
+        udp.settimeout(PATIENCE)
         with imitated_driver_station("127.0.0.1", tcp.getsockname()[1], udp.getsockname()[1]):
             robot, _ = tcp.accept()
             robot.close()

@@ -11,6 +11,7 @@ from contextlib import ExitStack, suppress
 
 import pytest
 from ports import refusing_port
+from roborio import PATIENCE
 
 from pyfrc_core.deploy import discovery
 from pyfrc_core.deploy.discovery import Address, RobotNotFoundError, addresses_of, find_robot, parse_address
@@ -85,7 +86,7 @@ def test_the_others_are_closed(servers: Servers) -> None:
         if robot != found.address:
             # Those that were connected see the end; the winner has not seen it. One that was not yet, is now.
             socket.create_connection((robot.host, robot.port)).close()
-            assert servers.ends[robot].wait(10)
+            assert servers.ends[robot].wait(PATIENCE)
     assert not servers.ends[found.address].is_set()
     found.connected.close()
 
@@ -129,7 +130,7 @@ def test_on_a_competition_field_it_is_refused(how: dict[str, bool], servers: Ser
     robot = servers.start(BANNER)
     with pytest.raises(OnTheFieldError, match=r"FMS.*\n.*when your match is over"):
         find(servers, robot, station=station_says(servers, 0, on_field=True), **how)
-    assert servers.ends[robot].wait(10)
+    assert servers.ends[robot].wait(PATIENCE)
 
 
 @pytest.mark.parametrize("says", [b"", b"nonsense\n", b"[]\n", b'{"robotIP": "x", "FMS Connected": 1}\n', b"\xff\n"])

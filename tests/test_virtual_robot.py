@@ -23,7 +23,8 @@ from skips import require
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.project import find_project
 
-SECONDS = 60
+#: Wall seconds after which a test gives up, and after which a robot is killed. They decide nothing else.
+SECONDS, ROBOT_SECONDS = 120, 240
 
 ROBOT = """
 import os
@@ -79,7 +80,7 @@ def started(project: RobotProject, directory: Path, *options: str) -> Iterator[S
     with subprocess.Popen(
         command, cwd=project.path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, errors="replace"
     ) as process:
-        guard = threading.Timer(SECONDS, process.kill)
+        guard = threading.Timer(ROBOT_SECONDS, process.kill)
         guard.start()
         try:
             yield Started(process)
@@ -221,7 +222,7 @@ def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: Robo
             stderr=subprocess.STDOUT,
             text=True,
         ) as console:
-            guard = threading.Timer(SECONDS, console.kill)
+            guard = threading.Timer(ROBOT_SECONDS, console.kill)
             guard.start()
             assert console.stdout is not None
             assert any("connected to" in line for line in console.stdout)
