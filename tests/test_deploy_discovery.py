@@ -6,6 +6,7 @@ import json
 import socket
 import struct
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 
@@ -29,7 +30,7 @@ class Servers:
         #: Whether the client has gone, by the address.
         self.ends: dict[Address, threading.Event] = {}
 
-    def start(self, says: bytes, host: str = "127.0.0.1") -> Address:
+    def start(self, says: bytes, host: str = "127.0.0.1", after: float = 0.0) -> Address:
         listener = self._stack.enter_context(socket.create_server((host, 0)))
         address = Address(host, listener.getsockname()[1])
         ended = self.ends[address] = threading.Event()
@@ -41,6 +42,7 @@ class Servers:
                 return
             with connected:
                 with suppress(ConnectionError):  # closed with our greeting unread
+                    time.sleep(after)
                     connected.sendall(says)
                     if says.startswith(b"SSH-"):
                         connected.recv(1)
@@ -131,6 +133,14 @@ def test_on_a_competition_field_it_is_refused(how: dict[str, bool], servers: Ser
     with pytest.raises(OnTheFieldError, match=r"FMS.*\n.*when your match is over"):
         find(servers, robot, station=station_says(servers, 0, on_field=True), **how)
     assert servers.ends[robot].wait(PATIENCE)
+
+
+def test_a_driver_station_on_a_busy_computer_is_waited_for(servers: Servers, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only connecting to it has a short limit: most computers have none, and some only notice that late."""
+    monkeypatch.setattr(discovery, "DRIVER_STATION_SECONDS", 0.2)
+    station = servers.start(b'{"robotIP": 0, "FMS Connected": true}\n', after=0.6)
+    with pytest.raises(OnTheFieldError):
+        find(servers, servers.start(BANNER), station=station)
 
 
 @pytest.mark.parametrize("says", [b"", b"nonsense\n", b"[]\n", b'{"robotIP": "x", "FMS Connected": 1}\n', b"\xff\n"])

@@ -26,7 +26,7 @@ DRIVER_STATION = ("127.0.0.1", 1742)
 CONNECT_SECONDS = 5.0
 #: Time limit for resolving names, in seconds.
 RESOLVE_SECONDS = 5.0
-#: Time limit for the Driver Station, in seconds. Windows takes long to refuse a connection.
+#: Time limit for connecting to the Driver Station, in seconds. Windows takes long to refuse a connection.
 DRIVER_STATION_SECONDS = 1.0
 
 #: The highest team number that an address 10.TE.AM.2 can contain.
@@ -327,7 +327,7 @@ class _Race:
         following: list[Any] = []
         try:
             with socket.create_connection(where, timeout=DRIVER_STATION_SECONDS) as station:
-                station.settimeout(DRIVER_STATION_SECONDS)
+                station.settimeout(CONNECT_SECONDS)
                 with station.makefile("rb") as lines:
                     said = json.loads(lines.readline(10_000))
             self.on_field = said.get("FMS Connected") is True
