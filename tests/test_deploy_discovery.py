@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import queue
 import socket
 import struct
 import threading
@@ -56,6 +57,13 @@ class Servers:
         return Address("127.0.0.1", self._stack.enter_context(refusing_port()))
 
 
+@pytest.fixture(autouse=True)
+def patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limits are not what is tested, and these servers may be held up together with the search."""
+    for name in ("CONNECT_SECONDS", "RESOLVE_SECONDS", "DRIVER_STATION_SECONDS"):
+        monkeypatch.setattr(discovery, name, PATIENCE)
+
+
 @pytest.fixture
 def servers() -> Iterator[Servers]:
     with ExitStack() as stack:
@@ -91,6 +99,21 @@ def test_the_others_are_closed(servers: Servers) -> None:
             assert servers.ends[robot].wait(PATIENCE)
     assert not servers.ends[found.address].is_set()
     found.connected.close()
+
+
+def test_a_robot_that_responds_while_the_search_ends_is_closed() -> None:
+    race = discovery._Race()
+
+    class Late(queue.Queue[object]):
+        def put(self, item: object, block: bool = True, timeout: float | None = None) -> None:
+            race.winner()  # it ends here, and finds nothing in the queue
+            super().put(item, block, timeout)
+
+    race._results = Late()
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        race._finish(discovery.FoundRobot(Address("10.12.34.2"), "a place", ours))
+        assert theirs.recv(1) == b""
 
 
 def test_failed_attempts_are_shown_as_a_table(servers: Servers) -> None:

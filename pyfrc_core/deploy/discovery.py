@@ -11,6 +11,7 @@ import struct
 import threading
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -272,9 +273,7 @@ class _Race:
                 for next_step in result:
                     next_step()
         self._over.set()
-        while not self._results.empty():
-            if isinstance(late := self._results.get(), FoundRobot):
-                late.connected.close()
+        self._close_late_ones()
         return found
 
     def reasons(self) -> list[FailedAttempt]:
@@ -292,10 +291,16 @@ class _Race:
         threading.Thread(target=lambda: self._finish(function(*arguments)), daemon=True).start()
 
     def _finish(self, result: object) -> None:
-        if isinstance(result, FoundRobot) and self._over.is_set():
-            result.connected.close()
-            return
         self._results.put(result)
+        if self._over.is_set():  # looked at after the result is there: one of the two threads sees both
+            self._close_late_ones()
+
+    def _close_late_ones(self) -> None:
+        """Close the connections that came after the winner, or after the time limit."""
+        with suppress(queue.Empty):
+            while True:
+                if isinstance(late := self._results.get_nowait(), FoundRobot):
+                    late.connected.close()
 
     def _resolve(self, address: Address, kind: str) -> Any:
         """Return the functions to call next, or a failed attempt."""
