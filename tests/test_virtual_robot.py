@@ -22,6 +22,7 @@ from skips import require
 
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.project import find_project
+from pyfrc_core.virtual_robot.console import ConsoleServer
 
 #: Wall seconds after which a test gives up, and after which a robot is killed. They decide nothing else.
 SECONDS, ROBOT_SECONDS = 120, 240
@@ -210,6 +211,18 @@ def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_
         assert info(robot, project)["current"] == 1
     with started(project, directory, "--fresh") as robot:
         assert info(robot, project)["releases"] == []
+
+
+def test_a_line_that_is_printed_right_after_a_client_has_connected_reaches_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the first lines of a program that an agent restarts, although no thread of the server's gets a turn."""
+    monkeypatch.setattr(threading.Thread, "start", lambda thread: None)
+    console = ConsoleServer("127.0.0.1")
+    try:
+        with socket.create_connection(("127.0.0.1", console.port), timeout=SECONDS) as client:
+            console.send(b"first")
+            assert client.recv(100).endswith(b"first")
+    finally:
+        console.close()
 
 
 def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: RobotProject, directory: Path) -> None:
