@@ -300,6 +300,7 @@ def server(says: bytes) -> Iterator[str]:
         thread.join()
 
 
+@pytest.mark.usefixtures("patient_doctor")
 def test_a_robot_that_does_not_let_us_in() -> None:
     with server(b"SSH-2.0-robot\r\n") as address:
         finding, why = RobotSearch(None, robot=address).findings()
@@ -308,6 +309,7 @@ def test_a_robot_that_does_not_let_us_in() -> None:
     assert why.text.startswith(f"{address}: could not log in to the robot")
 
 
+@pytest.mark.usefixtures("patient_doctor")
 def test_a_server_that_is_not_a_robot() -> None:
     with server(b"HTTP/1.1 400\r\n") as address:
         (finding,) = RobotSearch(None, robot=address).findings()

@@ -128,6 +128,7 @@ def ended(pid: int) -> bool:
         os.close(descriptor)
 
 
+@pytest.mark.usefixtures("patient_doctor")
 def test_a_program_is_deployed_changed_rolled_back_and_removed(project: RobotProject, directory: Path) -> None:
     with started(project, directory) as robot:
         assert "the program runs" in deploy(robot, project)
