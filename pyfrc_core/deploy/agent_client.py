@@ -217,14 +217,18 @@ class AgentClient:
                 on_output(printed)
 
         self._send("watch", seconds=seconds, unheard=seconds if unheard is None else unheard)
-        verdict, state = self._stream.read_response(
-            lambda fields: (fields.one_of("verdict", start_monitor.VERDICTS), StartState.of(fields)),
+        verdict, state, has_run = self._stream.read_response(
+            lambda fields: (
+                fields.one_of("verdict", start_monitor.VERDICTS),
+                StartState.of(fields),
+                "has_run" in fields and fields.flag("has_run"),
+            ),
             on_message,
             silence=self._stream.limits.start,
             within=seconds + 2 * self._stream.limits.start,
         )
         self.recovery_hint = None
-        return Watched(verdict, output, state)
+        return Watched(verdict, output, state, has_run)
 
     def rollback(self, release: int | None = None, on_progress: OnProgress | None = None) -> RolledBack:
         """Make an earlier release current again. The program is not restarted.

@@ -73,6 +73,8 @@ class Agent:
         self._lock: ExitStack | None = None
         #: The release that was started and not watched yet.
         self._started: int | None = None
+        #: The release that a deploy has just compared with the laptop's files, if it was seen to run before.
+        self._has_run: int | None = None
         #: The manifest of the first message or of the last plan: a deploy without a manifest uses it.
         self._files: list[Any] = hello.get("files") or []
         self._requests: dict[str, Callable[[Message], Message]] = {
@@ -190,6 +192,7 @@ class Agent:
             self._releases.recover()
             try:
                 done = Deploy(self._releases, self._wire, request).run()
+                self._has_run = done["release"] if done.get("has_run") else None
                 return {**done, "fallback": self._releases.fallback(done["release"])}
             except BaseException:
                 with suppress(ConnectionError):  # the next deploy removes the rest
@@ -206,7 +209,9 @@ class Agent:
             self._started = current = self._releases.current()
             name = None if current is None else self._releases.record(current).get("main")
             main = None if name is None else self._paths.code / name
-            survived = self._activity.wait_for(lambda: self._program.restart(main))
+            has_run = current is not None and current == self._has_run
+            self._has_run = None  # the next restart is not preceded by a comparison
+            survived = self._activity.wait_for(self._program.restart, main, has_run)
             if current is not None:
                 self._releases.carry_late_writes(current)
             if prune:
