@@ -6,7 +6,6 @@ directory. A release gets its name when it is complete, and loses it before its 
 
 from __future__ import annotations
 
-import filecmp
 import json
 import os
 import re
@@ -369,6 +368,8 @@ def _keep_beside(target: Path, replacement: Path, release: str) -> None:
     """Keep a file under another name before its replacement, unless the content is the same."""
     if target.is_dir() and not target.is_symlink():
         return  # directories are not replaced
+    import filecmp
+
     if not (target.is_symlink() or replacement.is_symlink()) and filecmp.cmp(target, replacement, shallow=False):
         return
     name = target.name if len(os.fsencode(target.name)) <= _MAX_NAME_BYTES else target.name[:_CUT_LENGTH]

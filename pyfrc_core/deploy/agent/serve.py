@@ -5,10 +5,10 @@ from __future__ import annotations
 import errno
 import os
 import sys
-import traceback
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -30,6 +30,8 @@ from .virtual import VirtualRobotClient
 from .wire import EndedError, Message, Wire, WireError, parse_message, read_frame
 
 _USER = "lvuser"
+#: Modules that only later requests need. They are imported after the first response, while the laptop reads it.
+_NEEDED_LATER = ("ctypes", "shutil", "socket", "subprocess", "tempfile")
 
 
 def main(source: BinaryIO, first: bytes = b"", code: bytes = b"") -> None:
@@ -90,6 +92,8 @@ class Agent:
     def serve(self) -> None:
         """Respond to requests until the laptop disconnects."""
         self._respond(self.facts, self._hello)
+        for name in _NEEDED_LATER:
+            import_module(name)
         while True:
             # Without the lock, the laptop may be waiting for its user.
             self._wire.limits_silence = self._lock is not None
@@ -127,6 +131,8 @@ class Agent:
                     "disk", f"{error.filename or 'the robot'}: {error.strerror}", "Check its owner and permissions."
                 )
         except Exception:
+            import traceback
+
             self._send_error("bug", "the agent on the robot has failed", "", traceback=traceback.format_exc())
         return False
 
