@@ -10,6 +10,7 @@ import atexit
 import contextlib
 import gc
 import importlib
+import inspect
 import io
 import json
 import os
@@ -320,6 +321,7 @@ def main() -> None:
     agent_package()  # is kept: packing the agent costs a deploy more than all else that it does on this side
     assert callable(start._restart_with_fixed_seed)  # under another name, each command would start cold
     start._restart_with_fixed_seed = _fix_the_seed
+    inspect.stack()  # resolves the files of all modules, which measuring coverage begins with
     server.send(json.dumps(list(sys.modules)).encode())
     gc.collect()
     gc.freeze()
