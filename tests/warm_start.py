@@ -272,7 +272,7 @@ def _read_metadata_once() -> None:
 
 def _search_plugins_once() -> None:
     """Keep which plugins and classes of plugins have no fixtures: each run of pytest searches all their attributes."""
-    from _pytest import fixtures
+    from _pytest import fixtures, nodes
 
     if not hasattr(fixtures, "FixtureFunctionDefinition"):  # pytest before 8.4
         return
@@ -282,7 +282,8 @@ def _search_plugins_once() -> None:
 
     modules = [module for name, module in sys.modules.items() if name.partition(".")[0] in ("_pytest", "xdist")]
     classes = {value for module in modules for value in vars(module).values() if isinstance(value, type)}
-    without = {holder for holder in (*modules, *classes) if not has_fixtures(holder)}
+    nodes_of_users = {each for each in classes if issubclass(each, nodes.Node)}  # stand for users' modules and classes
+    without = {holder for holder in (*modules, *classes) if not has_fixtures(holder)} - nodes_of_users
     search = fixtures.FixtureManager.parsefactories
 
     def parsefactories(self: fixtures.FixtureManager, *args: object, **kwargs: object) -> None:
