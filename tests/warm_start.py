@@ -280,10 +280,15 @@ def _search_plugins_once() -> None:
     def has_fixtures(holder: object) -> bool:
         return any(isinstance(getattr(holder, name, None), fixtures.FixtureFunctionDefinition) for name in dir(holder))
 
-    modules = [module for name, module in sys.modules.items() if name.partition(".")[0] in ("_pytest", "xdist")]
-    classes = {value for module in modules for value in vars(module).values() if isinstance(value, type)}
-    nodes_of_users = {each for each in classes if issubclass(each, nodes.Node)}  # stand for users' modules and classes
-    without = {holder for holder in (*modules, *classes) if not has_fixtures(holder)} - nodes_of_users
+    def is_pytests(name: str) -> bool:
+        return name.partition(".")[0] in ("_pytest", "xdist")
+
+    modules = [module for name, module in sys.modules.items() if is_pytests(name)]
+    values = [value for module in modules for value in vars(module).values()]
+    # Nodes are not searched themselves: they stand for users' modules and classes.
+    classes = {each for each in values if isinstance(each, type) and is_pytests(each.__module__)}
+    holders = [*modules, *(each for each in classes if not issubclass(each, nodes.Node))]
+    without = {holder for holder in holders if not has_fixtures(holder)}
     search = fixtures.FixtureManager.parsefactories
 
     def parsefactories(self: fixtures.FixtureManager, *args: object, **kwargs: object) -> None:
