@@ -20,6 +20,22 @@ def refusing_port() -> Iterator[int]:
         yield bound.getsockname()[1]
 
 
+def lasting_port() -> int:
+    """Return a free port that stays free, since the system gives it to no connection, nor is it another worker's.
+
+    :raises OSError: if all of them are in use
+    """
+    first = 20_000 + os.getpid() % 10_000
+    for port in range(first, first + 1000):
+        try:
+            socket.create_server(("", port)).close()
+        except OSError as error:
+            failure = error
+        else:
+            return port
+    raise failure
+
+
 def address_without_servers() -> str:
     """Return a loopback address at which no other test serves anything, also not at a robot's fixed ports.
 

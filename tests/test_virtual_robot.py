@@ -18,6 +18,7 @@ from pathlib import Path
 
 import pytest
 from conftest import RobotProject
+from ports import lasting_port
 from skips import require
 
 from pyfrc_core.doctor.robot import RobotSearch
@@ -200,7 +201,7 @@ def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_
     project: RobotProject, directory: Path
 ) -> None:
     # A port that no other test's robot takes meanwhile: they try those from 2222 on.
-    with started(project, directory, "--port", str(20000 + os.getpid() % 10000)) as robot:
+    with started(project, directory, "--port", str(lasting_port())) as robot:
         deploy(robot, project)
         pid, address = robot.pid(), robot.address
     assert robot.process.returncode == 0
