@@ -25,7 +25,10 @@ TESTED_IN_ONE = 3
 WHOLE_MATCHES = "timed"
 
 #: One more session has a busy machine: for a robot that runs in place, and for one with threads and a loop of its own.
-BUSY = os.cpu_count() or 1
+#: A container may have only some of the computer's cores: with as many busy processes as those, nothing would go on.
+BUSY = min(os.cpu_count() or 1, 8)
+#: Ends also when pytest is killed.
+COMPUTE = "import os\nstarted_by = os.getppid()\nwhile os.getppid() == started_by:\n    sum(range(100_000))"
 TESTED_BUSY = (WHOLE_MATCHES, "worker")
 
 #: Between them they are in every mode; the fuzz test has a determinism test of its own.
@@ -52,7 +55,7 @@ def project(name: str, make_project: MakeProject) -> RobotProject:
 
 @contextmanager
 def busy_processes(count: int) -> Iterator[None]:
-    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(count)]
+    busy = [subprocess.Popen([sys.executable, "-c", COMPUTE]) for _ in range(count)]
     try:
         yield
     finally:
