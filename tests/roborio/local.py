@@ -176,10 +176,15 @@ class LocalRobot:
         links = (tuple(sorted(each)) for each in names.values() if len(each) > 1)
         return frozenset(entries), frozenset(links)
 
-    def start(self, agents: Agents, **options: int | bool | None) -> AgentClient:
-        """An agent on it; for the options see `Agents.channel`."""
+    def start(self, agents: Agents, manifest: Manifest | None = None, **options: int | bool | None) -> AgentClient:
+        """An agent on it; for the options see `Agents.channel`.
+
+        :param manifest: the files of the first message
+        """
         self._agents, self._options = agents, options
-        return AgentClient.start(self, hello={"root": str(self.root)})
+        client = AgentClient.open(self)
+        client.begin({"root": str(self.root)}, manifest)
+        return client
 
     def open(self, command: str) -> LocalChannel:
         """What a connection does: run the agent."""
@@ -199,7 +204,7 @@ class LocalRobot:
         **options: int | bool | None,
     ) -> Deployed:
         """Deploy and hang up."""
-        robot = self.start(agents, **options)
+        robot = self.start(agents, project, **options)
         try:
             return robot.deploy(project, DeployRequest(main, {"deploy-user": "somebody"}, debug, in_place))
         finally:

@@ -109,6 +109,10 @@ class Releases:
             self._records[number] = identity, record if isinstance(record, dict) else {}
         return dict(self._records[number][1])
 
+    def contents(self, number: int | None) -> set[str]:
+        """Return the hashes of a release's files, according to its record."""
+        return set() if number is None else set(self.record(number).get("files", {}).values())
+
     def write_record(self, number: int, record: Record) -> None:
         """Write the record of a release."""
         self.paths.releases.mkdir(parents=True, exist_ok=True)

@@ -144,8 +144,11 @@ class Agent:
         ini = text_of(self._paths.of("/etc/natinst/share/ni-rt.ini"))
         releases, python = self._releases, look_up(request.get("modules") or ())
         program = self._host.processes()
+        known = releases.contents(releases.current())
         return {
             **python,
+            # At the first deploy, all of them would make a long message.
+            "new": [path for path, _, sha256, _ in request.get("files") or () if known and sha256 not in known],
             "wpilib": python["packages"].get("wpilib"),
             "python": ".".join(map(str, sys.version_info[:3])),
             "image": image_in(text_of(self._paths.of(IMAGE_FILE)) or ""),
