@@ -77,6 +77,19 @@ def test_a_refactoring_does_the_same(repository) -> None:
     assert "16 matches, 0.02 h of robot time: the outputs are those of " in result.stdout
 
 
+def test_where_processes_cannot_be_forked_new_ones_find_the_same(repository) -> None:
+    repository.write({"robot.py": "raise_at_import = 1 / 0\n"})
+    git(repository, "commit", "-am", "Broken")
+    repository.write({"robot.py": ROBOT})
+    errors = [fuzz(repository, "HEAD")]
+    with (repository.path / "pyproject.toml").open("a") as settings:
+        settings.write("[tool.pyfrc.test]\nisolation = 'spawn'\n")
+    errors.append(repository.run("fuzz", "--runs", "1", "--against", "HEAD"))
+    found = [(result.code, result.first_error) for result in errors]
+    assert found == [(1, "robot.py:1: ZeroDivisionError: division by zero")] * 2, errors
+    assert repository.run("fuzz", "--runs", "1", "--against", "HEAD~").code == 0
+
+
 def test_what_cannot_be_compared_is_refused(repository, make_project) -> None:
     result = fuzz(repository, "no-such-branch")
     assert result.code == 2
