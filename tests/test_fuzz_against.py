@@ -45,8 +45,8 @@ def repository(make_project):
     return project
 
 
-def fuzz(project: Any, *arguments: str) -> Any:
-    return project.run("fuzz", "--seed", "1", "--runs", "16", "--against", *arguments)
+def fuzz(project: Any, *arguments: str, runs: int = 4) -> Any:
+    return project.run("fuzz", "--seed", "1", "--runs", str(runs), "--against", *arguments)
 
 
 def test_a_change_is_found_with_its_moment_path_and_values(repository) -> None:
@@ -72,7 +72,7 @@ def test_a_failure_that_only_one_of_both_has_is_a_difference(repository) -> None
 
 def test_a_refactoring_does_the_same(repository) -> None:
     repository.write({"robot.py": SAME})
-    result = fuzz(repository, "HEAD")
+    result = fuzz(repository, "HEAD", runs=16)
     assert result.code == 0, result.output
     assert "16 matches, 0.02 h of robot time: the outputs are those of " in result.stdout
 
