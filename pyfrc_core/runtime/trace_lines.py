@@ -14,6 +14,8 @@ REAL_TIME = "real_time"
 #: How JSON has the numbers that are not finite.
 _NOT_FINITE = {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}
 
+_encode = json.JSONEncoder(sort_keys=True).encode  # `json.dumps` would make an encoder for each value
+
 
 class TraceLines:
     """Formats lines whose paths repeat."""
@@ -48,7 +50,7 @@ class TraceLines:
         for path in ordered:
             value = values[path]
             if type(value) is not float:
-                text = json.dumps(value, sort_keys=True)
+                text = _encode(value)
             elif value in texts and value:  # 0.0 equals -0.0
                 text = texts[value]
             else:
