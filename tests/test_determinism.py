@@ -19,7 +19,7 @@ ROBOTS = Path(__file__).parent / "robots"
 NAMES = sorted(path.name for path in ROBOTS.iterdir() if (path / "robot.py").is_file())
 
 #: How often a new interpreter tests each robot. Another one, forked from a third where that can be, tests it once.
-TESTED_IN_ONE = 3
+TESTED_IN_ONE = 7
 
 #: Its own tests count the loops of a match of the real length.
 WHOLE_MATCHES = "timed"
