@@ -84,7 +84,8 @@ def test_the_same_again_changes_nothing_but_who_has_deployed(robot: AgentDisk) -
     need, done = robot.deploy(ONE, deploy_json={"by": "Grace"})
     assert need == {"need": [], "bytes": 0}
     assert done["done"] == {
-        "release": 1, "previous": 1, "files": 0, "bytes": 0, "taken": None, "unchanged": True, "fallback": None
+        "release": 1, "previous": 1, "files": 0, "bytes": 0, "taken": None, "unchanged": True, "fallback": None,
+        "has_run": False,
     }  # fmt: skip
     assert json.loads(robot.read("py/deploy.json") or "") == {"by": "Grace"}
     assert json.loads(robot.read(".pyfrc/releases/1.json") or "")["deploy"] == {"by": "Grace"}

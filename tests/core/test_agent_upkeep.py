@@ -62,7 +62,7 @@ def quiet(robot: AgentDisk) -> Releases:
 def verdicts(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """What the next watches find; each restart is noted in `restarted`."""
     found: list[str] = []
-    monkeypatch.setattr(Program, "restart", lambda self, main: restarted.append(main) or len(restarted) > 1)
+    monkeypatch.setattr(Program, "restart", lambda self, main, has_run: restarted.append(main) or len(restarted) > 1)
     monkeypatch.setattr(
         Program,
         "watch",

@@ -130,7 +130,7 @@ class Deploy:
         directory = self._releases.directory(current)
         record = self._releases.record(current)
         same = (record.get("main"), record.get("debug")) == (self._main, self._debug)
-        has_run = same and record.get("ran") and not record.get("ended")
+        has_run = bool(same and record.get("ran") and not record.get("ended"))
         record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
         compile_below(directory, self._debug, self._activity, self._program)
         write_whole(directory / DEPLOY_JSON, json.dumps(self._about, indent=2))
