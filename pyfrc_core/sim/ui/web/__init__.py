@@ -40,7 +40,7 @@ class WebFrontEnd(FrontEnd):
     def run(self, simulation: Simulation) -> int:
         self.server = server = Server(self._options, self._access)
         self._collector = collector = Collector(simulation, server.wake)
-        commands = Commands(simulation, collector, self._over.set)
+        commands = Commands(simulation, collector, self.close)
         try:
             server.start(WebApp(simulation, collector, commands, self._access))
             collector.start()
@@ -53,6 +53,10 @@ class WebFrontEnd(FrontEnd):
             server.close()
             simulation.close()
         return 0
+
+    def close(self) -> None:
+        """End the simulation. May be called from any thread."""
+        self._over.set()
 
     def saved(self, files: list[str]) -> None:
         """Show that the robot gets new code."""

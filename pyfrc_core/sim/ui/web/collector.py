@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _LONGEST, _SHORTEST = 0.1, 0.008
 #: The most changes that are read at once, since reading them keeps the simulation from going on.
 _MOST_CHANGES = 256
+#: The most such reads in one look.
+_MOST_READS = 4
 _BUTTONS = tuple(f"joysticks[{number}].buttons" for number in range(6))
 
 
@@ -68,9 +70,11 @@ class Collector:
         self._failure: Failure | None = None
         self._note = ""
         self._announced: list[str] = []
+        #: The numbers of lines and marks at the last look.
+        self._shown = (0, 0)
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._follow, name="pyfrc sim: web collector", daemon=True)
-        self.state = self._state_now()
+        self.state = self._state_of(simulation.snapshot, simulation.status)
 
     @property
     def root(self) -> Path:
@@ -103,26 +107,39 @@ class Collector:
 
     def look(self) -> bool:
         """Read what is new, and return whether there is anything."""
-        before, lines = self.state, self.console.count
+        before, shown = self.state, self._shown
+        simulation = self._simulation
+        # Before the changes are read, so that they are at least as new as what is shown beside them.
+        snapshot, status = simulation.snapshot, simulation.status
         now = 0.0 if before.snapshot is None else before.snapshot.time
         if output := self._output.read():
             for line in self.console.add(output, now):
                 if line.level in ("error", "warning"):
                     self.marks.add(now, line.level, line.text.strip())
-        found = self._hal.read(_MOST_CHANGES)
-        self.runs.take("hal", found, self._look_at_hal)
-        network = self._network.read(_MOST_CHANGES)
-        self.runs.take("network", network, self._look_at_network)
+        changes = self._read_changes()
         if self._network_changed:
             self._network_changed = False
             self._network_values = self.runs.network_values()
-        self.state = state = self._state_now()
+        self.state = state = self._state_of(snapshot, status)
         self._note_events(state, now)
-        return bool(found or network) or state != before or self.console.count != lines
+        self._shown = self.console.count, self.marks.count
+        return changes or state != before or self._shown != shown
 
-    def _state_now(self) -> State:
+    def _read_changes(self) -> bool:
+        """Read the changes until now, but not for longer than the page can wait; return whether there are any."""
+        found = False
+        for _ in range(_MOST_READS):
+            hal, network = self._hal.read(_MOST_CHANGES), self._network.read(_MOST_CHANGES)
+            self.runs.take("hal", hal, self._look_at_hal)
+            self.runs.take("network", network, self._look_at_network)
+            found = found or bool(hal or network)
+            if len(hal) < _MOST_CHANGES and len(network) < _MOST_CHANGES:
+                break
+        return found
+
+    def _state_of(self, snapshot: Snapshot | None, status: Status) -> State:
         simulation = self._simulation
-        snapshot, status, project = simulation.snapshot, simulation.status, simulation.project
+        project = simulation.project
         if project is not self._project:
             self._project, self._rows = project, DeviceRows(project.sim_config)
         if snapshot is not None:

@@ -39,6 +39,10 @@ class Column:
     def append(self, packet: int, value: Any) -> None:
         """Add a change."""
         storage = self._storage
+        if storage == "number" and type(value) is float:  # most changes are of this kind
+            self.packets.append(packet)
+            self._numbers.append(value)
+            return
         if storage != _storage_of(value) and storage != "object":
             self._objects = [self.value(number) for number in range(len(self.packets))]
             self._storage = storage = "object"
@@ -89,6 +93,7 @@ class Column:
         if not end:
             return None
         part = Column(self.value(0))
-        for number in range(end):
-            part.append(self.packets[number], self.value(number))
+        part._storage, part.packets = self._storage, self.packets[:end]
+        part._ends, part._objects = self._ends[:end], self._objects[:end]
+        part._numbers = self._numbers[: self._ends[end - 1] if self._ends else end]
         return part

@@ -92,7 +92,8 @@ class Commands:
         self._simulation.write({target: read_value(value) for target, value in values.items()})
 
     def _name_branch(self, message: Message) -> None:
-        if not self._collector.runs.name(int(_number(message, "id")), _text(message, "name").strip()[:80]):
+        number, name = int(_number(message, "branch")), _text(message, "text").strip()[:80]
+        if not self._collector.runs.name(number, name):
             raise CommandError("This branch is no longer kept.")
 
     def _save(self, message: Message) -> Answer:

@@ -69,6 +69,13 @@ class Piece:
     begin: int
     end: int
 
+    def change_times(self) -> array[float]:
+        """Return the time of each change."""
+        packets = self.column.packets[self.begin : self.end]
+        if packets[-1] - packets[0] == len(packets) - 1:  # it changed in every packet
+            return self.times[packets[0] : packets[-1] + 1]
+        return array("d", map(self.times.__getitem__, packets))
+
 
 class History:
     """The values of one run. Use it from one thread at a time."""

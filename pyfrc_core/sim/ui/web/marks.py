@@ -35,7 +35,8 @@ class Marks:
 
     def __init__(self) -> None:
         self._marks: list[Mark] = []
-        self._count = 0
+        #: The number of all marks, also of those that are no longer kept.
+        self.count = 0
         self._buttons: dict[str, Any] = {}
 
     def all(self) -> tuple[Mark, ...]:
@@ -48,8 +49,8 @@ class Marks:
 
     def add(self, time: float, kind: Kind, text: str) -> None:
         """Add a mark."""
-        self._count += 1
-        marks = [*self._marks[-_MOST * 2 :], Mark(self._count, time, kind, text[:_LONGEST_TEXT])]
+        self.count += 1
+        marks = [*self._marks, Mark(self.count, time, kind, text[:_LONGEST_TEXT])]
         if len(marks) > _MOST:
             spare = next((each for each in marks if each.kind != "own"), marks[0])
             marks.remove(spare)

@@ -47,8 +47,7 @@ def series(history: History, path: str, begin: float, end: float, points: int) -
     first = picked(history.value_at(path, begin), index)
     for piece in history.pieces(path, begin, end):
         column = piece.column
-        packets = column.packets[piece.begin : piece.end]
-        times.extend([piece.times[packet] for packet in packets])
+        times.extend(piece.change_times())
         numbers = column.numbers(piece.begin, piece.end) if index is None and plain else None
         if numbers is None:
             if plain:
@@ -61,8 +60,8 @@ def series(history: History, path: str, begin: float, end: float, points: int) -
     if first is not MISSING:
         all_times.insert(0, begin)
         found.insert(0, first)
-    kind = _kind(found)
-    if kind == "number" and len(found) > 2 * points:
+    kind = "number" if plain and found and type(found[0]) in (float, int) else _kind(found)
+    if kind == "number" and len(found) > points:
         all_times, found = _decimated(all_times, found, points)
     elif len(found) > 2 * MOST_POINTS:
         every = math.ceil(len(found) / MOST_POINTS)
@@ -78,19 +77,17 @@ def _kind(values: list[Any]) -> str:
 
 
 def _decimated(times: list[float], values: list[float], points: int) -> tuple[list[float], list[float]]:
-    """Keep the lowest and the highest of each of as many intervals, in their order, and the last."""
-    step = len(values) / points
-    kept_times, kept = [times[0]], [values[0]]
-    for number in range(points):
-        begin, after = max(int(number * step), 1), int((number + 1) * step)
+    """Keep the first, the lowest and the highest of each of half as many intervals, and the last."""
+    intervals = points // 2
+    step = len(values) / intervals
+    kept = [0]
+    after = 1
+    for number in range(1, intervals + 1):
+        begin, after = after, int(number * step)
         part = values[begin:after]
-        if not part:
-            continue
-        low, high = begin + part.index(min(part)), begin + part.index(max(part))
-        for place in sorted({low, high}):
-            kept_times.append(times[place])
-            kept.append(values[place])
-    if kept_times[-1] != times[-1]:
-        kept_times.append(times[-1])
-        kept.append(values[-1])
-    return kept_times, kept
+        if part:
+            low, high = begin + part.index(min(part)), begin + part.index(max(part))
+            kept += (low,) if low == high else (low, high) if low < high else (high, low)
+    if kept[-1] != len(values) - 1:
+        kept.append(len(values) - 1)
+    return [times[each] for each in kept], [values[each] for each in kept]

@@ -55,6 +55,8 @@ class Runs:
         self._numbers: dict[Source, int] = {"hal": 0, "network": 0}
         self._packets = 0
         self.branches: tuple[Branch, ...] = ()
+        #: The run that was left last.
+        self._leaving: Branch | None = None
 
     # -- what is added --------------------------------------------------------------------------------------------
 
@@ -78,8 +80,7 @@ class Runs:
 
     def _begin(self, source: Source, began: RunBegan) -> None:
         former = self._histories[source]
-        if former.packets and former.end > began.time + _ROUNDING:
-            self._keep(source, former, began)
+        self._keep(source, former, began)
         if not began.values:  # from the start: its changes have everything
             self._histories[source] = History()
         else:
@@ -91,14 +92,15 @@ class Runs:
         self._numbers[source] = began.number
 
     def _keep(self, source: Source, former: History, began: RunBegan) -> None:
-        branches = list(self.branches)
-        if not branches or branches[-1].number != began.number:
+        """Keep the values of the run before, when those of both sources are there and the run went on further."""
+        leaving = self._leaving
+        if leaving is None or leaving.number != began.number:
             name = f"before {began.time:.2f} s" if began.time else "before the restart"
-            branches.append(Branch(began.number, name, began.time, former.end))
-        latest = branches[-1]
-        histories = {**latest.histories, source: former}
-        branches[-1] = replace(latest, end=max(latest.end, former.end), histories=histories)
-        self.branches = tuple(branches[-_MOST_BRANCHES:])
+            leaving = Branch(began.number, name, began.time, 0.0)
+        histories = {**leaving.histories, source: former}
+        self._leaving = leaving = replace(leaving, end=max(leaving.end, former.end), histories=histories)
+        if len(histories) == len(self._histories) and leaving.end > leaving.begin + _ROUNDING:
+            self.branches = (*self.branches, leaving)[-_MOST_BRANCHES:]
 
     def _limit(self) -> None:
         """Keep the values within the memory that they may take."""
@@ -187,7 +189,7 @@ class Runs:
             return self._histories[source]
         for each in self.branches:
             if each.number == branch:
-                return each.histories.get(source, History())
+                return each.histories[source]
         return None
 
 
