@@ -74,7 +74,8 @@ class Console:
         text = self._open + plain_output(text)
         skipped = 0
         if len(text) > MOST_AT_ONCE:  # only a program looks at so much
-            begin = text.find("\n", len(text) - MOST_AT_ONCE) + 1
+            cut = len(text) - MOST_AT_ONCE
+            begin = text.find("\n", cut, -1) + 1 or cut
             skipped = text.count("\n", 0, begin)
             text = text[begin:]
         *whole, self._open = text.split("\n")
