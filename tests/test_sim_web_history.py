@@ -76,7 +76,7 @@ def test_a_curve_holds_each_value_until_the_next_change() -> None:
     assert series(history, "name", 0.0, 9, 100) == {"kind": "text", "t": [0.0, 1.0], "v": ["x", "y"]}
     assert series(history, "list[1]", 0.0, 9, 100) == {"kind": "number", "t": [0.0, 0.5], "v": [2.0, 3.0]}
     assert series(history, "list[7]", 0.0, 9, 100)["v"] == [None]
-    assert series(history, "unknown", 0.0, 9, 100) == {"kind": "other", "t": [], "v": []}
+    assert series(history, "unknown", 0.0, 9, 100) == {"kind": "number", "t": [], "v": []}
 
 
 def test_a_long_curve_keeps_its_peaks() -> None:

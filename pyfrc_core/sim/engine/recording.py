@@ -15,6 +15,7 @@ from pathlib import Path
 from ...runtime.robot_time import to_us
 from ...runtime.scripts.script import InputScript, Step, trace_beside
 from ...runtime.trace import FORMAT, hashed_part
+from ...runtime.trace_lines import line_time
 from ...text_files import write_whole
 from .history import History, entries
 from .messages import StationState, Update
@@ -49,9 +50,9 @@ class Recording:
             self._steps.append(step.at_us, step)
         self._changing, self._changing_from = update.steps, update.steps_from
         for line in update.lines:
-            self._lines.append(to_us(json.loads(line)["t"]), line)
+            self._lines.append(to_us(line_time(line)), line)
         for line in update.network_lines:
-            self._network_lines.append(to_us(json.loads(line)["t"]), line)
+            self._network_lines.append(to_us(line_time(line)), line)
         if self._stations.last != update.station:
             self._stations.append(update.time_us, update.station)
 

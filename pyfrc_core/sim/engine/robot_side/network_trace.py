@@ -59,7 +59,7 @@ class NetworkTrace:
         lost = [path for path in gone if values.pop(path, None) is not None]
         if changed or lost:
             values.update(changed)
-            self._lines.append(json.dumps({"t": round(now, 6), "set": changed, "gone": lost}) + "\n")
+            self._lines.append(json.dumps({"gone": lost, "set": changed, "t": round(now, 6)}) + "\n")
 
     def skip(self, now: float) -> None:
         """Take over what has changed by `now` without a line: it is known from the run before."""
