@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pyfrc_core._version import requirement
 from pyfrc_core.wording import counted
 
 from .project_options import chosen_project, project_options
@@ -64,6 +65,12 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     help="How many matches run at the same time. Default: the number of processors.",
 )
 @click.option(
+    "--scheduler",
+    metavar="ADDRESS",
+    help=f"Run the matches on the Dask cluster with this scheduler, such as tcp://10.0.0.5:8786, instead of with -j."
+    f' Needs: pip install "{requirement("cluster")}"',
+)
+@click.option(
     "--from",
     "recorded",
     metavar="LOG",
@@ -89,6 +96,7 @@ def command(
     merge: bool,
     directories: tuple[Path, ...],
     jobs: int | None,
+    scheduler: str | None,
     recorded: tuple[Path, ...],
     revision: str | None,
 ) -> None:
@@ -103,6 +111,8 @@ def command(
     """
     if seconds is not None and runs is not None:
         raise click.UsageError("--time and --runs are mutually exclusive.")
+    if scheduler is not None and (jobs is not None or revision is not None):
+        raise click.UsageError(f"--scheduler and {'-j' if jobs is not None else '--against'} are mutually exclusive.")
     if resume and recorded:
         raise click.UsageError("--continue and --from are mutually exclusive.")
     if merge and not directories:
@@ -129,7 +139,7 @@ def command(
     printer = _ProgressPrinter(verbosity().quiet, project)
     scripts = tuple(load_inputs(file) for file in recorded)
     jobs = jobs or usable_processors()
-    options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume)
+    options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume, scheduler)
     if revision is not None:
         sys.exit(_compare(project, revision, options))
     campaign = run_campaign(project, options, printer)

@@ -24,7 +24,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 json_option = click.option("--json", "as_json", is_flag=True, help="For tools: one JSON object per line. Asks nothing.")
 
 
-def refuse_option_as_value(context: click.Context, option: click.Parameter, value: Any) -> Any:
+def refuse_option_as_value(context: click.Context, option: click.Parameter, value: object) -> Any:
     """Check that the value of an option is not the next option, as in ``--robot --skip-tests``.
 
     :raises click.BadParameter: if it begins with a dash
@@ -45,7 +45,7 @@ def robot_options(command: Function) -> Function:
         robot_name: str | None,
         identity: Path | None,
         ssh_agent: bool,
-        **others: Any,
+        **others: object,
     ) -> Any:
         from pyfrc_core.deploy.credentials import Credentials
 
@@ -64,7 +64,7 @@ def address_options(command: Function) -> Function:
     """Add the options for a robot's address, which become ``choice``."""
 
     @wraps(command)
-    def with_address(*, robot: str | None, team: int | None, no_resolve: bool, **others: Any) -> Any:
+    def with_address(*, robot: str | None, team: int | None, no_resolve: bool, **others: object) -> Any:
         if robot is not None and team is not None:
             raise click.UsageError("--robot and --team are mutually exclusive.")
         from pyfrc_core.deploy.target_connection import RobotChoice

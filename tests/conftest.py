@@ -306,6 +306,13 @@ def make_shared_project(tmp_path_factory: pytest.TempPathFactory) -> MakeProject
     return lambda files: _new_project(tmp_path_factory.mktemp("shared"), files)
 
 
+@pytest.fixture
+def patient_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have `pyfrc doctor` wait for a robot that is there, however busy this machine is."""
+    for name in ("SEARCH_SECONDS", "CHECK_SECONDS"):
+        monkeypatch.setattr(f"pyfrc_core.doctor.robot.{name}", 100.0)
+
+
 @pytest.fixture(scope="module")
 def agents() -> Generator[Agents]:
     """Starts what runs on a robot, here."""

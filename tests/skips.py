@@ -55,6 +55,7 @@ _PACKAGES = {
 
 #: What no package brings.
 _OTHERWISE = {
+    "Dask": 'pip install "distributed>=2024.12"',
     "Python 3.11": "make test PYTHON=python3.11 VENV=.venv-3.11",
     "Linux": "run them on Linux (on Windows: in WSL)",
     "a Python with tkinter": "make test PYTHON=/usr/bin/python3 VENV=.venv-system",

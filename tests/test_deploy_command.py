@@ -93,7 +93,7 @@ def code_on(robot: Roborio) -> str:
 
 def alone_on_port(port: int) -> socket.socket:
     """Listens there, when it is this test's turn: another run of this suite may be at the same test."""
-    for _ in range(600):
+    for _ in range(2000):
         try:
             return socket.create_server(("127.0.0.1", port))
         except OSError:
@@ -116,9 +116,11 @@ def driver_station(robot: Roborio) -> Iterator[None]:
 
         thread = threading.Thread(target=serve, daemon=True)
         thread.start()
-        yield
-        listener.shutdown(socket.SHUT_RDWR)
-        thread.join()
+        try:
+            yield
+        finally:  # or the thread would go on accepting, and no other test could ever listen there
+            listener.shutdown(socket.SHUT_RDWR)
+            thread.join()
 
 
 def test_a_new_user_comes_to_a_running_program_with_one_command_and_one_question(robot: Roborio, make_project) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import paramiko
 import pytest
+from ports import refusing_port
 
 from pyfrc_core.deploy.connection import connect, load_in_background
 from pyfrc_core.deploy.discovery import Address
@@ -63,10 +64,10 @@ def test_an_ssh_server_that_only_sends_its_greeting_is_reported(says: bytes, tmp
 
 
 def test_an_address_without_a_robot_is_reported(tmp_path: Path) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        address = Address("127.0.0.1", listener.getsockname()[1])
-    with pytest.raises(ConnectionFailedError, match="refused"):
-        connect(address, HostKeys(tmp_path).of_robot(address))
+    with refusing_port() as port:
+        address = Address("127.0.0.1", port)
+        with pytest.raises(ConnectionFailedError, match="refused"):
+            connect(address, HostKeys(tmp_path).of_robot(address))
 
 
 # -- when a key is pinned ----------------------------------------------------------------------------------------------

@@ -14,7 +14,8 @@ import threading
 from collections.abc import Callable, Iterator
 
 import pytest
-from roborio import Roborio
+from ports import address_without_servers, refusing_port
+from roborio import PATIENCE, Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
 
 import pyfrc_core.deploy.console
@@ -45,7 +46,7 @@ def running(project, *args: str) -> Iterator[subprocess.Popen[str]]:
         stderr=subprocess.STDOUT,  # has the reports about the connection
         text=True,
     ) as it:
-        guard = threading.Timer(60, it.kill)
+        guard = threading.Timer(2 * PATIENCE, it.kill)
         guard.start()
         try:
             yield it
@@ -83,10 +84,11 @@ def test_the_console_shows_what_the_program_prints_and_connects_again(option, ro
 
 def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> None:
     project = make_project({"robot.py": ROBOT})
+    host = address_without_servers()
     for option in ([], ["--nc-ds"]):
-        with running(project, "console", "--robot", "127.0.0.1", *option) as console:
+        with running(project, "console", "--robot", host, *option) as console:
             port = 1740 if option else 1741
-            wait_for(console, f"127.0.0.1:{port} refuses the connection: check the address, and that the robot is on")
+            wait_for(console, f"{host}:{port} refuses the connection: check the address, and that the robot is on")
         assert console.returncode == 0
 
 
@@ -109,23 +111,22 @@ class ConsoleServer:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._thread.join(30)
+        self._thread.join(PATIENCE)
         self._ssh.close()
         assert not self._thread.is_alive()
 
     def _serve(self) -> None:
-        for content in self._connections:
-            with socket.create_server(("127.0.0.1", 0)) as console:
-                if content is None:
-                    console.close()
-                port = None if content is None else console.getsockname()[1]
-                asked, _ = self._ssh.accept()
-                with asked:
-                    asked.sendall(b"SSH-2.0-pyfrc_virtual_robot console=%d\r\n" % (port or closed_port()))
-                if content is not None:
-                    listener, _ = console.accept()
-                    with listener, contextlib.suppress(OSError):
-                        self._send(listener, content)
+        with refusing_port() as refusing:
+            for content in self._connections:
+                with socket.create_server(("127.0.0.1", 0)) as console:
+                    port = refusing if content is None else console.getsockname()[1]
+                    asked, _ = self._ssh.accept()
+                    with asked:
+                        asked.sendall(b"SSH-2.0-pyfrc_virtual_robot console=%d\r\n" % port)
+                    if content is not None:
+                        listener, _ = console.accept()
+                        with listener, contextlib.suppress(OSError):
+                            self._send(listener, content)
 
     def _send(self, listener: socket.socket, content: bytes) -> None:
         listener.sendall(content)
@@ -136,12 +137,6 @@ class ConsoleServer:
         listener.shutdown(socket.SHUT_WR)
         while listener.recv(1 << 16):
             pass
-
-
-def closed_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port: int = server.getsockname()[1]
-    return port
 
 
 def framed(body: bytes) -> bytes:
@@ -245,7 +240,7 @@ def test_the_imitated_driver_station_stays_disabled_and_survives_a_closed_connec
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp,
     ):
         udp.bind(("127.0.0.1", 0))
-        udp.settimeout(30)
+        udp.settimeout(PATIENCE)
         with imitated_driver_station("127.0.0.1", tcp.getsockname()[1], udp.getsockname()[1]):
             robot, _ = tcp.accept()
             robot.close()

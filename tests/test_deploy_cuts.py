@@ -7,7 +7,7 @@ from collections.abc import Generator
 from pathlib import Path
 
 import pytest
-from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, Agents, Disk, LocalRobot, directory_in_memory, project_of
 
 from pyfrc_core.deploy.agent_client import AgentClient
 from pyfrc_core.deploy.errors import DeployError
@@ -38,6 +38,10 @@ WRITTEN: Files = {"log.txt": b"1\n2\n", "state/odometer": b"17"}
 SCENARIOS = ["first", "update", "renamed", "taken over"]
 
 
+#: By scenario, the disks on which a deploy after a cut was seen to work.
+_DEPLOYED_AGAIN: dict[str, set[Disk]] = {name: set() for name in SCENARIOS}
+
+
 class Scenario:
     """A robot as it is before a deploy, the deploy, and the programs that may be there after it."""
 
@@ -64,6 +68,7 @@ class Scenario:
         whole.deploy(agents, self.project, main=self.main)
         assert whole.startable() == self.new
         self.channel = whole.channel
+        self._deployed_again = _DEPLOYED_AGAIN[name]
 
     def _write(self, path: str, content: bytes) -> None:
         file = self._before.home / "py" / path
@@ -75,12 +80,19 @@ class Scenario:
         return self._before.copy(self._directory / "robot")
 
     def check(self, **cut: int | bool) -> bool:
-        """Deploy, be cut, and look; then deploy again. Whether the new program was in place after the cut already."""
+        """Deploy, be cut, and look; then deploy again. Whether the new program was in place after the cut already.
+
+        Many cuts leave the same on the disk. What the next deploy does there is seen once.
+        """
         robot = self.robot()
         with contextlib.suppress(DeployError):
             robot.deploy(self._agents, self.project, main=self.main, **cut)
         started = robot.startable()
         assert started in (self.old, self.new), f"after {cut}, neither the old nor the new program would be started"
+        disk = robot.disk()
+        if disk in self._deployed_again:
+            return started == self.new
+        self._deployed_again.add(disk)
         robot.deploy(self._agents, self.project, main=self.main)
         assert robot.startable() == self.new, f"after {cut}, and another deploy"
         assert {each.name for each in (robot.home / ".pyfrc").iterdir()} == {"lock", "releases"}

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
+import queue
 import socket
 import struct
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 
 import pytest
+from ports import refusing_port
+from roborio import PATIENCE
 
 from pyfrc_core.deploy import discovery
 from pyfrc_core.deploy.discovery import Address, RobotNotFoundError, addresses_of, find_robot, parse_address
@@ -27,7 +31,7 @@ class Servers:
         #: Whether the client has gone, by the address.
         self.ends: dict[Address, threading.Event] = {}
 
-    def start(self, says: bytes, host: str = "127.0.0.1") -> Address:
+    def start(self, says: bytes, host: str = "127.0.0.1", after: float = 0.0) -> Address:
         listener = self._stack.enter_context(socket.create_server((host, 0)))
         address = Address(host, listener.getsockname()[1])
         ended = self.ends[address] = threading.Event()
@@ -39,6 +43,7 @@ class Servers:
                 return
             with connected:
                 with suppress(ConnectionError):  # closed with our greeting unread
+                    time.sleep(after)
                     connected.sendall(says)
                     if says.startswith(b"SSH-"):
                         connected.recv(1)
@@ -49,8 +54,14 @@ class Servers:
 
     def nobody(self) -> Address:
         """An address that refuses."""
-        with socket.create_server(("127.0.0.1", 0)) as listener:
-            return Address("127.0.0.1", listener.getsockname()[1])
+        return Address("127.0.0.1", self._stack.enter_context(refusing_port()))
+
+
+@pytest.fixture(autouse=True)
+def patience(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limits are not what is tested, and these servers may be held up together with the search."""
+    for name in ("CONNECT_SECONDS", "RESOLVE_SECONDS", "DRIVER_STATION_SECONDS"):
+        monkeypatch.setattr(discovery, name, PATIENCE)
 
 
 @pytest.fixture
@@ -85,9 +96,24 @@ def test_the_others_are_closed(servers: Servers) -> None:
         if robot != found.address:
             # Those that were connected see the end; the winner has not seen it. One that was not yet, is now.
             socket.create_connection((robot.host, robot.port)).close()
-            assert servers.ends[robot].wait(10)
+            assert servers.ends[robot].wait(PATIENCE)
     assert not servers.ends[found.address].is_set()
     found.connected.close()
+
+
+def test_a_robot_that_responds_while_the_search_ends_is_closed() -> None:
+    race = discovery._Race()
+
+    class Late(queue.Queue[object]):
+        def put(self, item: object, block: bool = True, timeout: float | None = None) -> None:
+            race.winner()  # it ends here, and finds nothing in the queue
+            super().put(item, block, timeout)
+
+    race._results = Late()
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        race._finish(discovery.FoundRobot(Address("10.12.34.2"), "a place", ours))
+        assert theirs.recv(1) == b""
 
 
 def test_failed_attempts_are_shown_as_a_table(servers: Servers) -> None:
@@ -129,7 +155,15 @@ def test_on_a_competition_field_it_is_refused(how: dict[str, bool], servers: Ser
     robot = servers.start(BANNER)
     with pytest.raises(OnTheFieldError, match=r"FMS.*\n.*when your match is over"):
         find(servers, robot, station=station_says(servers, 0, on_field=True), **how)
-    assert servers.ends[robot].wait(10)
+    assert servers.ends[robot].wait(PATIENCE)
+
+
+def test_a_driver_station_on_a_busy_computer_is_waited_for(servers: Servers, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only connecting to it has a short limit: most computers have none, and some only notice that late."""
+    monkeypatch.setattr(discovery, "DRIVER_STATION_SECONDS", 0.2)
+    station = servers.start(b'{"robotIP": 0, "FMS Connected": true}\n', after=0.6)
+    with pytest.raises(OnTheFieldError):
+        find(servers, servers.start(BANNER), station=station)
 
 
 @pytest.mark.parametrize("says", [b"", b"nonsense\n", b"[]\n", b'{"robotIP": "x", "FMS Connected": 1}\n', b"\xff\n"])

@@ -84,6 +84,7 @@ def test_a_robot_with_python_alone_has_nothing_of_other_languages(robot: LocalRo
     assert look_at(robot).other_languages == ()
 
 
+@pytest.mark.usefixtures("patient_doctor")
 def test_a_deploy_suggests_removing_java_until_it_is_removed(make_project) -> None:
     require_roborio()
     project = make_project({"robot.py": ROBOT_PY})
@@ -108,6 +109,7 @@ def test_a_deploy_suggests_removing_java_until_it_is_removed(make_project) -> No
 # --- without Python
 
 
+@pytest.mark.usefixtures("patient_doctor")
 @pytest.mark.parametrize(
     ("image", "first"),
     [("2026_v1.2", "there is no Python on the robot"), ("2025_v2.0", "the robot's image is of 2025 (2025_v2.0)")],

@@ -15,7 +15,7 @@ from importlib.util import MAGIC_NUMBER
 from pathlib import Path
 
 import pytest
-from roborio import Proxy, Roborio, require_roborio
+from roborio import PATIENCE, Proxy, Roborio, require_roborio
 from roborio.local import project_of
 from roborio.ssh import SshConnection
 from skips import require
@@ -177,7 +177,7 @@ def test_a_robot_is_sent_the_agent_once(roborio: Roborio, tmp_path: Path) -> Non
 
 
 def _wait_until(is_so: Callable[[], bool]) -> None:
-    end = time.monotonic() + 20
+    end = time.monotonic() + PATIENCE
     while not is_so():
         assert time.monotonic() < end
         time.sleep(0.02)

@@ -6,7 +6,7 @@ from collections.abc import Generator
 from pathlib import Path
 
 import pytest
-from roborio import Roborio, require_roborio
+from roborio import PATIENCE, Roborio, require_roborio
 from roborio.local import project_of
 from roborio.ssh import SshConnection
 
@@ -32,7 +32,7 @@ def deploy(roborio: Roborio, directory: Path, number: int, *, start: bool = Fals
             deployed = robot.deploy(project, DeployRequest("robot.py", {}))
             if start:
                 robot.restart()
-                assert robot.watch(20).started
+                assert robot.watch(PATIENCE).started
         finally:
             robot.close()
     return deployed

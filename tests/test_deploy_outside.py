@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject, Result
+from ports import address_without_servers
 from roborio import Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY
@@ -57,8 +58,9 @@ def test_everything_but_a_deploy_goes_from_anywhere(robot: Roborio, home: Path, 
 
 
 def test_the_console_goes_from_anywhere(make_project: MakeProject) -> None:
-    with running(make_project({}), "console", "--robot", "127.0.0.1") as console:
-        wait_for(console, "127.0.0.1:1741 refuses the connection")
+    host = address_without_servers()
+    with running(make_project({}), "console", "--robot", host) as console:
+        wait_for(console, f"{host}:1741 refuses the connection")
     assert console.returncode == 0
 
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from roborio import Proxy, Roborio, require_roborio
+from roborio import PATIENCE, Proxy, Roborio, require_roborio
 from roborio.local import LocalRobot, project_of
 from roborio.ssh import SshConnection
 
@@ -58,7 +58,7 @@ def deploy(roborio: Roborio | Proxy, project: Manifest, user: str = "lvuser") ->
         return robot.deploy(project, DeployRequest("robot.py", {"deploy-host": "here"}))
 
 
-def started(robot: AgentClient, seconds: float = 20) -> Watched:
+def started(robot: AgentClient, seconds: float = PATIENCE) -> Watched:
     robot.restart()
     return robot.watch(seconds)
 
@@ -73,7 +73,7 @@ def test_a_program_is_deployed_and_runs(roborio: Roborio, tmp_path: Path) -> Non
         assert robot.deploy(project, DeployRequest("robot.py", {"git-hash": "1234"})).release == 1
         printed: list[str] = []
         robot.restart()
-        watched = robot.watch(20, printed.append)
+        watched = robot.watch(PATIENCE, printed.append)
         assert watched.alive
         assert watched.started
         assert "this is first\n" in watched.output
@@ -136,7 +136,9 @@ def test_a_program_that_does_not_say_that_it_has_started(roborio: Roborio, tmp_p
     body = "def startCompetition(self):\n        import time\n        time.sleep(1000)"
     with agent(roborio) as robot:
         robot.deploy(program(tmp_path, "quiet", body), DeployRequest("robot.py", {}))
-        watched = started(robot, seconds=1.5)
+        robot.restart()
+        roborio.said("this is quiet")  # the robot may take its time until then
+        watched = robot.watch(1.5)
         assert (watched.alive, watched.started) == (True, False)
 
 

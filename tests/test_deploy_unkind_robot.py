@@ -6,7 +6,7 @@ import socket
 import threading
 from pathlib import Path
 
-from roborio import Roborio, require_roborio
+from roborio import PATIENCE, Roborio, require_roborio
 from roborio.local import project_of
 from roborio.machine import LETS_PROGRAMS_SURVIVE
 from roborio.ssh import SshConnection
@@ -72,7 +72,7 @@ def test_the_console_is_silent_without_a_driver_station(tmp_path: Path) -> None:
         connected.wait()  # a program that printed before the first packet would not be heard
         try:
             robot.restart()
-            assert "this is a robot" in robot.watch(20, unheard=20).output
+            assert "this is a robot" in robot.watch(PATIENCE).output
         finally:
             done.set()
             driver_station.join()

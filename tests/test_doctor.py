@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 from packaging.requirements import Requirement
+from ports import refusing_port
 
 from pyfrc_core._version import __version__
 from pyfrc_core.doctor import CheckResult
@@ -299,6 +300,7 @@ def server(says: bytes) -> Iterator[str]:
         thread.join()
 
 
+@pytest.mark.usefixtures("patient_doctor")
 def test_a_robot_that_does_not_let_us_in() -> None:
     with server(b"SSH-2.0-robot\r\n") as address:
         finding, why = RobotSearch(None, robot=address).findings()
@@ -307,6 +309,7 @@ def test_a_robot_that_does_not_let_us_in() -> None:
     assert why.text.startswith(f"{address}: could not log in to the robot")
 
 
+@pytest.mark.usefixtures("patient_doctor")
 def test_a_server_that_is_not_a_robot() -> None:
     with server(b"HTTP/1.1 400\r\n") as address:
         (finding,) = RobotSearch(None, robot=address).findings()
@@ -315,14 +318,14 @@ def test_a_server_that_is_not_a_robot() -> None:
 
 def test_a_robot_that_is_off(make_project) -> None:
     """A robot that is not found is a problem if the user has specified it, else a hint."""
-    with socket.create_server(("127.0.0.1", 0)) as closed:
-        address = f"127.0.0.1:{closed.getsockname()[1]}"
-    preferences = {".wpilib/wpilib_preferences.json": json.dumps({"robotHostname": address})}
-    project = make_project({"robot.py": ROBOT} | preferences)
-    (*_, finding) = results_of(project.run("doctor", "--json"))["robot"]
-    assert (finding["status"], finding["text"]) == ("hint", f"{address}: no robot found")
-    (*_, finding) = results_of(project.run("doctor", "--json", "--robot", address))["robot"]
-    assert finding["status"] == "problem"
+    with refusing_port() as port:
+        address = f"127.0.0.1:{port}"
+        preferences = {".wpilib/wpilib_preferences.json": json.dumps({"robotHostname": address})}
+        project = make_project({"robot.py": ROBOT} | preferences)
+        (*_, finding) = results_of(project.run("doctor", "--json"))["robot"]
+        assert (finding["status"], finding["text"]) == ("hint", f"{address}: no robot found")
+        (*_, finding) = results_of(project.run("doctor", "--json", "--robot", address))["robot"]
+        assert finding["status"] == "problem"
 
 
 def test_a_team_number_that_is_none(make_project) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import socket
 import subprocess
 import sys
 import tempfile
@@ -15,6 +14,7 @@ from dataclasses import FrozenInstanceError, replace
 
 import ntcore
 import pytest
+from ports import lasting_port
 from sim_robots import FILES, PATIENCE, run, settle, wait
 
 from pyfrc_core.errors import UsageError
@@ -494,9 +494,7 @@ def test_a_recording_replays_in_pyfrc_replay(make_project, tmp_path) -> None:
 
 
 def test_dashboards_see_the_robot_and_are_recorded(project: Project) -> None:
-    with socket.socket() as probe:
-        probe.bind(("", 0))
-        port = probe.getsockname()[1]
+    port = lasting_port()
     dashboard = ntcore.NetworkTableInstance.create()
     heard = threading.Event()
 

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 TEMPLATE = Path(__file__).parent.parent / "templates" / "tank"
 
 #: So often a test looks whether something has come true, waiting a little for the robot in between, before it gives up.
-_LOOKS, _PAUSE = 3000, 0.01
+_LOOKS, _PAUSE = 12_000, 0.01
 
 ROBOT = {
     "robot.py": """
@@ -557,9 +557,9 @@ def test_nothing_is_left_when_the_display_goes(make_project: MakeProject) -> Non
         except BaseException:
             running.kill()
             raise
-    running.wait(60)
+    running.wait(120)
     try:
-        assert select.select([host], [], [], 60)[0], "the robot's processes go on"
+        assert select.select([host], [], [], 120)[0], "the robot's processes go on"
     finally:
         os.close(host)
     assert list(project.temporary.iterdir()) == []
@@ -633,7 +633,7 @@ def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None
                 with suppress(subprocess.TimeoutExpired):
                     running.wait(_PAUSE)
             display.do("keyup", "w", "key", "ctrl+q")
-            output, _ = running.communicate(timeout=60)
+            output, _ = running.communicate(timeout=120)
         finally:
             running.kill()
     assert running.returncode == 0, output
@@ -774,7 +774,7 @@ def test_ended_from_outside_while_a_file_is_chosen(name: str, user: User) -> Non
 
     root.after(1, user.window.time.save.invoke)
     root.after(10, end)
-    alarm = root.after(20_000, give_up)
+    alarm = root.after(120_000, give_up)
     with pytest.raises(KeyboardInterrupt), ending_like_ctrl_c():
         user.window.loop()
     root.after_cancel(alarm)

@@ -18,12 +18,15 @@ from pathlib import Path
 
 import pytest
 from conftest import RobotProject
+from ports import lasting_port
 from skips import require
 
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.project import find_project
+from pyfrc_core.virtual_robot.console import ConsoleServer
 
-SECONDS = 60
+#: Wall seconds after which a test gives up, and after which a robot is killed. They decide nothing else.
+SECONDS, ROBOT_SECONDS = 120, 240
 
 ROBOT = """
 import os
@@ -79,7 +82,7 @@ def started(project: RobotProject, directory: Path, *options: str) -> Iterator[S
     with subprocess.Popen(
         command, cwd=project.path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, errors="replace"
     ) as process:
-        guard = threading.Timer(SECONDS, process.kill)
+        guard = threading.Timer(ROBOT_SECONDS, process.kill)
         guard.start()
         try:
             yield Started(process)
@@ -126,6 +129,7 @@ def ended(pid: int) -> bool:
         os.close(descriptor)
 
 
+@pytest.mark.usefixtures("patient_doctor")
 def test_a_program_is_deployed_changed_rolled_back_and_removed(project: RobotProject, directory: Path) -> None:
     with started(project, directory) as robot:
         assert "the program runs" in deploy(robot, project)
@@ -197,7 +201,7 @@ def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_
     project: RobotProject, directory: Path
 ) -> None:
     # A port that no other test's robot takes meanwhile: they try those from 2222 on.
-    with started(project, directory, "--port", str(20000 + os.getpid() % 10000)) as robot:
+    with started(project, directory, "--port", str(lasting_port())) as robot:
         deploy(robot, project)
         pid, address = robot.pid(), robot.address
     assert robot.process.returncode == 0
@@ -211,6 +215,18 @@ def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_
         assert info(robot, project)["releases"] == []
 
 
+def test_a_line_that_is_printed_right_after_a_client_has_connected_reaches_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the first lines of a program that an agent restarts, although no thread of the server's gets a turn."""
+    monkeypatch.setattr(threading.Thread, "start", lambda thread: None)
+    console = ConsoleServer("127.0.0.1")
+    try:
+        with socket.create_connection(("127.0.0.1", console.port), timeout=SECONDS) as client:
+            console.send(b"first")
+            assert client.recv(100).endswith(b"first")
+    finally:
+        console.close()
+
+
 def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: RobotProject, directory: Path) -> None:
     with started(project, directory) as one, started(project, directory.with_name("other")) as other:
         assert one.address != other.address
@@ -221,7 +237,7 @@ def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: Robo
             stderr=subprocess.STDOUT,
             text=True,
         ) as console:
-            guard = threading.Timer(SECONDS, console.kill)
+            guard = threading.Timer(ROBOT_SECONDS, console.kill)
             guard.start()
             assert console.stdout is not None
             assert any("connected to" in line for line in console.stdout)

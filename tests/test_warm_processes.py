@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import socket
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 import warm_processes
 import warm_start
 from conftest import MakeProject, RobotProject
+from conftest import _warm_processes as warm_processes_of_the_suite
 from sim_robots import settle, wait
 
 from pyfrc_core.processes.spawn import Interpreter
@@ -119,6 +121,19 @@ def test_a_robot_finds_what_it_finds_where_hosts_start_cold(
     assert [started_warm(host) for host in started] == [True]
     request.getfixturevalue("cold_hosts")
     assert warm == found_by(project)
+
+
+def test_a_client_that_ends_before_its_request_ends_nothing_else(
+    make_project: MakeProject, started: list[Interpreter]
+) -> None:
+    """As a command that a test kills in this moment."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as killed:
+        killed.connect(warm_processes_of_the_suite().address)
+    project = make_project({"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"})
+    with Simulation(Project(project.path / "robot.py"), SimOptions(paused=True, speed=0)) as simulation:
+        settle(simulation)
+        assert simulation.status.state == "paused", simulation.status
+    assert [started_warm(host) for host in started] == [True]
 
 
 @pytest.mark.parametrize("cold", [False, True])

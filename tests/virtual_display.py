@@ -41,7 +41,7 @@ class VirtualDisplay:
     def do(self, *words: str | int) -> str:
         """One command of `xdotool`, or several; answers what it prints."""
         done = subprocess.run(
-            ["xdotool", *map(str, words)], env=self.environment, capture_output=True, text=True, check=True, timeout=60
+            ["xdotool", *map(str, words)], env=self.environment, capture_output=True, text=True, check=True, timeout=240
         )
         return done.stdout.strip()
 

@@ -168,6 +168,9 @@ def _serve(listener: socket.socket) -> _Request | None:
         if listener in ready:
             asking = listener.accept()[0]
             message, streams, _, _ = socket.recv_fds(asking, LARGEST, 2)
+            if not message:  # it has ended since it connected
+                asking.close()
+                continue
             request = _Request(*json.loads(message), streams, asking)
             if not _the_same(request.environment, started_with) or _hides(set(request.path) - known, modules):
                 with asking, suppress(OSError):

@@ -10,6 +10,7 @@ import atexit
 import contextlib
 import gc
 import importlib
+import inspect
 import io
 import json
 import os
@@ -69,6 +70,8 @@ _IMPORTED = (
     "pyfrc_core.config.sim_schema",
     "pyfrc_core.physics.engine",
     "pyfrc_core.physics.create",
+    "pyfrc.physics.motor_cfgs",
+    "pyfrc.physics.tankmodel",
     "pyfrc_core.deploy.session",
     "pyfrc_core.deploy.robot_commands",
     "pyfrc_core.doctor.examine",
@@ -267,6 +270,35 @@ def _read_metadata_once() -> None:
     PathDistribution.read_text = read_text  # type: ignore[method-assign]
 
 
+def _search_plugins_once() -> None:
+    """Keep which plugins and classes of plugins have no fixtures: each run of pytest searches all their attributes."""
+    from _pytest import fixtures, nodes
+
+    if not hasattr(fixtures, "FixtureFunctionDefinition"):  # pytest before 8.4
+        return
+
+    def has_fixtures(holder: object) -> bool:
+        return any(isinstance(getattr(holder, name, None), fixtures.FixtureFunctionDefinition) for name in dir(holder))
+
+    def is_pytests(name: str) -> bool:
+        return name.partition(".")[0] in ("_pytest", "xdist")
+
+    modules = [module for name, module in sys.modules.items() if is_pytests(name)]
+    values = [value for module in modules for value in vars(module).values()]
+    # Nodes are not searched themselves: they stand for users' modules and classes.
+    classes = {each for each in values if isinstance(each, type) and is_pytests(each.__module__)}
+    holders = [*modules, *(each for each in classes if not issubclass(each, nodes.Node))]
+    without = {holder for holder in holders if not has_fixtures(holder)}
+    search = fixtures.FixtureManager.parsefactories
+
+    def parsefactories(self: fixtures.FixtureManager, *args: object, **kwargs: object) -> None:
+        holder = kwargs["holder"] if "holder" in kwargs else args[0]
+        if holder.__hash__ is None or (holder not in without and type(holder) not in without):
+            search(self, *args, **kwargs)  # type: ignore[call-overload]
+
+    fixtures.FixtureManager.parsefactories = parsefactories  # type: ignore[assignment]
+
+
 def _fix_the_seed() -> None:
     """Where `pyfrc` would start Python again: it has the seed already."""
     os.environ["PYTHONHASHSEED"] = "0"
@@ -283,15 +315,19 @@ def main() -> None:
         importlib.import_module(name)
     _read_metadata_once()
     _import_plugins_of_pytest()
+    _search_plugins_once()
     from pyfrc_cli import main as commands
     from pyfrc_cli import start
+    from pyfrc_core.config import settings
     from pyfrc_core.deploy.agent_package import agent_package
 
     for module, _ in commands.COMMANDS.values():
         importlib.import_module(module)
+    settings._validator()
     agent_package()  # is kept: packing the agent costs a deploy more than all else that it does on this side
     assert callable(start._restart_with_fixed_seed)  # under another name, each command would start cold
     start._restart_with_fixed_seed = _fix_the_seed
+    inspect.stack()  # resolves the files of all modules, which measuring coverage begins with
     server.send(json.dumps(list(sys.modules)).encode())
     gc.collect()
     gc.freeze()

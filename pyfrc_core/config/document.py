@@ -8,7 +8,7 @@ from typing import Any
 from .sim import SimConfig
 
 
-def document_of(config: SimConfig, file: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def document_of(config: SimConfig, file: Mapping[str, object] | None = None) -> dict[str, Any]:
     """Return ``{"pyfrc": {"robot": {"w": 2.0, ...}, ...}}``: the file's content with every default filled in.
 
     :param config: the values in effect
@@ -19,7 +19,7 @@ def document_of(config: SimConfig, file: Mapping[str, Any] | None = None) -> dic
     return _filled(file or {}, {"pyfrc": values})
 
 
-def _filled(given: Mapping[str, Any], resolved: Mapping[str, Any]) -> dict[str, Any]:
+def _filled(given: Mapping[str, object], resolved: Mapping[str, object]) -> dict[str, Any]:
     filled = dict(given)
     for key, value in resolved.items():
         before = given.get(key)

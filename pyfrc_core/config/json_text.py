@@ -189,7 +189,7 @@ class JsonText:
                 remedy=remedy,
             ) from None
 
-    def _object(self, pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    def _object(self, pairs: list[tuple[str, object]]) -> dict[str, Any]:
         found = dict(pairs)
         if len(found) < len(pairs):
             self._has_repeated_keys = True

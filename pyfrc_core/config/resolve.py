@@ -34,7 +34,7 @@ def resolve(given: SimConfig) -> tuple[SimConfig, Origins]:
     return config, origins
 
 
-def resolve_document(document: Mapping[str, Any]) -> SimConfig:
+def resolve_document(document: Mapping[str, object]) -> SimConfig:
     """Return the values in effect for the content of ``sim/config.json``, ``{"pyfrc": {...}}``.
 
     :raises pydantic.ValidationError: when a value is not allowed

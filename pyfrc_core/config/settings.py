@@ -6,16 +6,20 @@ the settings of the others.
 
 from __future__ import annotations
 
+import functools
 import json
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from ..errors import SettingsError
 from ..season import CURRENT
 from .findings import Path as KeyPath
 from .findings import mistakes, settings_error
 from .toml_file import TomlFile
+
+if TYPE_CHECKING:
+    from pydantic import TypeAdapter
 
 
 class _Positive:
@@ -147,12 +151,20 @@ def load_settings(pyproject: Path) -> Settings:
     return _validated(table, file) if table else Settings()
 
 
+@functools.cache
+def _validator() -> TypeAdapter[Settings]:
+    """Built once, since a command may read the settings more than once, and building takes longer than reading."""
+    import pydantic
+
+    return pydantic.TypeAdapter(Settings)
+
+
 def _validated(table: object, file: TomlFile) -> Settings:
     import pydantic
 
     try:
         # As JSON, since strict checking of Python data would ask for instances where files have tables.
-        return pydantic.TypeAdapter(Settings).validate_json(json.dumps(table, default=str))
+        return _validator().validate_json(json.dumps(table, default=str))
     except pydantic.ValidationError as invalid:
         raise settings_error(mistakes(invalid, table, file, ("tool", "pyfrc"), _KEYS)) from None
 

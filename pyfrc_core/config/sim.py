@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import sys
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
 
@@ -76,7 +76,7 @@ class Polygon(_Part):
     )
 
 
-def _shape(value: Any) -> str | None:
+def _shape(value: object) -> str | None:
     """Return the tag of the model for an object, by the key that only one of the two has."""
     if isinstance(value, Rectangle | Polygon):
         return f"<{type(value).__name__}>"
@@ -95,7 +95,7 @@ FieldObject = Annotated[
 ]
 
 
-def _year(value: Any) -> int | None:
+def _year(value: object) -> int | None:
     """Return a year written as a number or a string as an int."""
     if value is None:
         return None

@@ -198,7 +198,7 @@ def _is_file(directory: File, name: str) -> bool:
         return False
 
 
-def _leaves(value: Any, path: Path) -> Iterator[tuple[Path, Any]]:
+def _leaves(value: object, path: Path) -> Iterator[tuple[Path, Any]]:
     """Yield the leaf values of nested objects; an array is a leaf."""
     if isinstance(value, dict) and value:
         for key, item in value.items():

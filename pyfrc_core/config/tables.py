@@ -22,7 +22,7 @@ class Numbered:
     allowed: str
     numbers: dict[str, int]
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         schema: Any = handler(source)
         schema["keys_schema"] = core_schema.no_info_before_validator_function(self._number, core_schema.int_schema())
         return core_schema.no_info_before_validator_function(_not_too_many, schema)
@@ -40,14 +40,14 @@ class Numbered:
 class Array:
     """An array of at most `MOST` items."""
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(_not_too_many, handler(source))
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {**handler(schema), "maxItems": MOST}
 
 
-def _not_too_many(value: Any) -> Any:
+def _not_too_many(value: object) -> Any:
     # Checked before the items: a file with millions of them would otherwise give millions of errors.
     if isinstance(value, list | dict) and len(value) > MOST:
         raise ValueError(f"there should be at most {MOST} of them, not {len(value)}")

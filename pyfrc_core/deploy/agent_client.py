@@ -29,6 +29,8 @@ __all__ = ["AgentClient", "DeployRequest", "Deployed", "Plan", "RobotFacts", "Ro
 _ANY = "any"
 #: The maximum number of files in the first message, whose response has a short time limit.
 _MOST_FILES_AT_ONCE = 1000
+#: The maximum size of the contents that follow a request immediately, in bytes: less than a frame.
+_MOST_BYTES_AT_ONCE = 16_000
 #: Characters of a program's output that a watch keeps.
 _OUTPUT_KEPT = 1 << 16
 
@@ -54,6 +56,8 @@ class AgentClient:
     def __init__(self, stream: AgentStream) -> None:
         self._stream = stream
         self._planned: Manifest | None = None
+        #: The files of the first message that the current release lacks, according to its record.
+        self._new: tuple[str, ...] = ()
         self._has_sent_package = False
         #: Whether the robot restarts the program without another request.
         self._is_restarting = False
@@ -105,8 +109,10 @@ class AgentClient:
         first = wire.message_frame({"who": _user_and_host(), **(hello or {})})
         try:
             self._stream.start(b"%08d" % len(first) + first)
-            self.facts = self._stream.read_response(
-                RobotFacts.of, self._send_package, silence=self._stream.limits.start
+            self.facts, self._new = self._stream.read_response(
+                lambda fields: (RobotFacts.of(fields), fields.texts("new") if "new" in fields else ()),
+                self._send_package,
+                silence=self._stream.limits.start,
             )
             self._current, self._command = self.facts.current, self.facts.command
         except BaseException:
@@ -145,6 +151,7 @@ class AgentClient:
         """
         # The agent keeps the manifest of the last plan.
         files = {} if manifest is self._planned else {"files": _as_lists(manifest)}
+        at_once = [] if request.in_place else self._at_once(manifest)
 
         def on_message(message: Fields) -> None:
             phase = message.line("phase")
@@ -154,7 +161,9 @@ class AgentClient:
                 on_progress(phase, 0, 0)
 
         with self._reporting(on_progress):
-            self._send("deploy", **asdict(request), **files)
+            self._send("deploy", **asdict(request), **files, sent=[each.path for each in at_once])
+            if at_once:
+                self._send_contents(at_once, on_progress)
             needed = self._stream.read_message(lambda fields: _needed(fields, manifest))
             if needed:
                 self._send_contents(needed, on_progress)
@@ -174,6 +183,12 @@ class AgentClient:
         else:
             self.recovery_hint = recovery_hints.deployed(deployed.release, deployed.previous)
         return deployed
+
+    def _at_once(self, manifest: Manifest) -> list[Entry]:
+        """Return the files that the robot will probably need, if they are small: sending them saves a round trip."""
+        new, self._new = frozenset(self._new), ()
+        entries = [each for each in manifest.entries if each.path in new]
+        return entries if sum(each.size for each in entries) <= _MOST_BYTES_AT_ONCE else []
 
     def restart(self) -> bool:
         """Restart the program, or wait for the restart that a deploy has requested.
@@ -217,14 +232,18 @@ class AgentClient:
                 on_output(printed)
 
         self._send("watch", seconds=seconds, unheard=seconds if unheard is None else unheard)
-        verdict, state = self._stream.read_response(
-            lambda fields: (fields.one_of("verdict", start_monitor.VERDICTS), StartState.of(fields)),
+        verdict, state, has_run = self._stream.read_response(
+            lambda fields: (
+                fields.one_of("verdict", start_monitor.VERDICTS),
+                StartState.of(fields),
+                "has_run" in fields and fields.flag("has_run"),
+            ),
             on_message,
             silence=self._stream.limits.start,
             within=seconds + 2 * self._stream.limits.start,
         )
         self.recovery_hint = None
-        return Watched(verdict, output, state)
+        return Watched(verdict, output, state, has_run)
 
     def rollback(self, release: int | None = None, on_progress: OnProgress | None = None) -> RolledBack:
         """Make an earlier release current again. The program is not restarted.

@@ -10,8 +10,9 @@ import threading
 from collections.abc import Callable
 from functools import partial
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from .._version import __version__
 from .credentials import NONE_OFFERED, Credentials
 from .discovery import CONNECT_SECONDS, Address
 from .errors import ConnectionFailedError, DeployError
@@ -32,6 +33,9 @@ _ALIVE_SECONDS = 5
 _LOST_SECONDS = 20
 #: The maximum output of a command, in bytes.
 _MAX_OUTPUT_BYTES = 100_000
+
+#: This client's greeting in the SSH protocol.
+_GREETING = f"SSH-2.0-pyfrc_{__version__}".partition("+")[0]
 
 _CHECK_LINK = "Check the link (radio, cable, power of the robot) and run the command again."
 
@@ -54,6 +58,32 @@ def _load() -> None:
     finally:
         if absent:
             del sys.modules["invoke"]
+
+
+class GreetedSocket:
+    """A socket for `paramiko.Transport`, over which this client's greeting is sent immediately.
+
+    The robot's response is then under way while paramiko is imported. What the transport sends first, the same
+    greeting, is not sent again.
+
+    :param connected: a connected socket
+    :param greeting: without the end of its line
+    :raises OSError: if the connection is lost
+    """
+
+    def __init__(self, connected: socket.socket, greeting: str = _GREETING) -> None:
+        self._connected = connected
+        self._sent = f"{greeting}\r\n".encode()
+        connected.sendall(self._sent)
+
+    def send(self, data: bytes) -> int:
+        if data == self._sent:
+            self._sent = b""
+            return len(data)
+        return self._connected.send(data)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._connected, name)
 
 
 class Connection:
@@ -173,17 +203,19 @@ def connect(
     :raises HostKeyError: if the robot's key is not a known one
     :raises ConnectionFailedError: if the login fails
     """
-    import paramiko
-
     # The error has the content of paramiko's log messages.
     logging.getLogger("paramiko").setLevel(logging.CRITICAL)
-    if connected is None:
-        try:
+    try:
+        if connected is None:
             connected = socket.create_connection((address.host, address.port), timeout=CONNECT_SECONDS)
-        except OSError as error:
-            raise _not_let_in(address, error) from error
-    _set_socket_options(connected)
-    transport = paramiko.Transport(connected)
+        _set_socket_options(connected)
+        greeted: Any = GreetedSocket(connected)
+    except OSError as error:
+        raise _not_let_in(address, error) from error
+    import paramiko
+
+    transport = paramiko.Transport(greeted)
+    transport.local_version = _GREETING
     try:
         key = _greet(transport, keys)
         keys.check(key, accepted_key, robot_name, pin=False)
@@ -229,9 +261,11 @@ def _kind_of_key(algorithm: str) -> str:
 def _log_in(transport: paramiko.Transport, address: Address, user: str, credentials: Credentials) -> None:
     import paramiko
 
+    from ..compat.paramiko_private import log_in_as
+
     try:
         # Robots have no passwords and accept these users without authentication.
-        transport.auth_none(user)
+        log_in_as(transport, user)
         return
     except paramiko.BadAuthenticationType as refused:
         allowed = refused.allowed_types

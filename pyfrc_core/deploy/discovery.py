@@ -11,6 +11,7 @@ import struct
 import threading
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -26,7 +27,7 @@ DRIVER_STATION = ("127.0.0.1", 1742)
 CONNECT_SECONDS = 5.0
 #: Time limit for resolving names, in seconds.
 RESOLVE_SECONDS = 5.0
-#: Time limit for the Driver Station, in seconds. Windows takes long to refuse a connection.
+#: Time limit for connecting to the Driver Station, in seconds. Windows takes long to refuse a connection.
 DRIVER_STATION_SECONDS = 1.0
 
 #: The highest team number that an address 10.TE.AM.2 can contain.
@@ -272,9 +273,7 @@ class _Race:
                 for next_step in result:
                     next_step()
         self._over.set()
-        while not self._results.empty():
-            if isinstance(late := self._results.get(), FoundRobot):
-                late.connected.close()
+        self._close_late_ones()
         return found
 
     def reasons(self) -> list[FailedAttempt]:
@@ -291,11 +290,17 @@ class _Race:
         self._running += 1
         threading.Thread(target=lambda: self._finish(function(*arguments)), daemon=True).start()
 
-    def _finish(self, result: Any) -> None:
-        if isinstance(result, FoundRobot) and self._over.is_set():
-            result.connected.close()
-            return
+    def _finish(self, result: object) -> None:
         self._results.put(result)
+        if self._over.is_set():  # looked at after the result is there: one of the two threads sees both
+            self._close_late_ones()
+
+    def _close_late_ones(self) -> None:
+        """Close the connections that came after the winner, or after the time limit."""
+        with suppress(queue.Empty):
+            while True:
+                if isinstance(late := self._results.get_nowait(), FoundRobot):
+                    late.connected.close()
 
     def _resolve(self, address: Address, kind: str) -> Any:
         """Return the functions to call next, or a failed attempt."""
@@ -327,7 +332,7 @@ class _Race:
         following: list[Any] = []
         try:
             with socket.create_connection(where, timeout=DRIVER_STATION_SECONDS) as station:
-                station.settimeout(DRIVER_STATION_SECONDS)
+                station.settimeout(CONNECT_SECONDS)
                 with station.makefile("rb") as lines:
                     said = json.loads(lines.readline(10_000))
             self.on_field = said.get("FMS Connected") is True

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
 from types import TracebackType
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from .agent_client import AgentClient
-
 if TYPE_CHECKING:
+    from .agent_client import AgentClient
     from .connection import Connection
     from .discovery import FoundRobot
 
 T = TypeVar("T")
+
+#: Seconds after which a computing thread lets others run, meanwhile. With Python's 5 ms, each message of the robot
+#: would wait so long while this computer imports modules and hashes files.
+_SWITCH_INTERVAL = 0.0005
 
 
 class _Step(Generic[T]):
@@ -59,10 +63,12 @@ class EarlyConnection:
         self._log_in = log_in
         self._found = _Step["FoundRobot"]()
         self._connection = _Step["Connection"]()
-        self._agent = _Step[AgentClient]()
+        self._agent = _Step["AgentClient"]()
         self._lock = threading.Lock()
         self._over = False
         self._to_close: list[Callable[[], object]] = []
+        self._switch_interval = sys.getswitchinterval()
+        sys.setswitchinterval(_SWITCH_INTERVAL)
         # A daemon thread: after an error in the project, the command does not wait for a robot that is not there.
         threading.Thread(target=self._run, daemon=True).start()
 
@@ -84,6 +90,8 @@ class EarlyConnection:
             self._close_at_end(found.connected.close)
             connection = self._connection.run(lambda: self._log_in(found))
             self._close_at_end(connection.close)
+            from .agent_client import AgentClient  # not before: the login does not need it
+
             self._agent.run(lambda: AgentClient.open(connection))
 
     def _close_at_end(self, close: Callable[[], object]) -> None:
@@ -99,6 +107,7 @@ class EarlyConnection:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
+        sys.setswitchinterval(self._switch_interval)
         with self._lock:
             self._over = True
         for close in reversed(self._to_close):

@@ -275,11 +275,13 @@ class Watched:
         process runs, but its output does not confirm the start)
     :param output:  the last part of its output; empty if the console is silent
     :param state:   the state at the end of the watch
+    :param has_run: whether the robot has seen it run before, with the same files
     """
 
     verdict: str
     output: str
     state: StartState = StartState()
+    has_run: bool = False
 
     @property
     def alive(self) -> bool:

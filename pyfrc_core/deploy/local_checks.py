@@ -10,10 +10,8 @@ from datetime import datetime
 from typing import IO, TYPE_CHECKING
 
 from ..errors import PyfrcError, RobotCodeError
-from ..passes.memory import Passes
 from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
-from ..runtime.loading import load_robot
 from .errors import RefusedError
 from .progress import Questions
 
@@ -62,6 +60,8 @@ def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = Fa
 
 def passed_already(project: Project, builtin: bool) -> str | None:
     """Return when the project's tests passed, if nothing that they read has changed since, such as ``16:40``."""
+    from ..passes.memory import Passes
+
     since = Passes(project, builtin=builtin).green_since()
     if since is None:
         return None
@@ -92,6 +92,8 @@ class ImportCheck:
 
 
 def _load(project: Project, log: CrashLog) -> None:
+    from ..runtime.loading import load_robot
+
     load_robot(project)
 
 

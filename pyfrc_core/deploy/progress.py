@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING
 
 from ..terminal_text import visible
 
@@ -118,7 +118,7 @@ class DeployProgress:
         """Print output of the robot program."""
         self._print("".join(f"  | {line}\n" for line in text.splitlines()).rstrip("\n"))
 
-    def result(self, result: Mapping[str, Any], text: str, requested: bool = False) -> None:
+    def result(self, result: Mapping[str, object], text: str, requested: bool = False) -> None:
         """Print the result of the command.
 
         :param result: for JSON
@@ -203,7 +203,7 @@ class JsonProgress(DeployProgress):
     def output(self, text: str) -> None:
         self._event("output", text=text)
 
-    def result(self, result: Mapping[str, Any], text: str, requested: bool = False) -> None:
+    def result(self, result: Mapping[str, object], text: str, requested: bool = False) -> None:
         self._event("result", **result)
 
     def failure(self, error: PyfrcError) -> None:
@@ -223,7 +223,7 @@ class JsonProgress(DeployProgress):
     def _over(self, phase: Phase, seconds: float) -> None:
         self._event("phase", phase=phase.name, detail=phase.detail, seconds=round(seconds, 3))
 
-    def _event(self, event: str, **fields: Any) -> None:
+    def _event(self, event: str, **fields: object) -> None:
         # JSON does not escape this control character.
         self._write(json.dumps({"event": event, **fields}).replace("\x7f", "\\u007f"))
 

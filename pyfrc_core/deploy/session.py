@@ -4,23 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING
 
 from ..config.robotpy import load_robot_packages
 from ..errors import UsageError
 from ..project import Project
 from ..wording import counted
-from .agent_client import AgentClient
 from .connection import Connection, load_in_background
 from .console import follow_console
-from .deploy_json import deploy_json
 from .discovery import Address
 from .errors import RefusedError
-from .facts import Deployed, DeployRequest, Plan
 from .local_checks import ImportCheck, ask_to_continue, passed_already, refuse_other_main_files, run_tests
-from .manifest import Manifest, ascii_path, build_manifest
 from .progress import DeployProgress, UserInterface
 from .robot_setup import other_languages_notice
-from .starting import go_back, start
 from .target_connection import (
     RobotChoice,
     choose_target,
@@ -32,6 +28,11 @@ from .target_connection import (
     find,
     running_agent,
 )
+
+if TYPE_CHECKING:
+    from .agent_client import AgentClient
+    from .facts import Deployed, Plan
+    from .manifest import Manifest
 
 
 @dataclass(frozen=True)
@@ -75,8 +76,10 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     importing = None if options.dry_run else _check_program(project, options, talk)
     with connect_early(project, target, options.choice) as early:
         loading.join()  # the login begins then; the following runs while the robot responds
+        from .manifest import build_manifest
         from .robot_checks import MemorySaver, refuse_unfit_robot
         from .robot_packages import ImportSearch, check_packages
+        from .starting import start
 
         with progress.phase("files") as phase:
             manifest = build_manifest(project.root, project.settings.deploy.exclude, options.large)
@@ -114,6 +117,8 @@ def rollback(project: Project | None, choice: RobotChoice, release: int | None, 
 
     :param release: its number; default: the release that the robot selects
     """
+    from .starting import go_back
+
     with connected_agent(project, choose_target(project, choice, talk.ask), choice, talk.progress) as (
         connection,
         robot,
@@ -199,6 +204,9 @@ def _upload(
     talk: UserInterface,
     program: Sequence[str],
 ) -> Deployed:
+    from .deploy_json import deploy_json
+    from .facts import DeployRequest
+
     request = DeployRequest(
         main=project.main_file.name,
         deploy_json=deploy_json(project.root),
@@ -254,6 +262,8 @@ def _refuse_unimportable(importing: ImportCheck, talk: UserInterface) -> None:
 
 
 def _plan_as_text(plan: Plan) -> str:
+    from .manifest import ascii_path
+
     lines = [
         f"{sign} {ascii_path(path)}"
         for sign, paths in (("+", plan.added), ("~", plan.changed), ("-", plan.removed))

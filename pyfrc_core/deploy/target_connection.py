@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from ..errors import UsageError
 from ..project import Project
-from .agent_client import AgentClient
 from .connection import Connection, connect, load_in_background
 from .credentials import NONE_OFFERED, Credentials
 from .discovery import Address, FoundRobot, addresses_of, find_robot, parse_address
@@ -22,6 +21,7 @@ from .recovery_hints import explain_interruption
 from .team import RobotTarget, find_target, team_of_project
 
 if TYPE_CHECKING:
+    from .agent_client import AgentClient
     from .manifest import Manifest
 
 
@@ -168,6 +168,8 @@ def running_agent(
     :param manifest: the files of the deploy that follows, if it is known
     :raises RefusedError: if there is no Python on the robot
     """
+    from .agent_client import AgentClient
+
     with progress.phase("look") as phase:
         try:
             robot = AgentClient.open(connection) if start is None else start()

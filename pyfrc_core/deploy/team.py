@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import configparser
 import json
 import re
 from collections.abc import Callable, Iterator
@@ -144,6 +143,8 @@ def _targets_in_robotpy(pyproject: Path) -> Iterator[RobotTarget]:
 def _targets_in_old_file(file: Path) -> Iterator[RobotTarget]:
     if not file.is_file():
         return
+    import configparser
+
     parser = configparser.ConfigParser(interpolation=None)
     try:
         parser.read_string(file.read_text("utf-8-sig"))

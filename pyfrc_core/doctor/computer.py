@@ -11,6 +11,7 @@ from .check_result import CheckResult, hint, ok
 
 #: Each of pyfrc's extras with its module and its purpose.
 EXTRAS = {
+    "cluster": ("distributed", "pyfrc fuzz --scheduler"),
     "gamepads": ("pygame", "gamepads in pyfrc sim"),
     "picture": ("PIL", "--picture of pyfrc sim and pyfrc replay"),
     "profile": ("pyinstrument", "--html of pyfrc profile"),

@@ -61,7 +61,7 @@ class AskedControls:
 
         return ask
 
-    def wrap_static(self, real: Callable[..., Any], kind: str) -> Any:
+    def wrap_static(self, real: Callable[..., object], kind: str) -> Any:
         """Return a function of the driver station that notes what it reads, and calls the real one."""
 
         def ask(stick: int, number: int) -> Any:
@@ -116,7 +116,7 @@ def _named(owner: Any) -> Iterator[tuple[str, _Reads]]:
             yield name, _always("axes", axis)
 
 
-def _numbers(enumeration: Any) -> dict[str, int]:
+def _numbers(enumeration: object) -> dict[str, int]:
     """Return the numbers of an enumeration of controls, by name in lower case: "leftbumper" for ``kLeftBumper``."""
     names = [name for name in vars(enumeration) if re.match("k[A-Z]", name)]
     return {name[1:].lower(): int(getattr(enumeration, name)) for name in names}

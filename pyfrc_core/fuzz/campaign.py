@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from contextlib import closing
+from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
+from ..errors import PyfrcError
 from ..project import Project
 from ..runtime.scripts.script import InputScript
 from .corpus import Corpus, CorpusEntry, found_in
@@ -51,6 +52,7 @@ class CampaignOptions:
     :param jobs: how many matches to run at a time
     :param recorded: recorded matches to begin with
     :param shard: which part of the campaign to run
+    :param scheduler: the address of a Dask scheduler, whose cluster runs the matches instead of this computer
     :param resume: whether to go on where the last campaign with this seed ended; its matches count in `runs`
     """
 
@@ -61,6 +63,7 @@ class CampaignOptions:
     recorded: tuple[InputScript, ...] = ()
     shard: Shard = ALL
     resume: bool = False
+    scheduler: str | None = None
 
 
 @dataclass
@@ -140,9 +143,10 @@ def run_campaign(project: Project, options: CampaignOptions, listener: CampaignL
 
     :raises RobotCodeError: when the robot's code cannot be imported
     :raises ScriptError: when a script in the corpus is not valid
+    :raises ClusterError: when the cluster cannot run matches, or no longer: what was found by then is saved
     """
     deadline = None if options.seconds is None else time.monotonic() + options.seconds
-    with open_match_executor(project, options.jobs) as executor:
+    with _open_executor(project, options) as executor:
         runner = _Runner(executor, options, deadline, listener)
         try:
             with executor.interruptible():
@@ -151,9 +155,20 @@ def run_campaign(project: Project, options: CampaignOptions, listener: CampaignL
         except KeyboardInterrupt:
             runner.campaign.interrupted = True
             runner.save_unshrunk()
+        except PyfrcError:  # matches cannot be run any more
+            runner.save_unshrunk()
+            raise
         finally:
             runner.keep_guidance()
         return runner.campaign
+
+
+def _open_executor(project: Project, options: CampaignOptions) -> AbstractContextManager[MatchExecutor]:
+    if options.scheduler is None:
+        return open_match_executor(project, options.jobs)
+    from .cluster import open_cluster_executor  # only where it is used: most computers have no Dask
+
+    return open_cluster_executor(project, options.scheduler)
 
 
 @dataclass(frozen=True)

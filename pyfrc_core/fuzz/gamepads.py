@@ -24,7 +24,7 @@ _CONTAINERS = (list, tuple, set, frozenset)
 _TOO_FAR = (types.ModuleType, type)
 
 
-def find_gamepads(robot: Any) -> dict[int, str]:
+def find_gamepads(robot: object) -> dict[int, str]:
     """Return the class name of the joystick at each port, as far as they are found."""
     found: dict[int, str] = {}
     for stick in _reachable(robot):
@@ -34,7 +34,7 @@ def find_gamepads(robot: Any) -> dict[int, str]:
     return dict(sorted(found.items()))
 
 
-def _reachable(robot: Any) -> Iterator[GenericHID]:
+def _reachable(robot: object) -> Iterator[GenericHID]:
     """Search breadth first, through attributes, containers and the closures of functions."""
     seen, waiting = {id(robot)}, [robot]
     for each in waiting:
@@ -49,7 +49,7 @@ def _reachable(robot: Any) -> Iterator[GenericHID]:
                 waiting.append(part)
 
 
-def _parts(thing: Any) -> Iterator[Any]:
+def _parts(thing: object) -> Iterator[Any]:
     if isinstance(thing, dict):
         yield from thing.values()
     elif isinstance(thing, _CONTAINERS):

@@ -33,7 +33,7 @@ class InertMotors:
         with patched(Patch(owner, "__init__", self._init(owner.__init__)) for owner in _GROUPS):
             yield
 
-    def is_inert(self, motor: Any) -> bool:
+    def is_inert(self, motor: object) -> bool:
         """Return whether a motor controller or drive is inert while the robot is disabled.
 
         A class of the robot's own is: it passes its calls on to another motor controller.
@@ -45,7 +45,7 @@ class InertMotors:
             return all(self.is_inert(member) for member in members)
         return not isinstance(motor, wpilib.PWMMotorController)
 
-    def in_group(self, motor: Any) -> bool:
+    def in_group(self, motor: object) -> bool:
         """Return whether a motor belongs to a drive or a group."""
         return any(motor is member for members in self._members.values() for member in members)
 
@@ -53,7 +53,7 @@ class InertMotors:
         members = self._members
 
         # The name matters to WPILib's bindings, see `motor_calls`.
-        def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
+        def __init__(self: object, *args: object, **kwargs: object) -> None:
             real(self, *args, **kwargs)
             members[id(self)] = [each for each in (*args, *kwargs.values()) if isinstance(each, MotorController)]
 

@@ -49,13 +49,13 @@ class MotorsLeftRunning:
     :param in_group: returns whether a motor belongs to a drive or a group, which sets it without a call in Python
     """
 
-    def __init__(self, in_group: Callable[[Any], bool]) -> None:
+    def __init__(self, in_group: Callable[[object], bool]) -> None:
         self._in_group = in_group
         self._mode = ""
         self._mode_since_us = 0
         self._set: dict[int, SetMotor] = {}
 
-    def on_call(self, motor: Any, frame: FrameType, files: RobotFiles) -> None:
+    def on_call(self, motor: object, frame: FrameType, files: RobotFiles) -> None:
         """Note a call that sets a motor.
 
         :param frame: where it is called

@@ -11,12 +11,12 @@ import tempfile
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor, wait
-from contextlib import closing, contextmanager
+from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
+from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from ..errors import RobotCodeError
 from ..hal import devices_exist
@@ -144,21 +144,32 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[MatchExecutor]:
             yield executor
 
 
-class SpawnedMatchExecutor(MatchExecutor):
-    """Runs each match in a new interpreter."""
+class PooledMatchExecutor(MatchExecutor):
+    """Runs matches in an executor of `concurrent.futures`."""
 
     @property
     def lines(self) -> frozenset[Line]:
         return run_in_subprocess(_all_lines, self.project, "while it was imported")
 
+    @abstractmethod
+    def _pool(self) -> AbstractContextManager[Executor]:
+        """Return the executor, which is used until the context ends."""
+
+    @abstractmethod
+    def _call(self, task: Task) -> Callable[[], Any]:
+        """Return the function that plays a task there."""
+
+    @abstractmethod
+    def _match_result(self, task: Task, future: Future[Any]) -> MatchResult:
+        """Return the result of the match whose future is done."""
+
     def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
-        with ThreadPoolExecutor(self.jobs) as pool:
-            waiting: deque[tuple[Task, Future[MatchResult]]] = deque()
+        with self._pool() as pool:
+            waiting: deque[tuple[Task, Future[Any]]] = deque()
             try:
                 for task in map(self._with_journal, tasks):
-                    work = partial(_play, task=task)
-                    waiting.append((task, pool.submit(run_in_subprocess, work, self.project, _MEANWHILE)))
-                    if len(waiting) >= self.jobs:
+                    waiting.append((task, pool.submit(self._call(task))))
+                    while sum(not future.done() for _, future in waiting) >= self.jobs:
                         yield self._result(*waiting.popleft())
                 while waiting:
                     yield self._result(*waiting.popleft())
@@ -166,16 +177,29 @@ class SpawnedMatchExecutor(MatchExecutor):
                 for _, future in waiting:
                     future.cancel()
 
-    def _result(self, task: Task, future: Future[MatchResult]) -> MatchResult:
+    def _result(self, task: Task, future: Future[Any]) -> MatchResult:
         with self._journal(task):
             while not future.done():
                 wait([future], _INTERRUPT_CHECK_SECONDS)
                 self._check_interrupt()
             self._check_interrupt()  # the signal may have ended that process, too
-            try:
-                return future.result()
-            except RobotCodeError as ended:
-                return self._died(task, str(ended))
+            return self._match_result(task, future)
+
+
+class SpawnedMatchExecutor(PooledMatchExecutor):
+    """Runs each match in a new interpreter."""
+
+    def _pool(self) -> AbstractContextManager[Executor]:
+        return ThreadPoolExecutor(self.jobs)
+
+    def _call(self, task: Task) -> Callable[[], MatchResult]:
+        return partial(run_in_subprocess, partial(_play, task=task), self.project, _MEANWHILE)
+
+    def _match_result(self, task: Task, future: Future[MatchResult]) -> MatchResult:
+        try:
+            return future.result()
+        except RobotCodeError as ended:
+            return self._died(task, str(ended))
 
 
 def _play(project: Project, log: CrashLog, task: Task) -> MatchResult:

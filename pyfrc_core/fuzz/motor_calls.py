@@ -43,7 +43,7 @@ def _patches(on_motor_call: OnMotorCall) -> Iterator[Patch]:
             yield Patch(drive, name, _drive(vars(drive)[name], name, on_motor_call))
 
 
-def _with_derived(base: type[Any]) -> Iterator[type[Any]]:
+def _with_derived(base: type[object]) -> Iterator[type[Any]]:
     yield base
     subclasses: list[type[Any]] = base.__subclasses__()
     for derived in subclasses:
@@ -54,24 +54,24 @@ def _with_derived(base: type[Any]) -> Iterator[type[Any]]:
 # name for a call of `super()`, as it is where a robot's own class overrides the method.
 
 
-def _set(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callable[..., Any]:
-    def set(self: Any, *args: Any, **kwargs: Any) -> Any:
+def _set(real: Callable[..., object], on_motor_call: OnMotorCall) -> Callable[..., Any]:
+    def set(self: object, *args: object, **kwargs: object) -> Any:
         on_motor_call(self, "set", _numbers(args, kwargs), True)
         return real(self, *args, **kwargs)
 
     return set
 
 
-def _set_voltage(real: Callable[..., Any], on_motor_call: OnMotorCall) -> Callable[..., Any]:
-    def setVoltage(self: Any, *args: Any, **kwargs: Any) -> Any:
+def _set_voltage(real: Callable[..., object], on_motor_call: OnMotorCall) -> Callable[..., Any]:
+    def setVoltage(self: object, *args: object, **kwargs: object) -> Any:
         on_motor_call(self, "setVoltage", _numbers(args, kwargs), False)
         return real(self, *args, **kwargs)
 
     return setVoltage
 
 
-def _drive(real: Callable[..., Any], name: str, on_motor_call: OnMotorCall) -> Callable[..., Any]:
-    def drive(self: Any, *args: Any, **kwargs: Any) -> Any:
+def _drive(real: Callable[..., object], name: str, on_motor_call: OnMotorCall) -> Callable[..., Any]:
+    def drive(self: object, *args: object, **kwargs: object) -> Any:
         on_motor_call(self, name, _numbers(args, kwargs), False)
         return real(self, *args, **kwargs)
 

@@ -63,7 +63,7 @@ class NetworkReads:
         #: Called before the first reading of an entry.
         self.on_first: Callable[[NetworkRead], None] = lambda read: None
 
-    def note(self, name: str, type_name: str, values: tuple[Any, ...], named: dict[str, Any]) -> None:
+    def note(self, name: str, type_name: str, values: tuple[object, ...], named: dict[str, object]) -> None:
         """Note a reading, if robot code reads and not a library: cameras' libraries check what they receive.
 
         :param values: the arguments of the call; the last one is the default
@@ -106,7 +106,7 @@ def _patches(reads: NetworkReads) -> Iterator[Patch]:
             yield Patch(owner, verb, _of_topic(vars(owner)[verb], lambda *_, known=type_name: known, reads))
     for struct_owner, ending in ((ntcore.StructTopic, ""), (ntcore.StructArrayTopic, "[]")):
 
-        def struct_type(default: Any, ending: str = ending) -> str:
+        def struct_type(default: object, ending: str = ending) -> str:
             return _struct_type(default, ending)
 
         for verb in ("subscribe", "getEntry"):
@@ -137,10 +137,10 @@ def _of_table(real: Any, type_name: str, reads: NetworkReads) -> Callable[..., A
     return get
 
 
-def _static(owner: Any, name: str, table: str, type_name: str, reads: NetworkReads) -> Patch:
+def _static(owner: object, name: str, table: str, type_name: str, reads: NetworkReads) -> Patch:
     call = getattr(owner, name)
 
-    def get(key: str, *args: Any, **kwargs: Any) -> Any:
+    def get(key: str, *args: object, **kwargs: object) -> Any:
         if table + key not in reads.found:
             reads.note(table + key, type_name, args, kwargs)
         return call(key, *args, **kwargs)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 import random
 import re
-from typing import Any
 
 from .network_reads import STRUCTS, NetworkRead
 from .robot_constants import RobotConstants
@@ -50,7 +49,7 @@ class NetworkValues:
         self._rng = rng
         self._constants = constants
 
-    def draw(self, read: NetworkRead, before: Any, setting: bool) -> Value:
+    def draw(self, read: NetworkRead, before: object, setting: bool) -> Value:
         """Return a value for an entry.
 
         :param before: the value that the robot has given it, or reads if there is none
@@ -88,7 +87,7 @@ class NetworkValues:
         spans = STRUCTS[name] * count
         return tuple(round(self._rng.uniform(low, high), _DIGITS) for low, high in spans)
 
-    def _one(self, name: str, element: str, before: Any, setting: bool) -> bool | int | float | str:
+    def _one(self, name: str, element: str, before: object, setting: bool) -> bool | int | float | str:
         if element == "boolean":
             return not before if self._rng.random() < 0.7 else bool(before)
         if element == "string":

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from types import FrameType
-from typing import Any
 
 from ..compat.cpython_private import current_frames, get_frame
 from ..config.settings import FuzzSettings
@@ -110,7 +109,7 @@ class _Oracle:
 
     # -- motors ------------------------------------------------------------------------------------------------
 
-    def on_motor_call(self, motor: Any, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
+    def on_motor_call(self, motor: object, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
         """Check a call of a motor controller or a drive."""
         settings = self._settings
         if settings.motors_left_running:

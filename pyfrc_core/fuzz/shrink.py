@@ -268,7 +268,7 @@ class Shrinker:
         if each is not None:
             yield from simpler(each.kind, write.value)
 
-    def _with_value(self, number: int, value: Any) -> tuple[Write, ...]:
+    def _with_value(self, number: int, value: object) -> tuple[Write, ...]:
         return tuple(replace(write, value=value) if write.number == number else write for write in self._writes)
 
 

@@ -34,7 +34,7 @@ _ABSENT = object()
 
 
 class _Attribute:
-    def __init__(self, path: str, owner: dict[str, Any], name: str) -> None:
+    def __init__(self, path: str, owner: dict[str, object], name: str) -> None:
         self.path, self.owner, self.name = path, owner, name
         self.value: object = owner.get(name, _ABSENT)
         self.text: str | None = _text_of(self.value)
@@ -125,7 +125,7 @@ class RobotStates:
             if not isinstance(thing, list | tuple | dict):
                 self._observe(path, vars(thing), now_us)
 
-    def _observe(self, path: str, owner: dict[str, Any], now_us: int) -> None:
+    def _observe(self, path: str, owner: dict[str, object], now_us: int) -> None:
         for name in list(owner):
             if (id(owner), name) in self._found or len(self._found) >= _MOST_ATTRIBUTES:
                 continue
@@ -136,7 +136,7 @@ class RobotStates:
                 self._owners.append(owner)
                 self._reach((STATE, each.path, str(each.text)), now_us)
 
-    def _parts(self, path: str, thing: Any) -> Iterator[tuple[str, Any]]:
+    def _parts(self, path: str, thing: object) -> Iterator[tuple[str, Any]]:
         if isinstance(thing, dict):
             for key, value in list(thing.items()):
                 yield f"{path}{_text_of(key)}.", value

@@ -43,7 +43,7 @@ class LiveMapping(_Dict):
         return {key: self[key] for key in self}
 
     @classmethod
-    def fromkeys(cls, iterable: Iterable[Any], value: Any = None) -> dict[Any, Any]:
+    def fromkeys(cls, iterable: Iterable[object], value: object = None) -> dict[Any, Any]:
         """Return an ordinary dict, like `dict.fromkeys`."""
         return dict.fromkeys(iterable, value)
 
@@ -53,7 +53,7 @@ class LiveMapping(_Dict):
     def __or__(self, other: Any) -> Any:
         return self.copy() | _values_of(other) if isinstance(other, Mapping) else NotImplemented
 
-    def __ror__(self, other: Any) -> Any:
+    def __ror__(self, other: object) -> Any:
         return _values_of(other) | self.copy() if isinstance(other, Mapping) else NotImplemented
 
     def __ior__(self, other: Any) -> Any:
@@ -71,10 +71,10 @@ class LiveMapping(_Dict):
     def __copy__(self) -> dict[Any, Any]:
         return self.copy()
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> dict[Any, Any]:
+    def __deepcopy__(self, memo: dict[int, object]) -> dict[Any, Any]:
         return copy.deepcopy(self.copy(), memo)
 
-    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+    def __reduce_ex__(self, protocol: object) -> tuple[Any, ...]:
         return dict, (self.copy(),)
 
 
@@ -88,17 +88,17 @@ class LiveSequence(_List):
         """Return a list of the current values. Containers in it are live."""
         return list(self)
 
-    def _fixed(self, *_: Any, **__: Any) -> NoReturn:
+    def _fixed(self, *_: object, **__: object) -> NoReturn:
         problem, remedy = "the list has a fixed length and order", "write its entries, or copy it with list(...)"
         raise WrongType(problem, where=self._path, remedy=remedy)
 
     append = extend = insert = pop = remove = clear = sort = reverse = _fixed
     __delitem__ = __iadd__ = __imul__ = _fixed
 
-    def __add__(self, other: Any) -> Any:
+    def __add__(self, other: object) -> Any:
         return list(self) + list(other) if isinstance(other, list) else NotImplemented
 
-    def __radd__(self, other: Any) -> Any:
+    def __radd__(self, other: object) -> Any:
         return list(other) + list(self) if isinstance(other, list) else NotImplemented
 
     def __mul__(self, times: Any) -> Any:
@@ -114,16 +114,16 @@ class LiveSequence(_List):
     def __ne__(self, other: object) -> bool:
         return not self == other
 
-    def __lt__(self, other: Any) -> Any:
+    def __lt__(self, other: object) -> Any:
         return list(self) < list(other) if isinstance(other, list) else NotImplemented
 
-    def __le__(self, other: Any) -> Any:
+    def __le__(self, other: object) -> Any:
         return list(self) <= list(other) if isinstance(other, list) else NotImplemented
 
-    def __gt__(self, other: Any) -> Any:
+    def __gt__(self, other: object) -> Any:
         return list(self) > list(other) if isinstance(other, list) else NotImplemented
 
-    def __ge__(self, other: Any) -> Any:
+    def __ge__(self, other: object) -> Any:
         return list(self) >= list(other) if isinstance(other, list) else NotImplemented
 
     __hash__ = None
@@ -131,12 +131,12 @@ class LiveSequence(_List):
     def __copy__(self) -> list[Any]:
         return list(self)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> list[Any]:
+    def __deepcopy__(self, memo: dict[int, object]) -> list[Any]:
         return copy.deepcopy(list(self), memo)
 
-    def __reduce_ex__(self, protocol: Any) -> tuple[Any, ...]:
+    def __reduce_ex__(self, protocol: object) -> tuple[Any, ...]:
         return list, (list(self),)
 
 
-def _values_of(mapping: Mapping[Any, Any]) -> dict[Any, Any]:
+def _values_of(mapping: Mapping[object, object]) -> dict[Any, Any]:
     return {key: mapping[key] for key in mapping}

@@ -88,7 +88,7 @@ class CanOutputs:
 class _Written:
     """An output that is turned off. It detects writes in the meantime, such as those of a vendor's model."""
 
-    def __init__(self, output: _Output, before: Any) -> None:
+    def __init__(self, output: _Output, before: object) -> None:
         self._output, self._before = output, before
         self._written = False
         # Called for every write, even if the value does not change.

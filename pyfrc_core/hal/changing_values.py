@@ -87,7 +87,7 @@ class ChangingValues:
             self._read_these(position for position in self._busy if self._leaves[position].handle not in self._quiet)
         return changed
 
-    def _compare(self, found: list[Any]) -> list[int]:
+    def _compare(self, found: list[object]) -> list[int]:
         last = self._last
         places = []
         for place in compress(count(), map(ne, last, found)):
@@ -144,5 +144,5 @@ class ChangingValues:
             cancel(self._quiet.popitem()[1])
 
 
-def _plain(leaf: Leaf, value: Any) -> Any:
+def _plain(leaf: Leaf, value: object) -> Any:
     return value if leaf.convert is None else leaf.convert(value)

@@ -79,7 +79,7 @@ class HalData(LiveDict):
             "CAN": SimDevices,
         }
 
-    def __getitem__(self, key: Any) -> Any:
+    def __getitem__(self, key: object) -> Any:
         try:
             return self._branches[key]
         except (KeyError, TypeError):
@@ -136,7 +136,7 @@ class HalData(LiveDict):
         self._has_parts(place, tuple(parents), last)
         return place, last
 
-    def write(self, path: str, value: Any) -> None:
+    def write(self, path: str, value: object) -> None:
         """Write the value at a path.
 
         :raises ValueError: as `read`
@@ -168,7 +168,7 @@ class HalData(LiveDict):
         return place
 
     @staticmethod
-    def _has_parts(place: Any, segments: tuple[Segment, ...], segment: Segment) -> None:
+    def _has_parts(place: object, segments: tuple[Segment, ...], segment: Segment) -> None:
         if isinstance(place, (LiveDict, dict)):
             return
         if not isinstance(place, (LiveList, list, tuple)):

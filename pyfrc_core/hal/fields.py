@@ -44,7 +44,7 @@ class DeviceField:
     put: Callable[[Any, Any], object] | None = None
     raw: Callable[[int], Raw] | None = None
 
-    def slot(self, device: Any) -> Slot:
+    def slot(self, device: object) -> Slot:
         """Return the access to this field of `device`; None stands for a channel that the HAL does not have."""
         if device is None or (self.hal is None and self.get is None):
             return stored(self.kind.default if self.default is None else self.default)
@@ -57,7 +57,7 @@ class DeviceField:
         return Slot(get, put, self.kind, watch, self.same_as or self.name, self.recorded, unset=self.unset)
 
 
-def _loaded(get: Callable[[], Any], load: Callable[[Any], Any]) -> Callable[[], Any]:
+def _loaded(get: Callable[[], object], load: Callable[[object], object]) -> Callable[[], Any]:
     return lambda: load(get())
 
 
@@ -112,6 +112,6 @@ class DeviceKind:
         return [initialized.slot(self.make(i)) for i in range(min(self.count, self.real))]
 
 
-def group(path: str, device: Any, fields: tuple[DeviceField, ...]) -> LiveDict:
+def group(path: str, device: object, fields: tuple[DeviceField, ...]) -> LiveDict:
     """Return one dict for a device that exists only once."""
     return LiveDict(path, lambda: {field.name: field.slot(device) for field in fields})

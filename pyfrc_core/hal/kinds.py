@@ -84,7 +84,7 @@ class ValueKind:
     load: Callable[[Any], Any] | None = None
     plain: Callable[[Any], Any] | None = None
 
-    def check(self, value: Any, where: str) -> Any:
+    def check(self, value: object, where: str) -> Any:
         """Return the value to store.
 
         :raises WrongType: when it has the wrong type; names `where`
@@ -98,12 +98,12 @@ class ValueKind:
             raise WrongValue(f"expected {self.expected}, not {_show(value)}", where=where) from None
 
 
-def _show(value: Any) -> str:
+def _show(value: object) -> str:
     text = repr(value)
     return f"{text if len(text) <= 60 else text[:57] + '...'} ({type(value).__name__})"
 
 
-def _as_float(value: Any) -> float:
+def _as_float(value: object) -> float:
     if type(value) is float:  # nearly always; a check with the abstract class is slow
         return value
     # A bool is an int in Python; as a voltage or an axis it is a mistake.
@@ -123,7 +123,7 @@ def _as_int(value: Any) -> int:
     return operator.index(value)
 
 
-def _as_bool(value: Any) -> bool:
+def _as_bool(value: object) -> bool:
     # Older tests write 0 and 1; any other truth value ('off', []) is probably a mistake.
     if isinstance(value, (str, bytes)) or not hasattr(value, "__bool__"):
         raise TypeError
@@ -137,7 +137,7 @@ def number(low: float | None = None, high: float | None = None) -> ValueKind:
     if low is None or high is None:
         return ValueKind("a number", _as_float, 0.0)
 
-    def convert(value: Any) -> float:
+    def convert(value: object) -> float:
         result = _as_float(value)
         if not low <= result <= high:
             raise ValueError
@@ -149,7 +149,7 @@ def number(low: float | None = None, high: float | None = None) -> ValueKind:
 def whole(low: int, high: int) -> ValueKind:
     """Return the kind of whole numbers; a float is accepted if it is whole."""
 
-    def convert(value: Any) -> int:
+    def convert(value: object) -> int:
         result = _as_int(value)
         if not low <= result <= high:
             raise ValueError
@@ -161,7 +161,7 @@ def whole(low: int, high: int) -> ValueKind:
 def text(max_bytes: int) -> ValueKind:
     """Return the kind of strings with at most this many bytes of UTF-8: the HAL silently cuts longer ones."""
 
-    def convert(value: Any) -> str:
+    def convert(value: object) -> str:
         if not isinstance(value, str):
             raise TypeError
         if len(value.encode()) > max_bytes or "\0" in value:
@@ -179,7 +179,7 @@ def choice(names: dict[str, int], make: Callable[[int], Any] = int) -> ValueKind
     """
     by_number = {value: Choice(value, name) for name, value in names.items()}
 
-    def convert(value: Any) -> Any:
+    def convert(value: object) -> Any:
         if isinstance(value, str):
             if value.lower() not in lower:
                 raise ValueError

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from hal import AllianceStationID
 from hal.simulation import (
@@ -122,7 +122,7 @@ def mode_name() -> str:
     return "disabled test" if getDriverStationTest() else "disabled"
 
 
-def when_mode_changes(listener: Callable[[str, Any], None]) -> list[object]:
+def when_mode_changes(listener: Callable[[str, object], None]) -> list[object]:
     """Call a function whenever the result of `mode_name` may have changed.
 
     :returns: objects that must be kept for as long as the function is to be called

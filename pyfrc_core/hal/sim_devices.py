@@ -46,12 +46,12 @@ class SimDevice(LiveDict):
     def _current(self) -> bool:
         return self._handle == hs.getSimDeviceHandle(self._name) != 0
 
-    def _slot(self, key: Any) -> Slot:
+    def _slot(self, key: object) -> Slot:
         if not self._current() or key not in self._slots:
             self.refresh()
         return super()._slot(key)
 
-    def __getitem__(self, key: Any) -> Any:
+    def __getitem__(self, key: object) -> Any:
         if not self._current():
             self.refresh()
         return super().__getitem__(key)
@@ -245,7 +245,7 @@ class RobotDict(LiveDict):
         except KeyError:
             raise self._unknown(key) from None
 
-    def __setitem__(self, key: Any, value: Any) -> None:
+    def __setitem__(self, key: object, value: object) -> None:
         if not isinstance(key, str):
             raise UnknownKey(f"a key of robot is a string, not {key!r}", where=join("robot", key))
         if bridge := self._bridge(key):
@@ -255,7 +255,7 @@ class RobotDict(LiveDict):
         if key in self._watches:
             self._watches[key].fire()
 
-    def __delitem__(self, key: Any) -> None:
+    def __delitem__(self, key: object) -> None:
         if key not in self._free:
             raise self._unknown(key)
         del self._free[key]
@@ -279,7 +279,7 @@ class RobotDict(LiveDict):
         self.sync()
         return iter([*self._free, *self._bridged])
 
-    def get(self, key: Any, default: Any = 0) -> Any:
+    def get(self, key: object, default: object = 0) -> Any:
         """Return the value at `key`, or 0 if it is missing."""
         return super().get(key, default)
 

@@ -119,7 +119,7 @@ class TreeReader:
             return list(range(len(self.values)))
         return sorted(set().union(*(recent[-back] for back in range(1, versions + 1))))
 
-    def _update(self, begin: int, now: list[Any]) -> Iterator[int]:
+    def _update(self, begin: int, now: list[object]) -> Iterator[int]:
         """Update values from a position on; yield the positions of those that have changed."""
         for position, value in enumerate(now, begin):
             if not same(self.values[position], value):
@@ -203,7 +203,7 @@ class _Part:
 class _RarelyChanged(_Part):
     """Values that rarely change, and are read only when their fingerprint has changed."""
 
-    def __init__(self, fingerprint: Callable[[], object], read: Callable[[], list[tuple[str, Any]]]) -> None:
+    def __init__(self, fingerprint: Callable[[], object], read: Callable[[], list[tuple[str, object]]]) -> None:
         super().__init__()
         self._fingerprint, self._read = fingerprint, read
         self._before: object = None
@@ -221,7 +221,7 @@ class _RarelyChanged(_Part):
 class _FreeValues(_Part):
     """The values of free keys, which may be anything."""
 
-    def __init__(self, name: str, source: Mapping[str, Any]) -> None:
+    def __init__(self, name: str, source: Mapping[str, object]) -> None:
         super().__init__()
         self._name, self._source = name, source
         self._keys: list[str] = []
@@ -290,7 +290,7 @@ def _of(place: LiveDict, *keys: str) -> Iterator[Leaf]:
             yield Leaf(path, get, slot.handle)
 
 
-def _plain(get: Callable[[], Any], convert: Callable[[Any], Any]) -> Callable[[], Any]:
+def _plain(get: Callable[[], object], convert: Callable[[object], object]) -> Callable[[], Any]:
     return lambda: convert(get())
 
 

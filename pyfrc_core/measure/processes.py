@@ -13,7 +13,6 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
 
 from ..processes.exit import before_every_exit, exit_now
 from ..processes.fork import Fork
@@ -26,7 +25,7 @@ _PATIENCE = 0.8
 
 
 @contextmanager
-def announced(kind: str, settings: dict[str, Any]) -> Iterator[None]:
+def announced(kind: str, settings: dict[str, object]) -> Iterator[None]:
     """Measure in this process, and have those that are started while this lasts do so, too.
 
     :param kind: the module of this package that does it
@@ -60,7 +59,7 @@ def measure_here() -> None:
         signal.signal(signal.SIGTERM, lambda number, frame: exit_now(128 + number))
 
 
-def _begin(kind: str, settings: dict[str, Any]) -> Callable[[], object]:
+def _begin(kind: str, settings: dict[str, object]) -> Callable[[], object]:
     Fork.grace_seconds = _PATIENCE
     save: Callable[[], object] = importlib.import_module(f".{kind}", __package__).begin(settings)
     before_every_exit.append(save)

@@ -52,10 +52,10 @@ class _CallProfile:
         self._profile = cProfile.Profile()
         self._on = False
 
-    def wrap(self, function: Callable[..., Any]) -> Callable[..., Any]:
+    def wrap(self, function: Callable[..., object]) -> Callable[..., Any]:
         """Return the function with profiling, for calls from outside the other wrapped functions."""
 
-        def profiled(*args: Any, **kwargs: Any) -> Any:
+        def profiled(*args: object, **kwargs: object) -> Any:
             __tracebackhide__ = True
             if self._on:
                 return function(*args, **kwargs)

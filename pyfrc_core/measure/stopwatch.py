@@ -130,7 +130,7 @@ class Stopwatch:
                     _, spent = unusual(what, begin, took, spent)
                 record(spent)
 
-        def timed_method(self: Any) -> Any:
+        def timed_method(self: object) -> Any:
             __tracebackhide__ = True
             waits = watch.waits
             watch.calls += 1
@@ -201,10 +201,10 @@ class Stopwatch:
 
     # -- waits ----------------------------------------------------------------------------------------------------
 
-    def waiting(self, original: Callable[..., Any]) -> Callable[..., Any]:
+    def waiting(self, original: Callable[..., object]) -> Callable[..., Any]:
         """Wrap a method of `RobotThreads` in which the calling thread waits."""
 
-        def wait(threads: RobotThreads, *args: Any) -> Any:
+        def wait(threads: RobotThreads, *args: object) -> Any:
             __tracebackhide__ = True
             # The quick check comes first: a notifier, or a loop between two iterations, waits often.
             if self.calls and _in_timed_call(get_frame(1)):
@@ -215,7 +215,7 @@ class Stopwatch:
 
         return wait
 
-    def _call_waits(self, frame: FrameType, threads: RobotThreads, original: Callable[[], Any]) -> Any:
+    def _call_waits(self, frame: FrameType, threads: RobotThreads, original: Callable[[], object]) -> Any:
         __tracebackhide__ = True
         begin, begin_computed, robot_us = perf_counter_ns(), thread_time_ns(), threads.clock.now_us
         try:
@@ -241,7 +241,7 @@ class Stopwatch:
                 self._figures.period_ns = round(getattr(run.robot, "control_loop_wait_time", 0.02) * 1e9)
         return self._has_turns
 
-    def _own_loop_waits(self, original: Callable[[], Any]) -> Any:
+    def _own_loop_waits(self, original: Callable[[], object]) -> Any:
         """Record an iteration of a robot with its own loop: it ends with the loop's first wait."""
         __tracebackhide__ = True
         if self._turn is not None:
@@ -285,7 +285,7 @@ def _in_timed_call(frame: FrameType | None) -> bool:
     return False
 
 
-def _takes_one_argument(function: Callable[..., Any]) -> bool:
+def _takes_one_argument(function: Callable[..., object]) -> bool:
     """Return whether the function is a method without arguments, as most of a robot's are."""
     if not isinstance(function, FunctionType):
         return False

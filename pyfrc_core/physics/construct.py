@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from ..project import Project
 from ..runtime.robot import RobotRun
 
 
-def construct(project: Project, run: RobotRun, robot_class: type[Any]) -> None:
+def construct(project: Project, run: RobotRun, robot_class: type[object]) -> None:
     """Construct the robot and its physics in an open run."""
     if project.physics_file.is_file():
         from .engine import load_physics

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, overload
 
 import wpilib
 from wpimath.geometry import Pose2d, Rotation2d, Transform2d
@@ -87,8 +87,8 @@ class PhysicsInterface:
     def __init__(
         self,
         robot_path: str | Path,
-        fake_time: Any,
-        config_obj: SimConfig | Mapping[str, Any],
+        fake_time: object,
+        config_obj: SimConfig | Mapping[str, object],
         hal_data: HalData | None = None,
     ) -> None:
         self.robot_path = str(robot_path)

@@ -194,7 +194,7 @@ def _engine_class(module: ModuleType) -> type[Any]:
     )
 
 
-def _accepts(function: Callable[..., Any], *arguments: str) -> bool:
+def _accepts(function: Callable[..., object], *arguments: str) -> bool:
     try:
         inspect.signature(function).bind(*arguments)
     except TypeError:
@@ -202,7 +202,7 @@ def _accepts(function: Callable[..., Any], *arguments: str) -> bool:
     return True
 
 
-def _wrong_signature(engine: type[Any], name: str) -> PhysicsInitException:
+def _wrong_signature(engine: type[object], name: str) -> PhysicsInitException:
     method = getattr(engine, name)
     if method is object.__init__:
         message = "PhysicsEngine has no constructor"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numbers
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..errors import PyfrcError
 from .parameters import finite
@@ -39,7 +39,7 @@ class WrongDimension(PyfrcError, ValueError):
     """A parameter has a unit of another dimension, such as a mass in feet, or lacks a required unit."""
 
 
-def magnitude(value: float | Quantity | Any, unit: str, parameter: str, *, plain: bool = False) -> float:
+def magnitude(value: float | Quantity | object, unit: str, parameter: str, *, plain: bool = False) -> float:
     """Return `value` as a number of `unit`. A quantity may belong to any pint registry, which converts it.
 
     :param unit: the unit of the result, such as ``"foot"``, as pint spells it; not one of pyfrc's own units
@@ -72,7 +72,7 @@ def _wrong(given: str, unit: str, parameter: str) -> WrongDimension:
     return WrongDimension(f"{given}, {expected}", where=parameter)
 
 
-def _kind(dimensionality: Any) -> str:
+def _kind(dimensionality: object) -> str:
     """Return the name of a dimension, such as ``a length``, or pint's own description."""
     names = (name for name, unit, _ in KINDS if units.parse_units(unit).dimensionality == dimensionality)
     return next(names, f"of dimension {dimensionality}")

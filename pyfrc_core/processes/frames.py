@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 import struct
 from collections.abc import Iterator
-from typing import Any
+from typing import IO, Any
 
 _LENGTH = struct.Struct("<Q")
 
@@ -38,3 +38,21 @@ def decode(stream: bytes) -> Iterator[Any]:
             return
         yield pickle.loads(stream[at : at + length])
         at += length
+
+
+def read_frame(stream: IO[bytes]) -> Any:
+    """Return the next object of a buffered stream.
+
+    :raises EOFError: when the stream ends before its end
+    """
+    (length,) = _LENGTH.unpack(_read_exactly(stream, _LENGTH.size))
+    if length > MOST_BYTES:
+        raise EOFError("this is not the length of an object")
+    return pickle.loads(_read_exactly(stream, length))
+
+
+def _read_exactly(stream: IO[bytes], size: int) -> bytes:
+    data = stream.read(size)
+    if len(data) < size:
+        raise EOFError("the stream has ended")
+    return data

@@ -32,7 +32,7 @@ def without_first_alarm() -> Iterator[None]:
         yield
 
 
-def missing_super_init(robot_class: type[Any], error: TypeError) -> RobotCodeError | None:
+def missing_super_init(robot_class: type[object], error: TypeError) -> RobotCodeError | None:
     """WPILib complains of a forgotten ``super().__init__()`` without naming the place; this does."""
     code = getattr(robot_class.__init__, "__code__", None)
     if code is None or "__init__() must be called when overriding" not in str(error):

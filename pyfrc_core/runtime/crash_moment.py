@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..hal import modes
 
@@ -27,6 +27,6 @@ class CrashMoment:
         self._listening = modes.when_mode_changes(self._note_mode)
         run.connection.when_connected.append(self._note_mode)
 
-    def _note_mode(self, name: str = "", value: Any = None) -> None:
+    def _note_mode(self, name: str = "", value: object = None) -> None:
         # Before its first packet, a robot is disabled whatever mode is asked for.
         self._log.set_mode(modes.mode_name() if self._run.connection.connected else "disabled")

@@ -308,7 +308,7 @@ def patches(current: Callable[[], DataLogs | None]) -> list[Patch]:
     def manager_call(name: str) -> Patch:
         real = getattr(wpilib.DataLogManager, name)
 
-        def call(*args: Any, **kwargs: Any) -> Any:
+        def call(*args: object, **kwargs: object) -> Any:
             logs = current()
             if logs is None and name == "start":
                 _started_at_import.append((args, kwargs))
@@ -356,14 +356,14 @@ def _open_like_background_writer(
 class _StandsFor(type):
     """A class whose instances are made otherwise. WPILib's own cannot be subclassed."""
 
-    def __new__(cls, name: str, real: tuple[type, ...], make: Callable[..., Any]) -> _StandsFor:
+    def __new__(cls, name: str, real: tuple[type, ...], make: Callable[..., object]) -> _StandsFor:
         return super().__new__(cls, name, (), {"__doc__": real[0].__doc__, "__module__": real[0].__module__})
 
-    def __init__(cls, name: str, real: tuple[type, ...], make: Callable[..., Any]) -> None:
+    def __init__(cls, name: str, real: tuple[type, ...], make: Callable[..., object]) -> None:
         super().__init__(name, (), {})
         cls._real, cls._make = real, make
 
-    def __call__(cls, *args: Any, **kwargs: Any) -> Any:
+    def __call__(cls, *args: object, **kwargs: object) -> Any:
         return cls._make(*args, **kwargs)
 
     def __instancecheck__(cls, instance: object) -> bool:

@@ -163,7 +163,7 @@ class _Name:
             raise AttributeError(name)
         return getattr(self._pyfrc_itself(), name)
 
-    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+    def __call__(self, *args: object, **kwargs: object) -> Any:
         return self._pyfrc_itself()(*args, **kwargs)
 
     def __mro_entries__(self, bases: tuple[object, ...]) -> tuple[Any, ...]:
@@ -178,7 +178,7 @@ class _Name:
     def __or__(self, other: Any) -> Any:
         return self._pyfrc_itself() | other
 
-    def __ror__(self, other: Any) -> Any:
+    def __ror__(self, other: object) -> Any:
         return other | self._pyfrc_itself()
 
     def __repr__(self) -> str:

@@ -38,7 +38,7 @@ def _text(characters: memoryview) -> str:
 
 
 def _match_information(current_run: _CurrentRun) -> list[Patch]:
-    def held_back(name: str, read: Callable[[hal.MatchInfo], Any]) -> Patch:
+    def held_back(name: str, read: Callable[[hal.MatchInfo], object]) -> Patch:
         real = getattr(wpilib.DriverStation, name)
 
         def get() -> Any:
@@ -86,7 +86,7 @@ def _waiting(current_run: _CurrentRun) -> Patch:
 def _packets(current_run: _CurrentRun) -> list[Patch]:
     """Return the functions by which a test delivers packets out of turn: a recorder must record them."""
 
-    def delivering(owner: Any, name: str, refreshes: bool) -> Patch:
+    def delivering(owner: object, name: str, refreshes: bool) -> Patch:
         real = getattr(owner, name)
 
         def notify() -> None:
@@ -111,7 +111,7 @@ def _packets(current_run: _CurrentRun) -> list[Patch]:
 def _resets(current_run: _CurrentRun) -> list[Patch]:
     """Return the functions by which a test resets the driver station's data: that must not end the connection."""
 
-    def resetting(owner: Any, name: str) -> Patch:
+    def resetting(owner: object, name: str) -> Patch:
         real = getattr(owner, name)
 
         def reset() -> None:

@@ -118,7 +118,7 @@ class CooperativeRLock(BuiltinClassReplacement, _PythonRLock):  # type: ignore[m
     __enter__ = acquire
 
 
-def new_rlock(*args: Any, **kwargs: Any) -> Any:
+def new_rlock(*args: object, **kwargs: object) -> Any:
     """`threading.RLock`, which is a function in all versions of Python."""
     if args or kwargs or not on_behalf_of_robot_code(get_frame(1)):
         return _real_rlock(*args, **kwargs)
@@ -127,7 +127,7 @@ def new_rlock(*args: Any, **kwargs: Any) -> Any:
 
 @replaces(_real_simple_queue, "queue:SimpleQueue")
 class CooperativeSimpleQueue(BuiltinClassReplacement, _PythonSimpleQueue):  # type: ignore[misc]
-    def __new__(cls, *args: Any, **kwargs: Any) -> Any:
+    def __new__(cls, *args: object, **kwargs: object) -> Any:
         if cls is CooperativeSimpleQueue and (args or kwargs or not on_behalf_of_robot_code(get_frame(1))):
             return _real_simple_queue(*args, **kwargs)
         made = super().__new__(cls)

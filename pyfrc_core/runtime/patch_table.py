@@ -30,13 +30,13 @@ class PatchTable:
     def __init__(self) -> None:
         self._originals: dict[tuple[Any, str], Any] = {}
 
-    def __contains__(self, place: tuple[Any, str]) -> bool:
+    def __contains__(self, place: tuple[object, str]) -> bool:
         return place in self._originals
 
     def __bool__(self) -> bool:
         return bool(self._originals)
 
-    def patch(self, owner: Any, name: str, value: Any) -> None:
+    def patch(self, owner: object, name: str, value: object) -> None:
         """Replace a name, whether the owner has it itself, inherits it, or lacks it.
 
         Replacing it again does not change the value that `undo` restores.

@@ -153,7 +153,7 @@ class Patches:
         def notifier_call(name: str, ours: str) -> Patch:
             real = getattr(hal, name)
 
-            def call(*args: Any, **kwargs: Any) -> Any:
+            def call(*args: object, **kwargs: object) -> Any:
                 __tracebackhide__ = True
                 run = active_run.run
                 handle = args[0] if args else kwargs.get("notifierHandle")
@@ -185,7 +185,7 @@ class Patches:
     def _stepping_in_tests(self) -> list[Patch]:
         """Tests that step WPILib's simulated time themselves move the robot with it."""
 
-        def stepping(owner: Any, name: str, in_us: Callable[[float], int]) -> Patch:
+        def stepping(owner: object, name: str, in_us: Callable[[float], int]) -> Patch:
             real = getattr(owner, name)
 
             def step(delta: float) -> None:
@@ -206,7 +206,7 @@ class Patches:
 
             return Patch(owner, name, step)
 
-        def left_to_the_run(owner: Any, name: str) -> Patch:
+        def left_to_the_run(owner: object, name: str) -> Patch:
             real = getattr(owner, name)
 
             def call() -> None:

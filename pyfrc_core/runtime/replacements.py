@@ -27,7 +27,7 @@ class BuiltinReplacement(staticmethod):  # type: ignore[type-arg]
     :param place: where the replacement is found: ``module:name``
     """
 
-    def __init__(self, function: Callable[..., Any], original: Callable[..., Any], place: str) -> None:
+    def __init__(self, function: Callable[..., object], original: Callable[..., object], place: str) -> None:
         _take_identity(function, original)
         function.__annotations__ = {}  # a built-in function has none
         super().__init__(function)
@@ -117,7 +117,7 @@ def _place_of(owner: type, name: str) -> str:
     return f"{owner.__module__}:{owner.__qualname__}.{name}"
 
 
-def _take_identity(replacement: Any, original: Any) -> None:
+def _take_identity(replacement: object, original: object) -> None:
     for name in _IDENTITY:
         value = getattr(original, name, None)
         if value is not None and not (name == "__self__" and isinstance(replacement, types.FunctionType)):

@@ -144,7 +144,7 @@ class RobotRun:
         self.data_logs.start_as_at_import()
         cooperative.begin_waiting_threads()
 
-    def construct(self, robot_class: type[Any]) -> Any:
+    def construct(self, robot_class: type[object]) -> Any:
         """Make the robot. Its `robotInit` runs with `start`."""
         __tracebackhide__ = True
         try:
@@ -387,7 +387,7 @@ class RobotRun:
                 self.recorder.begin_outside()
 
 
-def _has_loop_of_its_own(robot: Any) -> bool:
+def _has_loop_of_its_own(robot: object) -> bool:
     if not isinstance(robot, wpilib.TimedRobot):
         return True
     return type(robot).startCompetition is not wpilib.TimedRobot.startCompetition

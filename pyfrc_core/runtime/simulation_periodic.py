@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 import weakref
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..compat.wpilib_private import SIMULATION_PERIODIC, registered_subsystems, simulation_periodic_of
 from ..hal import modes
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..hal.output_gate import OutputGate
 
 
-def gate_robot(robot: Any, gate: Callable[[], OutputGate]) -> None:
+def gate_robot(robot: object, gate: Callable[[], OutputGate]) -> None:
     """Have the robot's `_simulationPeriodic` see the outputs of a disabled robot as off.
 
     :param gate: returns what turns the outputs off
@@ -36,7 +36,7 @@ def gate_subsystems(gate: Callable[[], OutputGate]) -> None:
             subsystem.simulationPeriodic = _gated(subsystem, "simulationPeriodic", gate)
 
 
-def _gated(owner: Any, name: str, gate: Callable[[], OutputGate]) -> Callable[[], None]:
+def _gated(owner: object, name: str, gate: Callable[[], OutputGate]) -> Callable[[], None]:
     reference = weakref.ref(owner)  # or it would hold on to itself
 
     def simulate() -> None:

@@ -78,7 +78,7 @@ def hashed_part(line: str) -> str:
     return "" if change is None else json.dumps(change, sort_keys=True)
 
 
-def repeatable_part(change: dict[str, Any]) -> dict[str, Any] | None:
+def repeatable_part(change: dict[str, object]) -> dict[str, Any] | None:
     """Return a line's object without the values that do not repeat; None if it has nothing else."""
     change = {key: value for key, value in change.items() if key != REAL_TIME}
     return change if change["set"] or "gone" in change else None

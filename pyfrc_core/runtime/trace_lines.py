@@ -7,7 +7,6 @@ robots have many equal numbers in a packet, such as the voltage at each motor. `
 from __future__ import annotations
 
 import json
-from typing import Any
 
 #: The key of a line's values that do not repeat.
 REAL_TIME = "real_time"
@@ -32,7 +31,7 @@ class TraceLines:
         self._ranks: dict[str, int] = {}
         self._keys: dict[str, str] = {}
 
-    def format(self, now: float, changed: dict[str, Any], gone: list[str], marked: dict[str, Any]) -> str:
+    def format(self, now: float, changed: dict[str, object], gone: list[str], marked: dict[str, object]) -> str:
         """Return the line of one packet.
 
         :param now: the robot time, rounded
@@ -45,7 +44,7 @@ class TraceLines:
             start += f'"{REAL_TIME}": {self._object(marked)}, '
         return f'{{{start}"set": {self._object(changed)}, "t": {now!r}}}'
 
-    def _object(self, values: dict[str, Any]) -> str:
+    def _object(self, values: dict[str, object]) -> str:
         try:
             ordered = sorted(values, key=self._ranks.__getitem__)
         except KeyError:
@@ -66,7 +65,7 @@ class TraceLines:
             items.append(keys[path] + text)
         return f"{{{', '.join(items)}}}"
 
-    def _learn(self, paths: dict[str, Any]) -> None:
+    def _learn(self, paths: dict[str, object]) -> None:
         for path in paths:
             self._keys[path] = json.dumps(path) + ": "
         self._ranks = {path: rank for rank, path in enumerate(sorted(self._keys))}

@@ -43,7 +43,7 @@ def patches() -> list[Patch]:
     return [Patch(socket.socket, "bind", bind)]
 
 
-def _udp_port(sock: socket.socket, address: Any) -> int | None:
+def _udp_port(sock: socket.socket, address: object) -> int | None:
     """Return the fixed UDP port of the address, if it has one."""
     if sock.type != socket.SOCK_DGRAM or sock.family not in (socket.AF_INET, socket.AF_INET6):
         return None

@@ -69,7 +69,7 @@ class PyFrcPlugin:
 
     def __init__(
         self,
-        robot_class: type[Any] | None,
+        robot_class: type[object] | None,
         robot_file: str | Path,
         robot_path: str | Path,
         *,
@@ -115,7 +115,7 @@ class PyFrcPlugin:
     # -- fixtures ----------------------------------------------------------------------------------------------
 
     @pytest.fixture
-    def control(self, fake_time: FakeTime, robot: Any) -> TestController:
+    def control(self, fake_time: FakeTime, robot: object) -> TestController:
         """Control over the robot."""
         return TestController(fake_time, self.project, self.options.seed, self.invariants)
 
@@ -130,7 +130,7 @@ class PyFrcPlugin:
         return _robot_run.hal_data
 
     @pytest.fixture
-    def physics_controller(self, _physics: Physics | None, robot: Any) -> PhysicsInterface:
+    def physics_controller(self, _physics: Physics | None, robot: object) -> PhysicsInterface:
         """The object with which your ``physics.py`` moves the robot; it knows the robot's position on the field."""
         if _physics is None:
             raise ProjectError("there is no physics.py in this project", where=self.project.root)

@@ -69,7 +69,7 @@ def _explain_real_time_devices(terminalreporter: Any) -> None:
         terminalreporter.write_line(explain_real_time(devices))
 
 
-def _explain_each_bug_once(stats: dict[str, list[Any]]) -> None:
+def _explain_each_bug_once(stats: dict[str, list[object]]) -> None:
     """Replace the failures by a bug that was explained before by a reference to the explanation."""
     explained: dict[str, str] = {}
     for outcome in ("error", "failed"):  # in the order in which they are shown

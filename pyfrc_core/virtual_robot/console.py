@@ -34,15 +34,16 @@ class ConsoleServer:
             self._server = socket.create_server((host, PORT))
         except OSError:
             self._server = socket.create_server((host, 0))
+        self._server.setblocking(False)
         self.port: int = self._server.getsockname()[1]
         self._clients: list[socket.socket] = []
         self._lock = threading.Lock()
         self._number = 0
-        threading.Thread(target=self._accept, name="virtual robot: console", daemon=True).start()
 
     def send(self, line: bytes) -> None:
-        """Send a line to all clients."""
+        """Send a line to all clients that have connected before."""
         with self._lock:
+            self._accept()
             self._number += 1
             for client in list(self._clients):
                 try:
@@ -60,12 +61,16 @@ class ConsoleServer:
             self._clients.clear()
 
     def _accept(self) -> None:
-        with suppress(OSError):
+        """Accept the waiting clients.
+
+        Only here: a thread that accepts clients may be late, and the first lines of a program would not reach the
+        agent that has connected and then restarted it.
+        """
+        with suppress(OSError):  # none is waiting, or the server is closed
             while True:
                 client, _ = self._server.accept()
                 client.settimeout(_SEND_SECONDS)
-                with self._lock:
-                    self._clients.append(client)
+                self._clients.append(client)
 
 
 def close_server(server: socket.socket) -> None:

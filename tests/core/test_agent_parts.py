@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from ports import refusing_port
 
 from pyfrc_core.deploy.agent import console, host, imports, inventory, program, wire
 from pyfrc_core.deploy.agent.activity import Activity
@@ -183,10 +184,8 @@ def test_messages_of_the_console() -> None:
 
 
 def test_a_console_client() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listener, socket.create_server(("127.0.0.1", 0)) as none:
-        closed = none.getsockname()[1]
-        none.close()
-        ours = ConsoleClient((closed, listener.getsockname()[1]))
+    with socket.create_server(("127.0.0.1", 0)) as listener, refusing_port() as refusing:
+        ours = ConsoleClient((refusing, listener.getsockname()[1]))
         assert ours.receive(0.0) == ""  # nothing listens
         ours.connect()
         robot, _ = listener.accept()

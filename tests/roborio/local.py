@@ -8,6 +8,7 @@ import re
 import select
 import shutil
 import socket
+import stat
 import subprocess
 import sys
 import tempfile
@@ -21,6 +22,9 @@ from types import TracebackType
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
 from pyfrc_core.deploy.agent_package import COMMAND, agent_hash
 from pyfrc_core.deploy.manifest import Manifest, build_manifest
+
+#: Names with their kind, permissions and content, and which are hard links to one file.
+Disk = tuple[frozenset[tuple[str, int, str | bytes]], frozenset[tuple[str, ...]]]
 
 ROBOT_PY = "import wpilib\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n"
 
@@ -152,10 +156,35 @@ class LocalRobot:
         shutil.copytree(self.root, root, symlinks=True)
         return LocalRobot(root)
 
-    def start(self, agents: Agents, **options: int | bool | None) -> AgentClient:
-        """An agent on it; for the options see `Agents.channel`."""
+    def disk(self) -> Disk:
+        """What is on its disk; equal where the agent finds the same, whenever it was written."""
+        names: dict[int, list[str]] = {}
+        entries = []
+        root = str(self.root)
+        for directory, directories, files in os.walk(root):
+            for name in (*directories, *files):
+                path = os.path.join(directory, name)  # noqa: PTH118 - hundreds of disks of dozens of files
+                about = os.lstat(path)
+                content: str | bytes = b""
+                if stat.S_ISLNK(about.st_mode):
+                    content = os.readlink(path)  # noqa: PTH115
+                elif stat.S_ISREG(about.st_mode):
+                    names.setdefault(about.st_ino, []).append(path[len(root) :])
+                    with open(path, "rb") as file:  # noqa: PTH123
+                        content = file.read()
+                entries.append((path[len(root) :], about.st_mode, content))
+        links = (tuple(sorted(each)) for each in names.values() if len(each) > 1)
+        return frozenset(entries), frozenset(links)
+
+    def start(self, agents: Agents, manifest: Manifest | None = None, **options: int | bool | None) -> AgentClient:
+        """An agent on it; for the options see `Agents.channel`.
+
+        :param manifest: the files of the first message
+        """
         self._agents, self._options = agents, options
-        return AgentClient.start(self, hello={"root": str(self.root)})
+        client = AgentClient.open(self)
+        client.begin({"root": str(self.root)}, manifest)
+        return client
 
     def open(self, command: str) -> LocalChannel:
         """What a connection does: run the agent."""
@@ -175,7 +204,7 @@ class LocalRobot:
         **options: int | bool | None,
     ) -> Deployed:
         """Deploy and hang up."""
-        robot = self.start(agents, **options)
+        robot = self.start(agents, project, **options)
         try:
             return robot.deploy(project, DeployRequest(main, {"deploy-user": "somebody"}, debug, in_place))
         finally:

@@ -22,6 +22,8 @@ from pathlib import Path
 from types import TracebackType
 
 HERE = Path(__file__).parent
+#: Seconds after which a test gives up. Decides nothing else: a busy machine may take its time.
+PATIENCE = 120.0
 LVUSER, NI = 500, 500
 #: Files to take for ``frcKillRobot.sh``; the default one, which takes no time, is in files/.
 TAKES_TWO_SECONDS = HERE / "kill_scripts/takes_two_seconds.sh"
@@ -203,7 +205,7 @@ class Roborio:
         change = ["chroot", f"--userspec={ids}", "--groups=", str(self._root), *command]
         return subprocess.run(into + change, capture_output=True, text=True, check=False)
 
-    def said(self, text: str, seconds: float = 20) -> str:
+    def said(self, text: str, seconds: float = PATIENCE) -> str:
         """Wait until the robot program has printed `text` since the power was switched on; all that it has printed."""
         with self._news:
             if not self._news.wait_for(lambda: text in self._said, seconds):

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from pyfrc_core.deploy.errors import ConnectionFailedError
 
+from .machine import PATIENCE
+
 if TYPE_CHECKING:
     import paramiko
 
@@ -21,8 +23,8 @@ class SshConnection:
         self.address = f"{host}:{port}"
         self.transport: paramiko.Transport | None = None
         try:
-            self.transport = paramiko.Transport(socket.create_connection((host, port), timeout=10))
-            self.transport.banner_timeout = 10
+            self.transport = paramiko.Transport(socket.create_connection((host, port), timeout=PATIENCE))
+            self.transport.banner_timeout = PATIENCE
             self.transport.connect(username=user, password="")
         except (OSError, EOFError, paramiko.SSHException) as error:
             self.close()
@@ -47,8 +49,8 @@ class SshConnection:
 
         assert self.transport is not None
         try:
-            channel = self.transport.open_session(timeout=10)
-            channel.settimeout(10)
+            channel = self.transport.open_session(timeout=PATIENCE)
+            channel.settimeout(PATIENCE)
             channel.exec_command(command)
         except (OSError, EOFError, paramiko.SSHException) as error:
             raise ConnectionFailedError(f"no channel: {error}") from error

@@ -151,7 +151,12 @@ def agent(connection: int, alive: int, options: dict[str, Any]) -> None:
             "heard": True,
             "seen": True,
         }
-        program.Program.watch = lambda *watch: {**seen, "seconds": 1.0, "age": 1.0, "lived": 1.0}  # type: ignore[method-assign]
+
+        def watch(self: program.Program, *_: object) -> dict[str, Any]:
+            has_run = self._monitor is not None and self._monitor.has_run
+            return {**seen, "seconds": 1.0, "age": 1.0, "lived": 1.0, "has_run": has_run}
+
+        program.Program.watch = watch  # type: ignore[method-assign]
     counted: Steps | Calls = Calls() if options["calls"] else steps
     try:
         serve.main(open(0, "rb", 0))  # noqa: SIM115

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import select
-import socket
 import struct
 import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import socket
 
 #: The console's ports: for any client, and for the Driver Station.
 PORTS = (1741, 1740)
@@ -32,6 +35,8 @@ class ConsoleClient:
 
     def connect(self) -> None:
         """Connect, to receive the output from now on."""
+        import socket
+
         self.disconnect()
         for port in self._ports:
             try:

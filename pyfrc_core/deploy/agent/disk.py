@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import shutil
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -67,6 +67,8 @@ def files_below(directory: Path) -> Iterator[tuple[str, os.DirEntry[str]]]:
 def remove(path: Path) -> None:
     """Remove a file or a directory tree, if it exists."""
     if path.is_dir() and linked_directory(path) is None:
+        import shutil
+
         shutil.rmtree(path)
     else:
         with suppress(FileNotFoundError):
@@ -75,6 +77,8 @@ def remove(path: Path) -> None:
 
 def remove_if_possible(path: Path) -> None:
     """Remove a directory tree, except for entries that belong to other users of the robot."""
+    import shutil
+
     shutil.rmtree(path, ignore_errors=True)
 
 
@@ -85,9 +89,16 @@ def link_or_copy(source: str, target: str) -> None:
     except FileNotFoundError:
         raise
     except OSError:
+        import shutil
+
         shutil.copy2(source, target, follow_symlinks=False)
 
 
 def free_bytes(directory: Path) -> int:
     """Return the free space of this file system, in bytes."""
+    if sys.platform != "win32":
+        state = os.statvfs(directory)
+        return state.f_bavail * state.f_frsize
+    import shutil
+
     return shutil.disk_usage(directory).free

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import tempfile
 import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
@@ -122,6 +120,9 @@ class RoboRio:
 
     def _run_kill_script(self, options: list[str], meanwhile: Callable[[], None]) -> str:
         """Run the kill script, and return its output."""
+        import subprocess
+        import tempfile
+
         script = self.paths.of(_KILL_SCRIPT)
         if not script.exists():
             raise Refusal(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import pkgutil
-import platform
 import re
 import sys
 from collections.abc import Iterable
@@ -19,11 +18,17 @@ def look_up(modules: Iterable[str]) -> dict[str, Any]:
 
     :param modules: dotted names to look for
     """
+    if sys.platform == "win32":
+        import platform
+
+        machine = platform.machine()
+    else:
+        machine = os.uname().machine
     return {
         "missing_modules": [name for name in modules if not is_there(name)],
         "extension_suffixes": EXTENSION_SUFFIXES,
         "packages": installed_packages(),
-        "machine": platform.machine(),
+        "machine": machine,
     }
 
 

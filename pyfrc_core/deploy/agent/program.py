@@ -29,15 +29,17 @@ class Program:
         #: Output of the new program that was not sent yet.
         self._output = ""
 
-    def restart(self, main: Path | None = None) -> bool:
+    def restart(self, main: Path | None = None, has_run: bool = False) -> bool:
         """Restart the program; return when the old one has ended. The console is connected before.
 
         :param main: the program's main file, if known
+        :param has_run: see `StartMonitor`
         :return: whether the old program survived the kill script and was ended by a signal
         """
         self._console.connect()
         self._output = ""
-        self._monitor = monitor = StartMonitor(self._host.processes(), main is None or _reports_start(main))
+        reports = main is None or _reports_start(main)
+        self._monitor = monitor = StartMonitor(self._host.processes(), reports, has_run)
         survived = self._host.stop(start=True, meanwhile=lambda: self._poll(monitor))
         self._poll(monitor)
         monitor.restarted(time.monotonic())
@@ -66,7 +68,7 @@ class Program:
                 verdict = STARTING  # the laptop has disconnected, or sent another request
             if verdict is not None:
                 self._console.disconnect()
-                return {"verdict": verdict, **self._state(monitor, now)}
+                return {"verdict": verdict, "has_run": monitor.has_run, **self._state(monitor, now)}
             if now >= report:
                 wire.send(watching=self._state(monitor, now))
                 report = now + _REPORT_SECONDS

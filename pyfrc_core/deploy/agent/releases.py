@@ -6,7 +6,6 @@ directory. A release gets its name when it is complete, and loses it before its 
 
 from __future__ import annotations
 
-import filecmp
 import json
 import os
 import re
@@ -109,6 +108,10 @@ class Releases:
                 record = {}
             self._records[number] = identity, record if isinstance(record, dict) else {}
         return dict(self._records[number][1])
+
+    def contents(self, number: int | None) -> set[str]:
+        """Return the hashes of a release's files, according to its record."""
+        return set() if number is None else set(self.record(number).get("files", {}).values())
 
     def write_record(self, number: int, record: Record) -> None:
         """Write the record of a release."""
@@ -369,6 +372,8 @@ def _keep_beside(target: Path, replacement: Path, release: str) -> None:
     """Keep a file under another name before its replacement, unless the content is the same."""
     if target.is_dir() and not target.is_symlink():
         return  # directories are not replaced
+    import filecmp
+
     if not (target.is_symlink() or replacement.is_symlink()) and filecmp.cmp(target, replacement, shallow=False):
         return
     name = target.name if len(os.fsencode(target.name)) <= _MAX_NAME_BYTES else target.name[:_CUT_LENGTH]

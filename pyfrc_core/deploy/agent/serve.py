@@ -5,10 +5,10 @@ from __future__ import annotations
 import errno
 import os
 import sys
-import traceback
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -30,6 +30,8 @@ from .virtual import VirtualRobotClient
 from .wire import EndedError, Message, Wire, WireError, parse_message, read_frame
 
 _USER = "lvuser"
+#: Modules that only later requests need. They are imported after the first response, while the laptop reads it.
+_NEEDED_LATER = ("ctypes", "shutil", "socket", "subprocess", "tempfile")
 
 
 def main(source: BinaryIO, first: bytes = b"", code: bytes = b"") -> None:
@@ -73,6 +75,8 @@ class Agent:
         self._lock: ExitStack | None = None
         #: The release that was started and not watched yet.
         self._started: int | None = None
+        #: The release that a deploy has just compared with the laptop's files, if it was seen to run before.
+        self._has_run: int | None = None
         #: The manifest of the first message or of the last plan: a deploy without a manifest uses it.
         self._files: list[Any] = hello.get("files") or []
         self._requests: dict[str, Callable[[Message], Message]] = {
@@ -88,6 +92,8 @@ class Agent:
     def serve(self) -> None:
         """Respond to requests until the laptop disconnects."""
         self._respond(self.facts, self._hello)
+        for name in _NEEDED_LATER:
+            import_module(name)
         while True:
             # Without the lock, the laptop may be waiting for its user.
             self._wire.limits_silence = self._lock is not None
@@ -125,6 +131,8 @@ class Agent:
                     "disk", f"{error.filename or 'the robot'}: {error.strerror}", "Check its owner and permissions."
                 )
         except Exception:
+            import traceback
+
             self._send_error("bug", "the agent on the robot has failed", "", traceback=traceback.format_exc())
         return False
 
@@ -136,8 +144,11 @@ class Agent:
         ini = text_of(self._paths.of("/etc/natinst/share/ni-rt.ini"))
         releases, python = self._releases, look_up(request.get("modules") or ())
         program = self._host.processes()
+        known = releases.contents(releases.current())
         return {
             **python,
+            # At the first deploy, all of them would make a long message.
+            "new": [path for path, _, sha256, _ in request.get("files") or () if known and sha256 not in known],
             "wpilib": python["packages"].get("wpilib"),
             "python": ".".join(map(str, sys.version_info[:3])),
             "image": image_in(text_of(self._paths.of(IMAGE_FILE)) or ""),
@@ -190,6 +201,7 @@ class Agent:
             self._releases.recover()
             try:
                 done = Deploy(self._releases, self._wire, request).run()
+                self._has_run = done["release"] if done.get("has_run") else None
                 return {**done, "fallback": self._releases.fallback(done["release"])}
             except BaseException:
                 with suppress(ConnectionError):  # the next deploy removes the rest
@@ -206,7 +218,9 @@ class Agent:
             self._started = current = self._releases.current()
             name = None if current is None else self._releases.record(current).get("main")
             main = None if name is None else self._paths.code / name
-            survived = self._activity.wait_for(lambda: self._program.restart(main))
+            has_run = current is not None and current == self._has_run
+            self._has_run = None  # the next restart is not preceded by a comparison
+            survived = self._activity.wait_for(self._program.restart, main, has_run)
             if current is not None:
                 self._releases.carry_late_writes(current)
             if prune:

@@ -5,8 +5,6 @@ A roboRIO runs Linux. A virtual robot runs on its user's system. Only Linux has 
 
 from __future__ import annotations
 
-import ctypes
-import getpass
 import os
 import select
 import signal
@@ -32,6 +30,8 @@ def flush(directory: Path) -> None:
     """
     if sys.platform == "win32":
         return
+    import ctypes
+
     descriptor = os.open(directory, os.O_RDONLY)
     try:
         library = ctypes.CDLL(None, use_errno=True)
@@ -48,6 +48,8 @@ def exchange(one: Path, other: Path) -> bool:
     """Exchange two directory entries atomically. Return False if the system does not support this."""
     if sys.platform == "win32":
         return False
+    import ctypes
+
     if sys.platform == "darwin":
         rename = ctypes.CDLL(None, use_errno=True).renamex_np
         return bool(rename(os.fsencode(one), os.fsencode(other), _EXCHANGE) == 0)
@@ -115,6 +117,7 @@ def lock(stream: TextIO) -> None:
 def readable(stream: BinaryIO, seconds: float) -> bool:
     """Wait up to `seconds` until an unbuffered pipe has data or is closed. Return False after a timeout."""
     if sys.platform == "win32":
+        import ctypes
         import msvcrt
 
         pipe, count = msvcrt.get_osfhandle(stream.fileno()), ctypes.c_ulong()
@@ -129,6 +132,8 @@ def readable(stream: BinaryIO, seconds: float) -> bool:
 
 def end_with_parent() -> None:
     """Let the system kill this forked process when its parent ends (Linux only)."""
+    import ctypes
+
     library = ctypes.CDLL(None)
     if hasattr(library, "prctl"):
         library.prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
@@ -137,6 +142,8 @@ def end_with_parent() -> None:
 def user() -> str:
     """Return the user name of this process."""
     if sys.platform == "win32":
+        import getpass
+
         return getpass.getuser()
     import pwd
 

@@ -24,7 +24,7 @@ _RESERVE = 256 * 1024
 
 
 class ContentReader:
-    """Reads the file contents that the laptop sends: all of them in one compressed stream."""
+    """Reads file contents that the laptop sends in one compressed stream."""
 
     def __init__(self, wire: Wire, activity: Activity) -> None:
         self._wire = wire
@@ -89,6 +89,9 @@ class Deploy:
         #: Whether a restart follows, which removes old releases.
         self._restarts = bool(request.get("restart"))
         self._program = frozenset(request.get("program") or ())
+        #: The files whose contents follow the request immediately, in the manifest's order. They are not linked, since
+        #: they are written even if another release has them.
+        self._sent = frozenset(request.get("sent") or ())
         self._commands = start_commands(self._main)
 
     def run(self) -> Message:
@@ -103,16 +106,18 @@ class Deploy:
         else:
             wanted = self._wanted
         at_hand = self._check_disk_space(wanted, at_hand)
-        missing = at_hand.missing(wanted)
+        sent = [each for each in wanted if each.path in self._sent]
+        received = {each.sha256 for each in sent}
+        missing = [each for each in at_hand.missing(wanted) if each.sha256 not in received]
         self._wire.send(need=[each.path for each in missing], bytes=sum(each.size for each in missing))
         current = self._releases.current()
         if not (self._in_place and code is not None) and current is not None and self._is_current(current, at_hand):
             return self._redeploy(current)
-        self._fill_incoming(wanted, missing, at_hand)
-        sent = {"files": len(missing), "bytes": sum(each.size for each in missing)}
+        self._fill_incoming(wanted, sent, missing, at_hand)
+        amount = {"files": len(sent + missing), "bytes": sum(each.size for each in sent + missing)}
         if self._in_place and code is not None:
-            return {**self._overwrite(code, wanted), **sent}
-        return {**self._release(), **sent}
+            return {**self._overwrite(code, wanted), **amount}
+        return {**self._release(), **amount}
 
     def _is_current(self, current: int, at_hand: ContentIndex) -> bool:
         files = self._releases.record(current).get("files")
@@ -124,12 +129,15 @@ class Deploy:
         """Update only the record of the current release, which already has the same files."""
         directory = self._releases.directory(current)
         record = self._releases.record(current)
+        same = (record.get("main"), record.get("debug")) == (self._main, self._debug)
+        has_run = same and record.get("ran") and not record.get("ended")
         record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
         compile_below(directory, self._debug, self._activity, self._program)
         write_whole(directory / DEPLOY_JSON, json.dumps(self._about, indent=2))
         self._releases.write_record(current, record)
         self._switch(current, None)
-        return {"release": current, "previous": current, "files": 0, "bytes": 0, "taken": None, "unchanged": True}
+        done = {"release": current, "previous": current, "files": 0, "bytes": 0, "taken": None, "unchanged": True}
+        return {**done, "has_run": has_run}
 
     def _check_disk_space(self, wanted: list[WantedFile], at_hand: ContentIndex) -> ContentIndex:
         """Check that there is enough disk space, and remove old releases if there is not.
@@ -158,17 +166,23 @@ class Deploy:
             )
         return at_hand
 
-    def _fill_incoming(self, wanted: list[WantedFile], missing: list[WantedFile], at_hand: ContentIndex) -> None:
-        """Write and compile the wanted files in the incoming directory."""
+    def _fill_incoming(
+        self, wanted: list[WantedFile], sent: list[WantedFile], missing: list[WantedFile], at_hand: ContentIndex
+    ) -> None:
+        """Write and compile the wanted files in the incoming directory.
+
+        :param sent: files whose contents are received first
+        :param missing: files whose contents were requested
+        """
         incoming, activity = self._paths.incoming, self._activity
         incoming.mkdir(parents=True)
         for directory in sorted({each.path.rpartition("/")[0] for each in wanted}):
             (incoming / directory).mkdir(parents=True, exist_ok=True)
-        linked = self._link(wanted, at_hand)
-        first = {each.sha256: each for each in missing}
+        linked = self._link([each for each in wanted if each.path not in self._sent], at_hand)
+        first = {each.sha256: each for each in sent + missing}
         copied = [each for each in wanted if each.path not in linked and first.get(each.sha256) != each]
         at_once = [name for name, is_compiled in linked.items() if not is_compiled and name.endswith(".py")]
-        sources = at_once + [each.path for each in (*missing, *copied) if each.path.endswith(".py")]
+        sources = at_once + [each.path for each in (*sent, *missing, *copied) if each.path.endswith(".py")]
         with Compiler(incoming, sources, self._debug, self._program) as compiler:
 
             def complete(each: WantedFile) -> None:
@@ -178,12 +192,12 @@ class Deploy:
 
             for _ in at_once:
                 compiler.add_next()
-            activity.begin("receive", sum(each.size for each in missing))
-            contents = ContentReader(self._wire, activity)
-            for each in missing:
-                contents.write(each, incoming / each.path)
-                complete(each)
-            if missing:
+            activity.begin("receive", sum(each.size for each in sent + missing))
+            for batch in filter(None, (sent, missing)):
+                contents = ContentReader(self._wire, activity)
+                for each in batch:
+                    contents.write(each, incoming / each.path)
+                    complete(each)
                 contents.end()
             activity.begin("copy", len(copied))
             for each in copied:

@@ -103,7 +103,7 @@ def find_can_devices(objects: Iterable[Reached]) -> CanDevices:
     return found
 
 
-def _kind(thing: Any) -> str:
+def _kind(thing: object) -> str:
     """Return the class of a vendor's device; a team's own class may be derived from it."""
     if isinstance(thing, type):
         return ""
@@ -158,7 +158,7 @@ def _completed(motor: CanMotor, thing: Any, cancoders: list[tuple[Name, Any, str
     return replace(motor, factor=factor, cancoder=encoder, live=live)
 
 
-def _beside(name: Name, cancoders: list[tuple[Name, Any, str]]) -> tuple[Name, Any, str] | None:
+def _beside(name: Name, cancoders: list[tuple[Name, object, str]]) -> tuple[Name, Any, str] | None:
     """Return the only CANcoder of the same part of the robot, for a motor that could turn it."""
     beside = [each for each in cancoders if each[0].owner == name.owner]
     return beside[0] if len(beside) == 1 and name.task != "drive" else None

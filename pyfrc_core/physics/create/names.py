@@ -137,7 +137,7 @@ class Reached(NamedTuple):
     expression: str
 
 
-def find_objects(robot: Any, files: RobotFiles) -> list[Reached]:
+def find_objects(robot: object, files: RobotFiles) -> list[Reached]:
     """Return what the robot's code holds, the shortest path first.
 
     The search covers the robot's attributes, those of the project's own objects, lists and dicts of them, and the
@@ -158,7 +158,7 @@ def find_devices(objects: Iterable[Reached]) -> dict[Place, NamedDevice]:
     return found
 
 
-def _reachable(robot: Any, files: RobotFiles) -> Iterator[Reached]:
+def _reachable(robot: object, files: RobotFiles) -> Iterator[Reached]:
     modules = [
         module
         for module in list(sys.modules.values())
@@ -179,14 +179,14 @@ def _reachable(robot: Any, files: RobotFiles) -> Iterator[Reached]:
                 waiting.append(here)
 
 
-def _is_looked_into(value: Any, ours: set[str]) -> bool:
+def _is_looked_into(value: object, ours: set[str]) -> bool:
     if isinstance(value, (list, tuple, dict, set)):
         return True
     owner = value if isinstance(value, type) else type(value)
     return any(base.__module__ in ours for base in owner.__mro__)
 
 
-def _parts(owner: Any, ours: set[str]) -> Iterable[tuple[str, Any, str]]:
+def _parts(owner: object, ours: set[str]) -> Iterable[tuple[str, Any, str]]:
     """Return the name and value of each part, and how Python code gets it from its owner; empty if it cannot."""
     if isinstance(owner, dict):
         items = list(owner.items())[:_PARTS]
@@ -204,7 +204,7 @@ def _parts(owner: Any, ours: set[str]) -> Iterable[tuple[str, Any, str]]:
     return [(name, value, f".{name}" if name.isidentifier() else "") for name, value in plain]
 
 
-def _places(thing: Any) -> Iterator[tuple[Place, str]]:
+def _places(thing: object) -> Iterator[tuple[Place, str]]:
     """Return the keys and channels of a device, each with a suffix for its name."""
     if isinstance(thing, wpilib.Encoder):
         index = thing.getFPGAIndex()
@@ -247,7 +247,7 @@ _WITH_CHANNEL: tuple[tuple[Any, str], ...] = (
 _CAN_NUMBERS = range(63)
 
 
-def _can_number(thing: Any) -> int | None:
+def _can_number(thing: object) -> int | None:
     """Return the CAN number of a vendor's motor controller or sensor, from the methods of the vendors' classes."""
     if isinstance(thing, type):
         return None

@@ -147,7 +147,7 @@ class _State:
                 target = entry_target(name.removeprefix("NT:"), _NAMED_TYPES.get(self.types[name], ""))
                 yield from self._changed(target, value, None)
 
-    def _changed(self, target: str, value: Any, initially: Any) -> Iterator[tuple[str, Any]]:
+    def _changed(self, target: str, value: object, initially: object) -> Iterator[tuple[str, Any]]:
         if self._written.get(target, initially) != value:
             self._written[target] = value
             yield target, value

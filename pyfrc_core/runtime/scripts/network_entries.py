@@ -51,7 +51,7 @@ class NetworkEntries:
     def __init__(self) -> None:
         self._writers: dict[str, Callable[[Any], None]] = {}
 
-    def write(self, target: str, value: Any) -> None:
+    def write(self, target: str, value: object) -> None:
         """Write one value.
 
         :raises UsageError: when the entry cannot have this value
@@ -81,7 +81,7 @@ def _writer(name: str, type_name: str) -> Callable[[Any], None]:
         raise UsageError(f"NetworkTables has no type {type_name!r}: the types are {', '.join(_MAKE)}, struct:NAME")
     make = _MAKE[type_name]
 
-    def write_typed(value: Any) -> None:
+    def write_typed(value: object) -> None:
         try:
             made = make(list(value) if isinstance(value, list | tuple) else value)
         except TypeError:

@@ -182,7 +182,7 @@ class _MatchTime:
         #: What was last written to stand still, and may turn out to be the beginning of a countdown.
         self._last: dict[str, Any] = {}
 
-    def hear(self, writes: dict[str, Any], before: float, left: float, at_us: int, stepping: bool) -> None:
+    def hear(self, writes: dict[str, object], before: float, left: float, at_us: int, stepping: bool) -> None:
         """Add to `writes` what has to be said of the seconds that are left now."""
         if self._counting:
             if not stepping or left == self._countdown.left(at_us):
@@ -199,7 +199,7 @@ class _MatchTime:
         self._last = writes
 
 
-def _parts(target: str, before: Any, value: Any) -> Iterator[tuple[str, Any]]:
+def _parts(target: str, before: object, value: object) -> Iterator[tuple[str, Any]]:
     """Of a list, the entries that have changed; an unplugged joystick has none."""
     if not isinstance(value, list):
         yield target, value
@@ -263,7 +263,7 @@ class _Network:
             elif isinstance(news, ntcore.TopicInfo):
                 yield NETWORK + news.name, MISSING
 
-    def _hear(self, target: str, value: Any) -> None:
+    def _hear(self, target: str, value: object) -> None:
         if value is MISSING:
             self._found.pop(target, None)
         else:

@@ -195,7 +195,7 @@ class _Line:
     def _no_number(self, name: str) -> float:
         raise ScriptError(f"{name} is no number that can be written", where=self.where)
 
-    def of_type(self, key: str, kind: type, what: str, default: Any) -> Any:
+    def of_type(self, key: str, kind: type, what: str, default: object) -> Any:
         value = self.value.get(key, default)
         if not isinstance(value, kind) or isinstance(value, bool):
             raise ScriptError(

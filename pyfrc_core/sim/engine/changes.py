@@ -60,7 +60,7 @@ def change_of(line: str) -> Change:
     return Change(change["t"], MappingProxyType(values), tuple(change.get("gone", ())))
 
 
-def frozen(value: Any) -> Any:
+def frozen(value: object) -> Any:
     """Return the same value, unchangeable."""
     if isinstance(value, (list, tuple)):
         return tuple(frozen(each) for each in value)
@@ -83,7 +83,7 @@ class RunChanges:
         self.began: RunBegan | None = None
         self.next: RunChanges | None = None
 
-    def begin(self, time: float, values: Mapping[str, Any]) -> None:
+    def begin(self, time: float, values: Mapping[str, object]) -> None:
         """Note what the run begins with; only the first call counts."""
         if self.began is None:
             unchangeable = {path: frozen(value) for path, value in values.items()}

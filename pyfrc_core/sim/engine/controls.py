@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any
 
 from ...runtime.robot_time import PACKET_US, to_us
 from .commands import (
@@ -95,7 +94,7 @@ class Controls(ABC):
 
     # -- inputs ---------------------------------------------------------------------------------------------------
 
-    def write(self, values: Mapping[str, Any]) -> None:
+    def write(self, values: Mapping[str, object]) -> None:
         """Write inputs by target, as input scripts do: ``{"dio[3].value": True, "nt:/SmartDashboard/kP": 0.1}``."""
         self._send(Write(dict(values)))
 

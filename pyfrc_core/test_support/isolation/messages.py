@@ -50,7 +50,7 @@ class ReportSender:
             self.send("ran", ran.ran_here())
         self.send("done", None)
 
-    def send(self, kind: str, content: Any) -> None:
+    def send(self, kind: str, content: object) -> None:
         self._send((kind, content))
 
     @pytest.hookimpl(tryfirst=True)
@@ -66,7 +66,7 @@ class ReportSender:
         return report
 
     def pytest_warning_recorded(
-        self, warning_message: warnings.WarningMessage, when: str, nodeid: str, location: Any
+        self, warning_message: warnings.WarningMessage, when: str, nodeid: str, location: object
     ) -> None:
         if not self._listening:
             return

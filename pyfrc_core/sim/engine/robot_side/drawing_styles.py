@@ -32,18 +32,18 @@ class Styled:
     problem: str = ""
 
 
-def line_style(options: Mapping[str, Any]) -> tuple[LineStyle, Styled]:
+def line_style(options: Mapping[str, object]) -> tuple[LineStyle, Styled]:
     """Return the style of a line, with what else the keywords say."""
     return _read("draw_line", LineStyle, _LINE, options)
 
 
-def text_style(options: Mapping[str, Any]) -> tuple[TextStyle, Styled]:
+def text_style(options: Mapping[str, object]) -> tuple[TextStyle, Styled]:
     """Return the style of a text, with what else the keywords say."""
     return _read("draw_text", TextStyle, _TEXT, options)
 
 
 def _one_of(*names: str) -> Callable[[Any], str]:
-    def read(value: Any) -> str:
+    def read(value: object) -> str:
         if value not in names:
             raise ValueError(f"it is one of {', '.join(names)}")
         return str(value)
@@ -93,7 +93,7 @@ _TEXT: _Readers = {
 
 
 def _read(
-    function: str, make: Callable[..., Style], readers: _Readers, options: Mapping[str, Any]
+    function: str, make: Callable[..., Style], readers: _Readers, options: Mapping[str, object]
 ) -> tuple[Style, Styled]:
     found: dict[str, Any] = {}
     problem = ""

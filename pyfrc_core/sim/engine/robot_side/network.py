@@ -59,7 +59,7 @@ class Served:
     :param write: writes a target, as in input scripts
     """
 
-    def __init__(self, port: int, write: Callable[[str, Any], object]) -> None:
+    def __init__(self, port: int, write: Callable[[str, object], object]) -> None:
         self._write = write
         self._robot = ntcore.NetworkTableListenerPoller(ntcore.NetworkTableInstance.getDefault())
         self._robot.addListener([""], _VALUES)

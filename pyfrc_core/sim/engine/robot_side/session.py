@@ -288,13 +288,13 @@ class Session:
                 for target, value in command.writes.items():
                     self._put(target, value)
 
-    def _put(self, target: str, value: Any) -> None:
+    def _put(self, target: str, value: object) -> None:
         try:
             self._station.put(target, value)
         except (PyfrcError, TypeError, ValueError, LookupError) as wrong:
             self._notes.append(f"{target} = {value!r}: {wrong}")
 
-    def _write(self, target: str, value: Any) -> None:
+    def _write(self, target: str, value: object) -> None:
         if target == ROBOT_ON_FIELD:  # robot code may show a field of its own under that name
             target = target.replace("/Field/", f"/{getattr(self._run.physics, 'field_name', 'Field')}/")
         self._targets.write(target, value, self._run.clock.now_us)
@@ -305,7 +305,7 @@ class Session:
 
     # -- updates --------------------------------------------------------------------------------------------------
 
-    def send_update(self, base: dict[str, Any] | None = None) -> None:
+    def send_update(self, base: dict[str, object] | None = None) -> None:
         """Send what has changed.
 
         :param base: all values, where the changes do not continue those sent before

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 from ....config.settings import MatchSettings
 from ....config.sim import FieldConfig
@@ -33,7 +32,7 @@ class Station:
         run: RobotRun,
         match: MatchSettings,
         field: FieldConfig,
-        write: Callable[[str, Any], object],
+        write: Callable[[str, object], object],
         state: StationState,
     ) -> None:
         self._run = run
@@ -74,7 +73,7 @@ class Station:
         """Begin a practice match with the next packet."""
         self.state = replace(self.state, practice_since_us=self._run.clock.next_packet_us)
 
-    def put(self, target: str, value: Any) -> None:
+    def put(self, target: str, value: object) -> None:
         """Write an input. A joystick's control is written when the robot receives its data."""
         control = _CONTROL.fullmatch(target)
         if control is None:

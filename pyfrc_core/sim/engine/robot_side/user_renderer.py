@@ -56,7 +56,7 @@ class UserRenderer:
         relative_to_first: bool = False,
         arrow: bool = True,
         scale: Point = (1, 1),
-        **kwargs: Any,
+        **kwargs: object,
     ) -> None:
         """Draw a line through all of these points.
 
@@ -86,7 +86,7 @@ class UserRenderer:
         robot_coordinates: RobotCoordinates = False,
         scale: Point = (1, 1),
         arrow: bool = True,
-        **kwargs: Any,
+        **kwargs: object,
     ) -> None:
         """Write a text on the field, its middle at a point.
 
@@ -113,7 +113,7 @@ class UserRenderer:
         scale: Point = (1, 1),
         show_dt: float | bool = False,
         dt_offset: float = 0.0,
-        **kwargs: Any,
+        **kwargs: object,
     ) -> None:
         """Draw a trajectory of `robotpy-pathfinder` (or any other whose segments have `x`, `y` and `dt`).
 
@@ -169,7 +169,7 @@ def get_user_renderer() -> UserRenderer | None:
     return renderer if isinstance(renderer, UserRenderer) else None
 
 
-def _line(points: tuple[Point, ...], color: str, arrow: bool, options: Mapping[str, Any]) -> Line:
+def _line(points: tuple[Point, ...], color: str, arrow: bool, options: Mapping[str, object]) -> Line:
     style, styled = line_style(options)
     return Line(points, styled.color or color, arrow, style, styled.problem)
 

@@ -57,7 +57,7 @@ class WpiLog:
         self._pose: int | None = None
         self._flush_us = 0
 
-    def write(self, now_us: int, changed: Mapping[str, Any], pose: Pose2d | None) -> None:
+    def write(self, now_us: int, changed: Mapping[str, object], pose: Pose2d | None) -> None:
         """Write the changes at `now_us`, in microseconds of robot time."""
         stamp = max(1, now_us)  # to WPILib, 0 is "now"
         for path, value in changed.items():
@@ -80,7 +80,7 @@ class WpiLog:
         else:
             self._log.stop()
 
-    def _entry(self, path: str, value: Any) -> Callable[[Any, int], object]:
+    def _entry(self, path: str, value: object) -> Callable[[Any, int], object]:
         found = self._entries.get(path)
         if found is None:
             found = self._entries[path] = self._new_entry(path, value)

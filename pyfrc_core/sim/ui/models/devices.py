@@ -142,7 +142,7 @@ def _channels(tree: dict[Any, Any], key: str) -> Iterator[tuple[int, dict[Any, A
     yield from sorted(tree.get(key, {}).items())
 
 
-def _pwm(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+def _pwm(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "pwm"):
         if "value" in fields:
             what = f"{_titled('PWM', channel, config.pwm)}: what the robot sends to the motor, from -1 to 1"
@@ -152,7 +152,7 @@ def _pwm(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
             yield Row("meter", (fields["duty_cycle"][0],), f"{channel}  (DIO as PWM)", tooltip="Its duty cycle, 0 to 1")
 
 
-def _dio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+def _dio(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "dio"):
         if "value" not in fields:
             continue
@@ -166,21 +166,21 @@ def _dio(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
             yield Row("slider", (fields["output"][0],), f"Duty cycle {channel}", tooltip=what)
 
 
-def _analog_in(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+def _analog_in(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "analog_in"):
         if "voltage" in fields:
             what = f"{_titled('Analog input', channel, config.analog)}: the voltage that the robot measures"
             yield Row("slider", (fields["voltage"][0],), _named(channel, config.analog), 0.0, 5.0, 2, "V", what)
 
 
-def _analog_out(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+def _analog_out(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "analog_out"):
         if "voltage" in fields:
             what = f"Analog output {channel}: the voltage that the robot puts out"
             yield Row("meter", (fields["voltage"][0],), f"{channel}", 0.0, 5.0, 2, "V", what)
 
 
-def _relays(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+def _relays(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
     for channel, fields in _channels(tree, "relay"):
         if {"fwd", "rev"} <= fields.keys():
             paths = fields["fwd"][0], fields["rev"][0]
@@ -205,7 +205,7 @@ def _pneumatics(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
                 yield Row("switch", (compressor["pressure_switch"][0],), "   Pressure switch", tooltip=what)
 
 
-def _encoders(tree: dict[Any, Any], config: SimConfig) -> Iterator[Row]:
+def _encoders(tree: dict[object, object], config: SimConfig) -> Iterator[Row]:
     for number, fields in _channels(tree, "encoder"):
         if "count" in fields:
             each = fields.get("distance_per_pulse", ("", 1.0))[1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tkinter as tk
 from tkinter import ttk
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...engine.snapshot import Failure
 from ..models.wording import plain_output
@@ -113,7 +113,7 @@ class ConsoleView:
         if self._follows:
             self.text.see("end")
 
-    def _scroll(self, *how: Any) -> None:
+    def _scroll(self, *how: object) -> None:
         self.text.yview(*how)
         self._look()
 

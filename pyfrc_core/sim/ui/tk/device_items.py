@@ -49,13 +49,13 @@ class Item:
         )
         self._make()
 
-    def look(self, values: Sequence[Any]) -> None:
+    def look(self, values: Sequence[object]) -> None:
         """Show these values, one for each of the row's paths."""
         if values != self._shown:
             self._shown = values
             self.show(values)
 
-    def show(self, values: Sequence[Any]) -> None:
+    def show(self, values: Sequence[object]) -> None:
         value = values[0] if values else ""
         text = number_text(value, 3) if isinstance(value, float) else str(value)
         self._canvas.itemconfigure(self._text, text=_shortened(text, 22))
@@ -75,7 +75,7 @@ class Item:
     def _value_text(self, right: int, color: str = colors.MUTED) -> int:
         return self._canvas.create_text(right, self.place.y, anchor="e", font=self._theme.small, fill=color)
 
-    def _number(self, value: Any) -> str:
+    def _number(self, value: object) -> str:
         if not isinstance(value, int | float):
             return str(value)
         return number_text(value, self.row.decimals) + (
@@ -107,7 +107,7 @@ class Bar(Item):
         share = (min(max(value, low), high) - low) / (high - low)
         return self._left + share * (self._right - self._left)
 
-    def show(self, values: Sequence[Any]) -> None:
+    def show(self, values: Sequence[object]) -> None:
         value = values[0] if isinstance(values[0], int | float) else 0.0
         y, half = self.place.y, self._theme.px(5)
         zero, end = self._pixel(0.0), self._pixel(value)
@@ -131,7 +131,7 @@ class SliderItem(Bar):
         self._canvas.coords(self._track, self._left, y - px(2), self._right, y + px(2))
         self._knob = self._canvas.create_oval(0, 0, 0, 0, fill=colors.CARD, outline=colors.ACCENT, width=px(2))
 
-    def show(self, values: Sequence[Any]) -> None:
+    def show(self, values: Sequence[object]) -> None:
         super().show(values)
         y, r = self.place.y, self._theme.px(6)
         value = values[0] if isinstance(values[0], int | float) else 0.0
@@ -158,7 +158,7 @@ class Number(Item):
         self._canvas.create_rectangle(*box, fill="#f5f7f9", outline=colors.BORDER)
         self._text = self._value_text(place.right - px(6), colors.TEXT)
 
-    def show(self, values: Sequence[Any]) -> None:
+    def show(self, values: Sequence[object]) -> None:
         self._canvas.itemconfigure(self._text, text=self._number(values[0]))
 
 
@@ -172,7 +172,7 @@ class Lamp(Item):
         self._lamp = self._canvas.create_oval(x - r, y - r, x + r, y + r, outline="")
         self._text = self._value_text(x - self._theme.px(14))
 
-    def show(self, values: Sequence[Any]) -> None:
+    def show(self, values: Sequence[object]) -> None:
         on = bool(values[0])
         self._canvas.itemconfigure(self._lamp, fill=colors.LAMP_ON if on else colors.LAMP_OFF)
         self._canvas.itemconfigure(self._text, text="on" if on else "off")
@@ -191,7 +191,7 @@ class Switch(Item):
         self._knob = self._canvas.create_oval(0, 0, 0, 0, fill=colors.CARD, outline="")
         self._text = self._value_text(self._off - r - px(8))
 
-    def show(self, values: Sequence[Any]) -> None:
+    def show(self, values: Sequence[object]) -> None:
         on, y, r = bool(values[0]), self.place.y, self._r - self._theme.px(2)
         x = self._on if on else self._off
         self._canvas.itemconfigure(self._body, fill=colors.ACCENT if on else colors.FAINT)
@@ -211,7 +211,7 @@ class Relay(Item):
         ]
         self._text = self._value_text(right - px(34))
 
-    def show(self, values: Sequence[Any]) -> None:
+    def show(self, values: Sequence[object]) -> None:
         forward, reverse = bool(values[0]), bool(values[1])
         for item, on, color in zip(self._ways, (forward, reverse), (colors.FORWARDS, colors.BACKWARDS), strict=True):
             self._canvas.itemconfigure(item, fill=color if on else colors.LAMP_OFF)
@@ -241,7 +241,7 @@ class Lamps(Item):
                 self._canvas.create_text(x, y + px(8), text=text, font=self._theme.tiny, fill=colors.MUTED)
         self._lit: list[bool] = [False] * count
 
-    def show(self, values: Sequence[Any]) -> None:
+    def show(self, values: Sequence[object]) -> None:
         for number, value in enumerate(values):
             if bool(value) != self._lit[number]:
                 self._lit[number] = bool(value)

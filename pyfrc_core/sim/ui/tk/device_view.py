@@ -6,7 +6,7 @@ import math
 import tkinter as tk
 from collections.abc import Callable
 from tkinter import ttk
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ...engine.snapshot import Snapshot
 from ..models.devices import SETTABLE, DeviceRows, Row
@@ -148,7 +148,7 @@ class DeviceView:
 
     # -- typing a number ------------------------------------------------------------------------------------------
 
-    def _edit(self, item: Item, value: Any) -> None:
+    def _edit(self, item: Item, value: object) -> None:
         px, place = self._theme.px, item.place
         self._editor = editor = tk.Entry(
             self.canvas,

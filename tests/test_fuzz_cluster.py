@@ -1,0 +1,331 @@
+"""Campaigns on a Dask cluster: a real scheduler with two workers, on this computer."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Generator, Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+from skips import require
+
+from pyfrc_core.errors import PyfrcError, UsageError
+from pyfrc_core.fuzz import cluster as cluster_module
+from pyfrc_core.fuzz.cluster import ClusterError, ClusterMatchExecutor, open_cluster_executor
+from pyfrc_core.fuzz.match import ReplayTask
+from pyfrc_core.project.locate import find_project
+from pyfrc_core.runtime.scripts.script import InputScript
+
+require("campaigns on a cluster", [] if find_spec("distributed") else ["Dask"])
+
+DOCS = (Path(__file__).parents[1] / "docs/fuzzing.md").read_text("utf-8")
+_ON_A_CLUSTER = DOCS.partition("### On a cluster")[2].partition("\n## ")[0]
+_BLOCKS = re.findall(r"```sh\n(.*?)```", _ON_A_CLUSTER, re.DOTALL)
+#: The commands of the documentation, as lists of arguments.
+INSTALL, SCHEDULER, WORKER, FUZZ = (shlex.split(line) for block in _BLOCKS for line in block.splitlines())
+
+SETTINGS = "[tool.pyfrc.fuzz]\nmatch_seconds = 1.5\n"
+
+#: The file that its worker names in its environment has the number of the worker's process: the robot ends it.
+ROBOT = """
+    import os
+    import signal
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.pad = wpilib.XboxController(0)
+
+        def teleopInit(self):
+            victim = os.environ.get("ENDS_A_PROCESS")
+            if victim and os.path.exists(victim):
+                with open(victim) as file:
+                    number = int(file.read())
+                os.unlink(victim)
+                os.kill(number, signal.SIGKILL)
+
+        def teleopPeriodic(self):
+            if self.pad.getBButton() and self.pad.getXButton():
+                raise ValueError("chord")
+            if self.pad.getPOV() == 315:
+                open(os.path.join(os.path.dirname(__file__), "missing.txt"))
+    """
+
+CAMPAIGN = ("--seed", "1", "--runs", "24")
+
+
+class Cluster:
+    """A scheduler and its workers, each a process that ends with the context."""
+
+    def __init__(self, directory: Path) -> None:
+        self._directory = directory
+        self._processes: list[subprocess.Popen[str]] = []
+        self._workers: list[tuple[subprocess.Popen[str], Path]] = []
+        self.scheduler, (self.address,) = self._start(
+            [*SCHEDULER, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"], r"Scheduler at: +(\S+)"
+        )
+
+    def add_worker(self, env: Mapping[str, str] | None = None) -> subprocess.Popen[str]:
+        """Start a worker with one thread, and wait until the scheduler knows it."""
+        command = [self.address if each.startswith("tcp://") else each for each in WORKER]
+        own = self._directory / str(len(self._workers))
+        options = ["--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", str(own)]
+        worker, _ = self._start([*command, *options], r"Registered to: +(\S+)", env)
+        self._workers.append((worker, own))
+        return worker
+
+    def left_on_workers(self) -> list[Path]:
+        """What pyfrc has left in the directories of workers that run."""
+        return [left for worker, own in self._workers if worker.poll() is None for left in own.rglob("pyfrc-*")]
+
+    def _start(
+        self, command: list[str], ready: str, env: Mapping[str, str] | None = None
+    ) -> tuple[subprocess.Popen[str], tuple[str, ...]]:
+        assert command[0] == "dask"
+        process = subprocess.Popen(
+            [sys.executable, "-m", *command],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            cwd=self._directory,
+            env={**os.environ, **(env or {})},
+            text=True,
+        )
+        self._processes.append(process)
+        assert process.stderr is not None
+        log = ""
+        for line in process.stderr:
+            log += line
+            if (found := re.search(ready, line)) is not None:
+                threading.Thread(target=process.stderr.read, daemon=True).start()
+                return process, found.groups()
+        raise AssertionError(log)
+
+    def close(self) -> None:
+        for process in reversed(self._processes):
+            process.kill()
+        for process in self._processes:
+            process.wait()
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Generator[Cluster]:
+    """A cluster with two workers."""
+    cluster = Cluster(tmp_path_factory.mktemp("cluster"))
+    try:
+        cluster.add_worker()
+        cluster.add_worker()
+        yield cluster
+    finally:
+        cluster.close()
+
+
+@pytest.fixture
+def own_cluster(tmp_path: Path) -> Generator[Cluster]:
+    """A cluster without workers, for one test."""
+    (tmp_path / "own").mkdir()
+    cluster = Cluster(tmp_path / "own")
+    try:
+        yield cluster
+    finally:
+        cluster.close()
+
+
+def copy(make_shared_project: Any) -> Any:
+    return make_shared_project({"robot.py": ROBOT, "pyproject.toml": SETTINGS})
+
+
+def written(project: Any) -> dict[str, bytes]:
+    """The files that a campaign has written, with what is in them."""
+    files = [*(project.path / "tests").rglob("*"), *(project.path / ".pyfrc/fuzz").rglob("*")]
+    return {
+        file.relative_to(project.path).as_posix(): file.read_bytes()
+        for file in sorted(files)
+        if file.is_file() and file.suffix != ".pyc"
+    }
+
+
+@pytest.fixture(scope="module")
+def alone(make_shared_project) -> tuple[dict[str, bytes], str]:
+    """What one process writes and prints in a whole campaign; its project's directory is replaced."""
+    project = copy(make_shared_project)
+    found = project.run("fuzz", *CAMPAIGN, "-j", "1")
+    assert (found.code, len(list(project.path.rglob("*.jsonl")))) == (1, 2), found.output
+    return _everywhere(project, found)
+
+
+def _everywhere(project: Any, result: Any) -> tuple[dict[str, bytes], str]:
+    path = str(project.path)
+    contents = {name: content.replace(path.encode(), b"PROJECT") for name, content in written(project).items()}
+    *lines, last = result.stdout.replace(path, "PROJECT").splitlines()
+    # How often the progress is printed depends on the time.
+    return contents, "\n".join([*(line for line in lines if not re.match(r"\d+ match", line)), last])
+
+
+def test_a_cluster_finds_what_one_process_finds(cluster: Cluster, alone, make_shared_project) -> None:
+    project = copy(make_shared_project)
+    options = [cluster.address if each.startswith("tcp://") else each for each in FUZZ[2:]]
+    result = project.run("fuzz", *options, *CAMPAIGN)
+    assert result.code == 1, result.output
+    assert _everywhere(project, result) == alone
+    assert "missing.txt" in result.stdout
+    assert str(project.path) in result.stdout  # not a path of the worker
+    assert cluster.left_on_workers() == []
+
+
+def test_matches_of_a_worker_that_dies_are_played_by_others(
+    cluster: Cluster, alone, make_shared_project, tmp_path: Path
+) -> None:
+    victim = tmp_path / "victim"
+    worker = cluster.add_worker({"ENDS_A_PROCESS": str(victim)})
+    victim.write_text(str(worker.pid))
+    project = copy(make_shared_project)
+    result = project.run("fuzz", *CAMPAIGN, "--scheduler", cluster.address)
+    assert worker.wait() == -signal.SIGKILL
+    assert not victim.exists()
+    assert _everywhere(project, result) == alone, result.output
+
+
+def _begin(project: Any, *options: str) -> subprocess.Popen[str]:
+    """Begin a long campaign, and return it when it has found something."""
+    campaign = subprocess.Popen(
+        [sys.executable, "-m", "pyfrc", "fuzz", "--seed", "1", "--runs", "100000", *options],
+        cwd=project.path,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert campaign.stdout is not None
+    for line in campaign.stdout:
+        if "pyfrc replay" in line:
+            return campaign
+    raise AssertionError(campaign.communicate())
+
+
+def test_ctrl_c_keeps_what_was_found(cluster: Cluster, make_shared_project) -> None:
+    project = copy(make_shared_project)
+    campaign = _begin(project, "--scheduler", cluster.address)
+    campaign.send_signal(signal.SIGINT)
+    stdout, stderr = campaign.communicate()
+    assert (campaign.returncode, stderr) == (1, ""), stdout
+    assert "interrupted" in stdout
+    assert list(project.path.rglob("tests/fuzz/*.jsonl"))
+    assert cluster.left_on_workers() == []
+
+
+def test_a_scheduler_that_is_lost(own_cluster: Cluster, make_shared_project) -> None:
+    own_cluster.add_worker()
+    project = copy(make_shared_project)
+    campaign = _begin(project, "--scheduler", own_cluster.address)
+    own_cluster.scheduler.kill()
+    _, stderr = campaign.communicate()
+    assert campaign.returncode == 1
+    assert stderr == f"error: the connection to the scheduler at {own_cluster.address} was lost\n"
+    assert list(project.path.rglob("tests/fuzz/*.jsonl"))
+
+
+def test_no_workers_and_workers_with_another_version(own_cluster: Cluster, make_shared_project, tmp_path: Path) -> None:
+    project = copy(make_shared_project)
+    result = project.run("fuzz", "--scheduler", own_cluster.address)
+    assert (result.code, result.first_error) == (1, f"the scheduler at {own_cluster.address} has no workers")
+    assert f"dask worker {own_cluster.address}" in result.stderr
+
+    metadata = tmp_path / "other" / "pyfrc-2025.9.9.dist-info" / "METADATA"
+    metadata.parent.mkdir(parents=True)
+    metadata.write_text("Metadata-Version: 2.1\nName: pyfrc\nVersion: 2025.9.9\n")
+    own_cluster.add_worker({"PYTHONPATH": str(tmp_path / "other")})
+    result = project.run("fuzz", "--scheduler", own_cluster.address)
+    assert result.code == 1
+    assert re.fullmatch(
+        r"the worker at tcp://\S+ has another version: pyfrc 2025\.9\.9 \(\S+ here\)", result.first_error
+    ), result.stderr
+
+
+def test_an_error_of_the_robots_code_is_shown_as_without_a_cluster(cluster: Cluster, make_project) -> None:
+    project = make_project({"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    x = missing\n"})
+    here = project.run("fuzz", "--runs", "1")
+    there = project.run("fuzz", "--runs", "1", "--scheduler", cluster.address)
+    assert (there.code, there.stderr) == (here.code, here.stderr)
+    assert "robot.py:4: NameError" in there.stderr
+
+
+@pytest.mark.parametrize("address", ["nonsense", "tcp://127.0.0.1", "tcp://127.0.0.1:port", ""])
+def test_what_is_no_address(address: str, make_project) -> None:
+    result = make_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", address)
+    assert (result.code, "is not the address of a scheduler" in result.first_error) == (2, True), result.stderr
+
+
+def test_nothing_listens_at_the_address(make_project) -> None:
+    result = make_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", "tcp://127.0.0.1:1")
+    assert result.code == 1
+    assert result.first_error.startswith("there is no Dask scheduler at tcp://127.0.0.1:1, or it cannot be reached (")
+    assert "dask scheduler" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "text"), [(("-j", "2"), "-j are mutually"), (("--against", "main"), "--against are mutually")]
+)
+def test_options_that_exclude_each_other(options: tuple[str, ...], text: str, make_project) -> None:
+    result = make_project({"robot.py": ROBOT}).run("fuzz", "--scheduler", "tcp://127.0.0.1:1", *options)
+    assert (result.code, text in result.stderr) == (2, True), result.stderr
+
+
+def test_without_the_extra(make_project, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster_module, "find_spec", lambda name: None)
+    project = find_project(make_project({"robot.py": ROBOT}).path)
+    with pytest.raises(UsageError) as raised, open_cluster_executor(project, "tcp://127.0.0.1:1"):
+        pass
+    assert raised.value.remedy == f'Install it with: pip install "{INSTALL[2]}"'
+
+
+class FakeClient:
+    """A connection to a cluster whose workers are all lost, or have another Python."""
+
+    status = "running"
+
+    def __init__(self, python: str = "") -> None:
+        from pyfrc_core.fuzz.cluster_worker import versions
+
+        self._here = {"host": {"python": sys.version.split()[0]}, "packages": versions()}
+        self._there = {**self._here, "host": {"python": python}}
+        self._workers = {"tcp://10.0.0.6:1": 4} if python else {}
+
+    def nthreads(self) -> dict[str, int]:
+        return self._workers
+
+    def get_versions(self, packages: object) -> dict[str, Any]:
+        return {"scheduler": self._here, "workers": dict.fromkeys(self._workers, self._there)}
+
+    def get_executor(self, **options: object) -> Any:
+        from concurrent.futures import Executor, Future
+
+        class Never(Executor):
+            def submit(self, *arguments: Any, **options: Any) -> Future[Any]:
+                return Future()
+
+        return Never()
+
+
+def test_a_worker_with_another_python() -> None:
+    here = "{}.{}".format(*sys.version_info)
+    with pytest.raises(ClusterError) as raised:
+        cluster_module._check_versions(FakeClient("3.9.1"), "address")
+    assert raised.value.message == f"the worker at tcp://10.0.0.6:1 has another version: Python 3.9 ({here} here)"
+
+
+def test_all_workers_are_lost(make_project, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(cluster_module, "_CHECK_SECONDS", 0.0)
+    monkeypatch.setattr(cluster_module, "_WITHOUT_WORKERS_SECONDS", 0.0)
+    project = find_project(make_project({"robot.py": ROBOT}).path)
+    executor = ClusterMatchExecutor(project, FakeClient(), "tcp://10.0.0.5:8786", "plugin", tmp_path)
+    with pytest.raises(PyfrcError, match="has lost all its workers"):
+        list(executor.play([ReplayTask(InputScript((), 1_000_000))]))
