@@ -49,6 +49,7 @@ class Server:
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._socket.bind((address, options.port))
+            self._socket.listen(64)  # who comes before the loop runs waits, and is not refused
         except OSError as wrong:
             self._socket.close()
             raise UsageError(
