@@ -46,9 +46,3 @@ export function valueText(value, decimals = 3) {
 export function speedText(speed) {
   return speed === 0 ? "max" : `${Number(speed.toPrecision(2))}×`;
 }
-
-// The last part of a path, to label a curve: "value of pwm[0]" would be too long.
-export function shortPath(path) {
-  if (path.startsWith("nt:/")) return path.slice(4).split("/").slice(-2).join("/");
-  return path;
-}

@@ -1,12 +1,13 @@
 // Booleans and texts over time, as bands below a plot.
 import { sizeCanvas } from "./canvas.js";
-import { shortPath, valueText } from "./format.js";
+import { valueText } from "./format.js";
+import { nameOf } from "./names.js";
 import { indexAfter } from "./series.js";
 import { color } from "./settings.js";
 
 const GAP = 3; // pixels between bands
 
-export function drawBands(canvas, bands, { width, inside, band, range: [from, to], past }) {
+export function drawBands(canvas, bands, { width, inside, band, range: [from, to], now, past }) {
   const height = bands.length * (band + GAP) + GAP;
   const context = sizeCanvas(canvas, width, height);
   const x = (t) => inside.left + ((t - from) / (to - from)) * inside.width;
@@ -20,7 +21,7 @@ export function drawBands(canvas, bands, { width, inside, band, range: [from, to
     context.fillStyle = color("track");
     context.fill();
     context.clip();
-    drawBand(context, one, top, band, x, from, to);
+    drawBand(context, one, top, band, x, from, Math.min(to, now));
     context.restore();
   });
   if (past !== undefined && past >= from && past <= to) {
@@ -52,5 +53,5 @@ function drawBand(context, { series, color: number, path }, top, height, x, from
   if (series.kind !== "boolean") return;
   context.fillStyle = color("text");
   context.textAlign = "left";
-  context.fillText(shortPath(path), x(from) + 6, top + height / 2);
+  context.fillText(nameOf(path), x(from) + 6, top + height / 2);
 }

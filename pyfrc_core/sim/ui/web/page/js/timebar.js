@@ -1,9 +1,11 @@
 // Robot time, along the bottom: pause, step, speed, the timeline, and the way back from the past.
 import { command } from "./connection.js";
+import { compared } from "./compare.js";
+import { askText } from "./dialog.js";
 import { clock, speedText } from "./format.js";
 import { Menu } from "./menu.js";
 import { model } from "./model.js";
-import { driveOn, live, lookBy } from "./past.js";
+import { driveOn, live, look, lookBy } from "./past.js";
 import { Timeline } from "./timeline.js";
 import { Icon, Live, html } from "./view.js";
 
@@ -11,7 +13,7 @@ import { Icon, Live, html } from "./view.js";
 const UNLIMITED = 0.94;
 
 export class TimeBar extends Live {
-  parts = ["t", "status", "shown", "hello", "branches"];
+  parts = ["t", "status", "shown", "hello", "branches", "compared", "compared-series"];
 
   render() {
     const { status, past, readonly } = model;
@@ -33,7 +35,7 @@ export class TimeBar extends Live {
           <input type="range" min="0" max="1" step="0.005" value=${sliderOf(status.speed ?? 1)} disabled=${readonly}
             aria-label="Speed" aria-valuetext=${speedText(status.speed ?? 1)} onInput=${(event) => setSpeed(event.target)} />
           <b>${speedText(status.speed ?? 1)}</b></label>
-        <button class="quiet" title="Real time" disabled=${readonly} onClick=${() => command("speed", { factor: 1 })}>1×</button>
+        ${status.speed !== 1 && html`<button class="quiet" disabled=${readonly} onClick=${() => command("speed", { factor: 1 })}>Real time</button>`}
         <div class="spacer"></div>
         <${Figures} />
         <${BranchesMenu} />
@@ -45,9 +47,9 @@ export class TimeBar extends Live {
   }
 }
 
-function mark() {
+async function mark() {
   const t = model.past?.t ?? model.t;
-  const text = prompt("The text of the mark", `Mark at ${clock(t)}`);
+  const text = await askText(`A mark at ${clock(t)}`, "");
   if (text) command("mark", { t, text });
 }
 
@@ -73,7 +75,18 @@ function BranchesMenu() {
     checked: model.compared === branch.id,
     act: () => model.set("compared", model.compared === branch.id ? null : branch.id),
   }));
-  return html`<${Menu} label=${`Branches ${model.branches.length}`} icon="branch" title="Compare with an earlier run" items=${items} up />`;
+  const chosen = model.branches.find((branch) => branch.id === model.compared);
+  if (chosen) {
+    items.push({ separator: true }, { text: `Name “${chosen.name}”…`, act: () => nameBranch(chosen), disabled: model.readonly });
+  }
+  return html`${chosen && html`<button class="quiet" disabled=${compared.difference === null} onClick=${() => look(compared.difference)}
+      title="The first moment at which the branch differs from this run">${compared.difference === null ? "No difference" : `Differs at ${clock(compared.difference)}`}</button>`}
+    <${Menu} label=${`Branches ${model.branches.length}`} icon="branch" title="Compare with an earlier run" items=${items} up />`;
+}
+
+async function nameBranch(branch) {
+  const name = await askText("The name of the branch", branch.name);
+  if (name) command("name_branch", { id: branch.id, name });
 }
 
 function RunMenu() {
@@ -94,7 +107,7 @@ function RunMenu() {
 }
 
 async function save() {
-  const file = prompt("Save the recording in the project's directory as", "drive.jsonl");
+  const file = await askText("Save the recording in the project's directory as", "drive.jsonl");
   if (!file) return;
   const answer = await command("save", { file });
   if (answer?.file) model.set("problem", `Saved ${answer.file}`);

@@ -4,6 +4,7 @@ import { compared } from "../compare.js";
 import { ask } from "../connection.js";
 import { valueText } from "../format.js";
 import { model } from "../model.js";
+import { nameOf } from "../names.js";
 import { length, look } from "../past.js";
 import { aligned, csvOf, download } from "../plot_data.js";
 import { drawBands } from "../plot_bands.js";
@@ -66,7 +67,7 @@ export class PlotPanel extends Live {
       <ul class="legend" aria-label="Curves">
         ${curves.map((curve) => html`<li key=${curve.path}>
           <i class="swatch" style=${{ background: `var(--curve-${curve.color})` }}></i>
-          <span class="curve-name" title=${curve.path}>${curve.path.replace(/^nt:\//, "")}</span>
+          <span class="curve-name" title=${curve.path}>${nameOf(curve.path)}</span>
           <b class="number">${valueText(this.valueOf(curve.path, moment))}</b>
           ${this.isNumber(curve.path) && html`<button class="axis-choice" title="The axis of this curve: left or right" aria-label=${`Axis of ${curve.path}`} onClick=${() => this.switchAxis(curve)}>${curve.axis === "left" ? "L" : "R"}</button>`}
           <button class="tool" aria-label=${`Remove ${curve.path}`} title="Remove" onClick=${() => changePlot(id, { curves: curves.filter((each) => each !== curve) })}><${Icon} name="close" /></button>
@@ -113,7 +114,7 @@ export class PlotPanel extends Live {
     if (!this.plot) return this.drawBands();
     const [from, to] = this.range();
     this.plot.batch(() => {
-      this.plot.setData(aligned(this.lines.map((line) => this.seriesOf(line)), from, to, this.plot.width), false);
+      this.plot.setData(aligned(this.lines.map((line) => this.seriesOf(line)), from, Math.min(to, length()), this.plot.width), false);
       this.plot.setScale("x", { min: from, max: to });
     });
     this.drawBands();
@@ -182,7 +183,7 @@ export class PlotPanel extends Live {
           draw: [(plot) => this.drawMoment(plot)],
         },
       },
-      aligned(this.lines.map((line) => this.seriesOf(line)), ...this.range(), clientWidth),
+      aligned(this.lines.map((line) => this.seriesOf(line)), this.range()[0], Math.min(this.range()[1], length()), clientWidth),
       this.area.current,
     );
     this.plot.over.addEventListener("wheel", this.wheel, { passive: false });
@@ -259,7 +260,7 @@ export class PlotPanel extends Live {
     const width = this.area.current.clientWidth;
     const inside = this.plot ? { left: this.plot.bbox.left / devicePixelRatio, width: this.plot.bbox.width / devicePixelRatio } : { left: 8, width: width - 16 };
     const bands = curves.map((curve) => ({ ...curve, series: this.seriesOf(curve) }));
-    drawBands(canvas, bands, { width, inside, band: BAND, range: this.range(), past: model.past?.t });
+    drawBands(canvas, bands, { width, inside, band: BAND, range: this.range(), now: length(), past: model.past?.t });
   }
 
   switchAxis(curve) {

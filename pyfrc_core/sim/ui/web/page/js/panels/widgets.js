@@ -7,7 +7,7 @@ import { Icon, Live, html } from "../view.js";
 import { Chooser } from "./match.js";
 
 // Shown elsewhere: on the field, or as a drawing.
-const ELSEWHERE = new Set(["Field2d", "Mechanism2d", "String Chooser", "Alerts"]);
+const ELSEWHERE = new Set(["Field2d", "Mechanism2d", "String Chooser", "Alerts", "FMSInfo"]);
 const ALERTS = [["errors", "red"], ["warnings", "amber"], ["infos", "accent"]];
 
 export class WidgetsPanel extends Live {
