@@ -147,10 +147,9 @@ class Model {
     this.run = run;
     if (message.type === "hello") return;
     if (this.past && this.past.t > run.t) this.show(null);
-    this.console = this.console.filter((line) => line.t <= run.t);
     this.marks = [];
     for (const listener of this.#sampleListeners) listener("run", run.t);
-    this.announce("console", "marks");
+    this.announce("marks");
   }
 }
 

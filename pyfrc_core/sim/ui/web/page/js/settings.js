@@ -4,6 +4,8 @@ import { model } from "./model.js";
 import { PRESETS } from "./layout/presets.js";
 
 const SAVE_AFTER = 400; // milliseconds without another change
+// A page that is reloaded before that finds its arrangement here, in this tab of the browser.
+const UNSAVED = "pyfrc-unsaved";
 
 const DEFAULTS = {
   version: 1,
@@ -24,6 +26,14 @@ class Settings {
 
   // Take over what was saved. What this version does not know, or what is broken, is left at its default.
   load(saved) {
+    const unsaved = sessionStorage.getItem(UNSAVED);
+    if (unsaved && !model.readonly) {
+      this.#take(JSON.parse(unsaved));
+      this.save();
+    } else this.#take(saved);
+  }
+
+  #take(saved) {
     if (saved === null || typeof saved !== "object" || saved.version !== 1) return;
     for (const [name, value] of Object.entries(DEFAULTS)) {
       const given = saved[name];
@@ -40,13 +50,15 @@ class Settings {
     this.values[name] = value;
     model.announce("settings");
     if (model.readonly) return;
+    sessionStorage.setItem(UNSAVED, JSON.stringify(this.values));
     clearTimeout(this.#timer);
     this.#timer = setTimeout(() => this.save(), SAVE_AFTER);
   }
 
-  save() {
-    this.#timer = null;
-    ask("layout", { layout: this.values }).catch((error) => model.set("problem", error.message));
+  async save() {
+    const timer = this.#timer;
+    await ask("layout", { layout: this.values }).catch((error) => model.set("problem", error.message));
+    if (timer === this.#timer) sessionStorage.removeItem(UNSAVED);
   }
 
   // The panels' arrangement in the chosen layout.

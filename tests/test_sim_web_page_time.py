@@ -1,0 +1,262 @@
+"""The page of `pyfrc sim --ui web` in a real browser: plots, the timeline, failures, the console, layouts, windows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from browser_pages import ROBOT, Seen, missing_browser, open_browser, page_of, served
+from skips import require
+
+require("the page of pyfrc sim in a browser", missing_browser())
+
+#: How much text stands out from what is behind it, as the Web Content Accessibility Guidelines compute it.
+CONTRASTS = """() => {
+  const probe = document.body.appendChild(document.createElement("i"));
+  const rgb = (name) => {
+    probe.style.color = `var(--${name})`;
+    return getComputedStyle(probe).color.match(/[\\d.]+/g).slice(0, 3).map(Number);
+  };
+  const light = (name) => {
+    const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+    const [r, g, b] = rgb(name).map((part) => linear(part / 255));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const contrast = (one, other) => {
+    const [low, high] = [light(one), light(other)].sort((first, second) => first - second);
+    return (high + 0.05) / (low + 0.05);
+  };
+  const pairs = [
+    ["text", "surface"], ["text", "hover"], ["text", "track"],
+    ["muted", "surface"], ["muted", "raised"], ["muted", "track"],
+    ["faint", "surface"], ["faint", "raised"], ["accent-text", "surface"], ["accent-text", "accent-soft"],
+    ["amber", "surface"], ["amber", "amber-soft"],
+  ];
+  const found = pairs.map(([one, other]) => [one, other, contrast(one, other)]).filter(([, , value]) => value < 4.5);
+  probe.remove();
+  return found;
+}"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[object]:
+    with open_browser() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def server(make_shared_project) -> Iterator[object]:
+    with served(make_shared_project(ROBOT), speed=1, paused=False) as server:
+        yield server
+
+
+@pytest.fixture
+def person(browser, server) -> Iterator[Seen]:
+    with page_of(browser, server) as person:
+        yield person
+
+
+def drive(person: Seen, seconds: float = 1.0) -> None:
+    """Drive for some robot time, and pause."""
+    person.button("Enable").click()
+    person.page.keyboard.down("w")
+    person.until(lambda: person.value("pwm[0].value") == 1)
+    since = person.simulation.snapshot.time
+    person.until(lambda: person.simulation.snapshot.time >= since + seconds)
+    person.page.keyboard.up("w")
+    person.until(lambda: person.value("pwm[0].value") == 0)
+    person.page.keyboard.press("F5")
+    person.until(lambda: person.simulation.status.state == "paused")
+
+
+def plotted(person: Seen, panel: str = "plot:1") -> list[str]:
+    return person.page.locator(f"[data-panel='{panel}'] .curve-name").all_inner_texts()
+
+
+def test_values_are_plotted_zoomed_and_saved(person: Seen) -> None:
+    page = person.page
+    person.choose("Layout", "Tuning")
+    person.tab("Devices").click()
+    row = person.row("pwm[0].value")
+    row.hover()
+    row.get_by_label("Plot 0 left motor").click()
+    row = person.row("dio[3].value")
+    row.drag_to(page.locator("[data-panel='plot:1'] .plot-area"))
+    page.locator(".curve-name", has_text="Digital I/O 3").wait_for()
+    assert plotted(person) == ["PWM 0 left motor", "Digital I/O 3"]
+    drive(person)
+    plot = page.locator("[data-panel='plot:1']")
+    plot.locator("canvas.plot-bands").wait_for()
+    person.button("All").first.click()
+    # Where the pointer is, the value of that moment is shown: 1 while the key was held, 0 before.
+    over = plot.locator(".u-over")
+    over.hover(position={"x": 3, "y": 20})
+    value = plot.locator(".legend li", has_text="left motor").locator("b")
+    value.filter(has_text="0").wait_for()
+    person.drag(over, (0.2, 0.5), (0.9, 0.5))
+    person.button("Follow again").wait_for()
+    with page.expect_download() as download:
+        person.button("Save the values as CSV").first.click()
+    lines = download.value.path().read_text("utf-8").splitlines()
+    assert lines[0] == "t,pwm[0].value,dio[3].value"
+    assert any(line.split(",")[1] == "1" for line in lines[1:])
+    person.button("Follow again").click()
+    page.get_by_label("Axis of pwm[0].value").click()
+    page.get_by_label("Axis of pwm[0].value").filter(has_text="R").wait_for()
+    page.get_by_label("Remove dio[3].value").click()
+    page.reload()
+    page.locator(".curve-name", has_text="left motor").wait_for()
+    assert plotted(person) == ["PWM 0 left motor"]
+
+
+def test_looking_back_shows_the_past_everywhere_and_changes_nothing(person: Seen) -> None:
+    page = person.page
+    drive(person)
+    end = person.simulation.snapshot.time
+    x = person.simulation.snapshot.scene.robot.x
+    timeline = page.get_by_role("slider", name="Timeline")
+    timeline.focus()
+    page.keyboard.press("Home")
+    page.locator(".clock", has_text="0:00.00").wait_for()
+    page.locator(".state em", has_text="past").wait_for()
+    page.locator(".state.disabled").wait_for()
+    page.locator(".pose b", has_text="10.00 ft").wait_for()
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    page.locator(".clock", has_text="0:00.06").wait_for()
+    assert person.simulation.snapshot.time == end
+    person.button("Live").click()
+    page.locator(".pose b", has_text=f"{x:.2f} ft").wait_for()
+    page.locator(".state em").wait_for(state="detached")
+
+
+def test_driving_on_from_the_past_keeps_the_rest_as_a_branch(person: Seen) -> None:
+    page = person.page
+    drive(person)
+    end = person.simulation.snapshot.time
+    page.get_by_role("button", name="Mark", exact=True).click()
+    page.get_by_label("A mark at").fill("here it was")
+    page.keyboard.press("Enter")
+    timeline = page.get_by_role("slider", name="Timeline")
+    timeline.focus()
+    page.keyboard.press("Home")
+    page.keyboard.press("PageUp")
+    page.locator(".clock", has_text="0:01.00").wait_for()
+    person.button("Drive on from here").click()
+    person.until(lambda: person.simulation.snapshot.time == pytest.approx(1.0))
+    page.locator(".clock", has_text="0:01.00").wait_for()
+    page.get_by_title("Compare with an earlier run").click()
+    page.get_by_role("menuitemcheckbox").first.click()
+    page.get_by_title("The first moment at which the branch differs from this run").wait_for()
+    assert end > 1.0
+
+
+def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:
+    page = person.page
+    person.button("Enable").click()
+    person.until(lambda: person.simulation.snapshot.enabled and person.simulation.snapshot.time > 2.5)
+    page.keyboard.down("5")
+    alert = page.get_by_role("alert")
+    alert.locator("strong", has_text="ZeroDivisionError").wait_for()
+    page.keyboard.up("5")
+    assert alert.locator("strong").inner_text().startswith("robot.py:")
+    assert alert.locator("a.source").get_attribute("href").startswith("vscode://file/")
+    alert.locator("summary").click()
+    alert.locator("pre", has_text="Traceback").wait_for()
+    failed_at = person.simulation.status.failure.time
+    person.button("Values of that moment").click()
+    page.locator(".state em", has_text="past").wait_for()
+    person.button("Go back 2 s and drive on").click()
+    page.get_by_role("alert").wait_for(state="detached")
+    person.until(lambda: person.simulation.status.state == "running")
+    assert person.simulation.snapshot.time < failed_at + 60
+
+
+def test_the_console_is_filtered_and_searched(person: Seen) -> None:
+    page = person.page
+    page.locator(".line.warning", has_text="this is a warning").first.wait_for()
+    page.get_by_role("button", name="Warnings").click()
+    page.locator(".line.warning").first.wait_for(state="detached")
+    page.get_by_role("button", name="Warnings").click()
+    page.get_by_label("Search the output").fill("nothing prints this")
+    page.get_by_text("No line matches.").wait_for()
+    page.get_by_label("Search the output").fill("WARNING")
+    page.locator(".line").first.wait_for()
+    assert all("arning" in text for text in page.locator(".line").all_inner_texts())
+
+
+def test_panels_are_moved_sized_closed_and_stay_so(person: Seen) -> None:
+    page = person.page
+    person.tab("Console").hover()
+    person.button("Close Console").click()
+    assert person.tab("Console").count() == 0
+    person.choose("Open and close panels", "Dashboard")
+    person.tab("Dashboard").wait_for()
+    # A tab that is dragged to the edge of another panel gets a place of its own.
+    target = page.locator("[data-panel='devices']")
+    box = target.bounding_box()
+    page.locator(".tab", has_text="Match").drag_to(
+        target, target_position={"x": box["width"] / 2, "y": box["height"] - 12}
+    )
+    below = page.locator("[data-panel='match']")
+    page.wait_for_function(
+        "left => Math.abs(document.querySelector(\"[data-panel='match']\").getBoundingClientRect().left - left) < 3",
+        arg=box["x"],
+    )
+    width = below.bounding_box()["width"]
+    border = page.get_by_role("separator").first
+    border.focus()
+    page.keyboard.press("ArrowDown")
+    vertical = page.locator("[role=separator][aria-orientation=vertical]").first
+    vertical.focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function(
+        "width => document.querySelector(\"[data-panel='match']\").getBoundingClientRect().width > width + 10",
+        arg=width,
+    )
+    page.get_by_title("Dark colours").click()
+    page.reload()
+    below.wait_for()
+    assert below.bounding_box()["width"] > width + 10
+    assert person.tab("Console").count() == 0
+    assert page.locator("html").get_attribute("data-theme") == "dark"
+    person.choose("Layout", "Reset this layout")
+    person.tab("Console").wait_for()
+
+
+def test_a_second_window_sees_the_same_and_a_viewer_cannot_drive(browser, server) -> None:
+    with page_of(browser, server) as person:
+        context = browser.new_context()
+        viewer = Seen(context.new_page(), server).open(server.viewing_address)
+        person.page.get_by_text("2 windows").wait_for()
+        assert viewer.button("Enable").is_disabled()
+        assert viewer.button("E-STOP").is_disabled()
+        viewer.page.keyboard.press("Control+e")
+        viewer.page.keyboard.press(" ")
+        person.button("Enable").click()
+        viewer.state("Teleoperated enabled")
+        person.page.keyboard.press("Enter")
+        viewer.state("Teleoperated disabled")
+        context.close()
+        person.page.get_by_text("2 windows").wait_for(state="detached")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [(1366, 768), (3840, 2160), (820, 1180)])
+def test_everything_fits_and_can_be_read(browser, server, size, scheme) -> None:
+    with page_of(browser, server, color_scheme=scheme) as person:
+        page = person.page
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        assert page.locator("html").get_attribute("data-theme") == scheme
+        for layout in ("Driving", "Tuning", "Mechanism", "Presentation"):
+            person.choose("Layout", layout)
+            page.locator(".tabs").first.wait_for()
+            assert page.evaluate(
+                "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+            ) == list(size)
+            outside = page.locator(".station button, .timebar button").evaluate_all(
+                "all => all.map((each) => [each.textContent, each.getBoundingClientRect()])"
+                ".filter(([, box]) => box.right > innerWidth + 1 || box.bottom > innerHeight + 1).map(([text]) => text)"
+            )
+            assert outside == []
+        assert page.evaluate(CONTRASTS) == []
