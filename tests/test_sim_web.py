@@ -202,6 +202,12 @@ def test_driving_on_from_the_past_keeps_the_former_run_as_a_branch(make_project)
         both = page.ask(type="values", t=0.45)["values"], page.ask(type="values", t=0.45, branch=branch["id"])["values"]
         assert both[0] == both[1]
         assert page.ask(type="values", t=0.65, branch=77)["type"] == "error"
+        first = page.ask(type="first_difference", branch=branch["id"], paths=None)
+        assert first["t"] == pytest.approx(0.52)
+        assert "joysticks[0].axes" in first["paths"]
+        only = page.ask(type="first_difference", branch=branch["id"], paths=["sim.mode", "dio[3].value"])
+        assert (only["t"], only["paths"]) == (None, [])
+        assert page.ask(type="first_difference", branch=77)["type"] == "error"
 
 
 def test_a_crash_names_the_users_line_and_can_be_gone_back_from(make_project) -> None:

@@ -121,6 +121,30 @@ def test_a_whole_match_of_500_values_answers_within_50_ms_in_52_megabytes() -> N
     assert milliseconds(lambda: runs.plots(paths, 0, 200, 800, None)) < 50
 
 
+def test_two_runs_differ_first_where_one_changed_alone_or_otherwise() -> None:
+    for differing, expected, where in (
+        ({7: {"a": 7.5}}, 7, ["a"]),
+        ({5: {"b": 1.0}, 7: {"a": 7.5}}, 5, ["b"]),
+        ({9: {"a": math.nan}}, 9, ["a"]),
+        ({}, None, []),
+    ):
+        runs = Runs()
+
+        def play(begin: int, changes: dict[int, dict[str, float]], runs: Runs = runs) -> None:
+            for packet in range(begin, 12):
+                values = {"a": float(packet), "nan": math.nan, **changes.get(packet, {})}
+                runs.take("hal", [Change(packet, values)], lambda event: None)
+
+        play(0, {})
+        for source in ("hal", "network"):
+            runs.take(source, [RunBegan(2, 3.0, {"a": 3.0, "nan": math.nan})], lambda event: None)
+        play(4, differing)
+        found = runs.first_difference(2, None)
+        assert found is not None
+        assert (found.time, found.paths) == (expected, where)
+    assert runs.first_difference(3, None) is None
+
+
 def test_memory_is_limited_by_forgetting_former_runs_and_then_the_oldest_values() -> None:
     runs = Runs(most_bytes=1_000_000)
     values = {f"pwm[{number}].value": 0.5 for number in range(20)}

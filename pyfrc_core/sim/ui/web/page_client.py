@@ -102,6 +102,8 @@ class PageClient:
                 return await asyncio.to_thread(self._values, message)
             case "plot":
                 return await asyncio.to_thread(self._plot, message)
+            case "first_difference":
+                return await asyncio.to_thread(self._first_difference, message)
             case "subscribe":
                 self._builder.subscribe(_paths(message))
                 return {}
@@ -126,8 +128,15 @@ class PageClient:
         time = _time(message, "t")
         values = self._collector.runs.values_at(time, _branch(message))
         if values is None:
-            raise CommandError("This branch is no longer kept.")
+            raise _no_branch()
         return {"t": time, "values": {path: value for path, value in values.items() if not path.startswith("type:")}}
+
+    def _first_difference(self, message: dict[str, Any]) -> dict[str, Any]:
+        paths, branch = None if message.get("paths") is None else _paths(message), _branch(message)
+        found = None if branch is None else self._collector.runs.first_difference(branch, paths)
+        if found is None:
+            raise _no_branch()
+        return {"t": found.time, "paths": found.paths}
 
     def _plot(self, message: dict[str, Any]) -> dict[str, Any]:
         points = message.get("points", 800)
@@ -139,8 +148,12 @@ class PageClient:
             _branch(message),
         )
         if found is None:
-            raise CommandError("This branch is no longer kept.")
+            raise _no_branch()
         return {"series": found}
+
+
+def _no_branch() -> CommandError:
+    return CommandError("This branch is no longer kept.")
 
 
 def _paths(message: dict[str, Any]) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any, Literal
 from ...engine.changes import Change, RunBegan
 from ...engine.network_paths import MODE, POSE, TYPE, VALUE
 from .columns import MISSING
+from .comparison import FirstDifference
 from .history import MOST_BYTES, History
 from .plots import MOST_POINTS, picked, resolve, series
 
@@ -150,6 +151,24 @@ class Runs:
                 if history is None:
                     return None
                 found[path] = series(history, path, begin, end + _ROUNDING, points)
+        return found
+
+    def first_difference(self, number: int, paths: Iterable[str] | None) -> FirstDifference | None:
+        """Return where a former run and the present one first differ; None if there is no such branch.
+
+        :param paths: the values to compare; None: all
+        """
+        with self._lock:
+            branch = next((each for each in self.branches if each.number == number), None)
+            if branch is None:
+                return None
+            end = max(history.end for history in self._histories.values())
+            found = FirstDifference(branch.begin, min(end, branch.end) + _ROUNDING)
+            for source, history in self._histories.items():
+                former = branch.histories[source]
+                known = history.now.keys() | former.now.keys() if paths is None else paths
+                chosen = sorted(path for path in known if source_of(path) == source and not path.startswith(TYPE))
+                found.compare(history, former, chosen)
         return found
 
     def samples(self, paths: Iterable[str], after: Position) -> tuple[dict[str, list[Any]], Position]:
