@@ -193,7 +193,7 @@ def test_networktables_are_edited_live(person: Seen) -> None:
 def test_nothing_of_the_robot_is_ever_html(person: Seen) -> None:
     page = person.page
     page.locator(".line-text", has_text=HOSTILE).first.wait_for()
-    assert page.get_by_label(CHOOSER).first.locator("option").all_inner_texts() == ["Nothing", "Forward", HOSTILE]
+    assert page.get_by_label(CHOOSER).first.locator("option").all_inner_texts() == [HOSTILE, "Forward", "Nothing"]
     person.tab("NetworkTables").click()
     assert person.row("nt:/SmartDashboard/text").locator("input").input_value() == HOSTILE
     person.choose("Layout", "Tuning")

@@ -147,7 +147,13 @@ def test_driving_on_from_the_past_keeps_the_rest_as_a_branch(person: Seen) -> No
     page.locator(".clock", has_text="0:01.00").wait_for()
     page.get_by_title("Compare with an earlier run").click()
     page.get_by_role("menuitemcheckbox").first.click()
-    page.get_by_title("The first moment at which the branch differs from this run").wait_for()
+    page.get_by_title("Compare with an earlier run").click()
+    page.locator("[role=menuitemcheckbox][aria-checked=true]").wait_for()
+    page.locator(".menu-list").get_by_text("Name “").click()
+    page.get_by_label("The name of the branch").fill("<b>before</b>")
+    page.keyboard.press("Enter")
+    page.get_by_title("Compare with an earlier run").click()
+    page.locator("[role=menuitemcheckbox]", has_text="<b>before</b>").wait_for()
     assert end > 1.0
 
 

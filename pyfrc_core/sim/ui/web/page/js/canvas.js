@@ -1,4 +1,11 @@
 // Canvases with sharp lines on dense screens.
+import { color } from "./settings.js";
+
+// The font of texts in canvases, in pixels of an ordinary screen: larger on huge ones, like all texts of the page.
+export function font(pixels, style = "") {
+  const scale = parseFloat(getComputedStyle(document.documentElement).fontSize) / 13;
+  return `${style}${pixels * scale}px ${color("font")}`;
+}
 
 // Give a canvas this size in pixels of the page, clear it, and return its context.
 export function sizeCanvas(canvas, width, height) {

@@ -8,7 +8,7 @@ const POINTS = 4000;
 class Compared {
   id = null;
   pose = { t: [], v: [] };
-  difference = null; // the first moment at which the branch differs from the present run
+  difference; // the first moment at which the branch differs from the present run; null: none, undefined: not known
 
   // The robot's place in the branch at a moment; null where the branch knows none.
   poseAt(t) {
@@ -22,7 +22,7 @@ class Compared {
   async choose(id) {
     this.id = id;
     this.pose = { t: [], v: [] };
-    this.difference = null;
+    this.difference = undefined;
     if (id === null) return;
     const branch = model.branches.find((each) => each.id === id);
     try {

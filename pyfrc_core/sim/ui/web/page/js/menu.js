@@ -1,4 +1,5 @@
 // A button that opens a list of actions. Escape or a click elsewhere closes it; arrow keys move in it.
+import { showBeside } from "./popup.js";
 import { Component, Icon, classes, createRef, html } from "./view.js";
 
 export class Menu extends Component {
@@ -13,16 +14,20 @@ export class Menu extends Component {
     document.removeEventListener("pointerdown", this.outside);
   }
 
+  componentDidUpdate() {
+    if (this.state.open) showBeside(this.element.current.querySelector(".menu-list"), this.element.current);
+  }
+
   outside = (event) => {
     if (this.state.open && !this.element.current.contains(event.target)) this.setState({ open: false });
   };
 
-  render({ label, title, items, icon, up, disabled }, { open }) {
+  render({ label, title, items, icon, disabled }, { open }) {
     return html`<div class="menu" ref=${this.element} onKeyDown=${this.key}>
       <button class="quiet" aria-haspopup="menu" aria-expanded=${open} title=${title} disabled=${disabled}
         onClick=${() => this.setState({ open: !open })}>
-        ${icon && html`<${Icon} name=${icon} />`}${label}<i class=${up ? "caret up" : "caret"}></i></button>
-      ${open && html`<ul class=${classes({ "menu-list": true, up })} role="menu">
+        ${icon && html`<${Icon} name=${icon} />`}${label}<i class="caret"></i></button>
+      ${open && html`<ul class="menu-list" popover="manual" role="menu">
         ${items.map((item, index) => item.separator
           ? html`<li key=${index} class="menu-separator" role="separator"></li>`
           : html`<li key=${index} role="none"><button role=${item.checked === undefined ? "menuitem" : "menuitemcheckbox"}

@@ -9,7 +9,15 @@ export function nameOf(path) {
     namesOf = model.panels;
     names = namesOfRows(model.panels);
   }
-  return names.get(path) ?? path.replace(/^nt:\/(SmartDashboard\/)?/, "");
+  return names.get(path) ?? OWN[path] ?? elementName(path) ?? path.replace(/^nt:\/(SmartDashboard\/)?/, "");
+}
+
+const OWN = { "sim.mode": "Mode", "sim.pose[0]": "Robot x, ft", "sim.pose[1]": "Robot y, ft", "sim.pose[2]": "Robot angle, rad" };
+const CONTROLS = { axes: "axis", buttons: "button", povs: "POV" };
+
+function elementName(path) {
+  const match = /^joysticks\[(\d+)\]\.(axes|buttons|povs)\[(\d+)\]$/.exec(path);
+  return match ? `Joystick ${match[1]} ${CONTROLS[match[2]]} ${match[3]}` : undefined;
 }
 
 function namesOfRows(panels) {

@@ -1,5 +1,5 @@
 // Booleans and texts over time, as bands below a plot.
-import { sizeCanvas } from "./canvas.js";
+import { font, sizeCanvas } from "./canvas.js";
 import { valueText } from "./format.js";
 import { nameOf } from "./names.js";
 import { indexAfter } from "./series.js";
@@ -12,7 +12,7 @@ export function drawBands(canvas, bands, { width, inside, band, range: [from, to
   const context = sizeCanvas(canvas, width, height);
   const x = (t) => inside.left + ((t - from) / (to - from)) * inside.width;
   context.textBaseline = "middle";
-  context.font = `11px ${color("font")}`;
+  context.font = font(11);
   bands.forEach((one, index) => {
     const top = GAP + index * (band + GAP);
     context.save();

@@ -56,7 +56,7 @@ async function mark() {
 function Figures() {
   const { status } = model;
   const milliseconds = (seconds) => `${((seconds ?? 0) * 1000).toFixed(1)} ms`;
-  const reached = status.state === "running" ? `${(status.reached ?? 0).toFixed(status.speed === 0 ? 0 : 2)}×` : status.state;
+  const reached = status.state === "running" ? `${(status.reached ?? 0).toFixed(status.speed === 0 ? 0 : 2)}×` : "–";
   return html`<dl class="figures">
     <div title="The speed that this computer reaches"><dt>Reached</dt><dd>${reached}</dd></div>
     <div title=${`The time that this computer takes for a packet; the worst of the last second: ${milliseconds(status.worst_packet_seconds)}`}>
@@ -79,9 +79,10 @@ function BranchesMenu() {
   if (chosen) {
     items.push({ separator: true }, { text: `Name “${chosen.name}”…`, act: () => nameBranch(chosen), disabled: model.readonly });
   }
-  return html`${chosen && html`<button class="quiet" disabled=${compared.difference === null} onClick=${() => look(compared.difference)}
-      title="The first moment at which the branch differs from this run">${compared.difference === null ? "No difference" : `Differs at ${clock(compared.difference)}`}</button>`}
-    <${Menu} label=${`Branches ${model.branches.length}`} icon="branch" title="Compare with an earlier run" items=${items} up />`;
+  const { difference } = compared;
+  return html`${chosen && difference !== undefined && html`<button class="quiet" disabled=${difference === null} onClick=${() => look(difference)}
+      title="The first moment at which the branch differs from this run">${difference === null ? "No difference" : `Differs at ${clock(difference)}`}</button>`}
+    <${Menu} label=${`Branches ${model.branches.length}`} icon="branch" title="Compare with an earlier run" items=${items} />`;
 }
 
 async function nameBranch(branch) {
@@ -103,7 +104,7 @@ function RunMenu() {
     { text: "Save the recording…", act: save, disabled: model.readonly },
     { text: "End the simulation", act: () => command("quit"), disabled: model.readonly },
   ];
-  return html`<${Menu} label="Run" title="Restart, save, end" items=${items} up />`;
+  return html`<${Menu} label="Run" title="Restart, save, end" items=${items} />`;
 }
 
 async function save() {

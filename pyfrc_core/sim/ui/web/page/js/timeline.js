@@ -1,5 +1,5 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
-import { sizeCanvas } from "./canvas.js";
+import { font, sizeCanvas } from "./canvas.js";
 import { clock } from "./format.js";
 import { model } from "./model.js";
 import { length, live, look, lookBy } from "./past.js";
@@ -11,6 +11,7 @@ const MODE_COLORS = { autonomous: "mode-auto", teleop: "mode-teleop", test: "mod
 const MARK_COLORS = { failure: "red", error: "red", warning: "amber", overrun: "amber", press: "accent", own: "own", run: "muted" };
 const NEAR = 5; // pixels between the pointer and a mark
 const HEIGHT = 46;
+const EDGE = 8; // pixels at both ends
 const SHORTEST = 10; // seconds on the timeline at least
 
 export class Timeline extends Live {
@@ -46,12 +47,12 @@ export class Timeline extends Live {
 
   // -- drawing
 
-  get end_() {
+  get whole() {
     return Math.max(length(), SHORTEST);
   }
 
   x(t) {
-    return (t / this.end_) * this.width;
+    return EDGE + (t / this.whole) * (this.width - 2 * EDGE);
   }
 
   draw() {
@@ -70,12 +71,12 @@ export class Timeline extends Live {
     const height = 16;
     context.fillStyle = color("track");
     context.beginPath();
-    context.roundRect(0, top, this.width, height, 5);
+    context.roundRect(EDGE - 4, top, this.width - 2 * EDGE + 8, height, 5);
     context.fill();
     context.save();
     context.clip();
     context.fillStyle = color("mode-disabled");
-    context.fillRect(0, top, this.x(length()), height);
+    context.fillRect(0, top, this.x(length()) + (length() >= this.whole ? EDGE : 0), height);
     const { t, v } = this.modes;
     for (let index = 0; index < t.length; index++) {
       const name = MODE_COLORS[v[index]];
@@ -118,10 +119,10 @@ export class Timeline extends Live {
     const steps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600];
     const step = steps.find((each) => this.x(each) >= 64) ?? 7200;
     context.fillStyle = color("muted");
-    context.font = `10.5px ${color("font")}`;
+    context.font = font(10.5);
     context.textBaseline = "alphabetic";
     context.textAlign = "center";
-    for (let t = 0; t <= this.end_; t += step) {
+    for (let t = 0; t <= this.whole; t += step) {
       const x = this.x(t);
       context.globalAlpha = 0.5;
       context.fillRect(Math.round(x), 24, 1, 4);
@@ -147,7 +148,8 @@ export class Timeline extends Live {
 
   timeAt(event) {
     const box = this.canvas.current.getBoundingClientRect();
-    return Math.min(Math.max(((event.clientX - box.left) / box.width) * this.end_, 0), length());
+    const share = (event.clientX - box.left - EDGE) / (box.width - 2 * EDGE);
+    return Math.min(Math.max(share * this.whole, 0), length());
   }
 
   begin = (event) => {
@@ -162,7 +164,7 @@ export class Timeline extends Live {
     if (this.dragging) look(t);
     const box = this.canvas.current.getBoundingClientRect();
     const left = Math.min(Math.max(event.clientX - box.left, 60), box.width - 60);
-    const reach = (NEAR / box.width) * this.end_;
+    const reach = (NEAR / box.width) * this.whole;
     const marks = model.marks.filter((mark) => Math.abs(mark.t - t) <= reach).slice(-5);
     this.setState({ hover: { t, left, marks } });
   };

@@ -1,4 +1,5 @@
 // Draws the field and what is on it. Each function draws one thing.
+import { font } from "../canvas.js";
 import { color } from "../settings.js";
 
 const GRID = 5; // feet
@@ -73,7 +74,7 @@ export function drawTags(context, view, tags) {
   context.fillStyle = color("text");
   context.strokeStyle = color("text");
   context.lineWidth = 3;
-  context.font = `${Math.min(Math.max(view.scale * 0.55, 9), 13)}px ${color("font")}`;
+  context.font = font(Math.min(Math.max(view.scale * 0.55, 9), 13));
   context.textAlign = "center";
   context.textBaseline = "middle";
   for (const tag of tags) {

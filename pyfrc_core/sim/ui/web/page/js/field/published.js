@@ -41,6 +41,8 @@ export function fieldObjects(values, field) {
       if (name.startsWith(".")) continue;
       // The physics moves the robot of this one, and the page draws it anyway.
       if (each === "nt:/SmartDashboard/Field/Robot" && model.shown.robot) continue;
+      // Nothing has moved this one yet: a Field2d begins with its robot in the corner.
+      if (name === "Robot" && Array.isArray(value) && value.every((number) => number === 0)) continue;
       const poses = posesOf(value, field);
       if (poses.length) objects.push({ name, path: each, poses, isPath: poses.length > MOST_POSES });
     }

@@ -7,14 +7,14 @@ import { stacked } from "./presets.js";
 import { activate, close, put, resize } from "./tree.js";
 
 const PANEL_TYPE = "application/x-pyfrc-panel";
-const NARROW = 820; // pixels: below, panels are stacked
+const NARROW = 900; // pixels: below, panels are stacked
 const KEY_SHARE = 0.02; // by how much an arrow key moves a border
 
 export class Dock extends Live {
   parts = ["settings", "window"];
 
   render() {
-    const narrow = innerWidth < NARROW;
+    const narrow = innerWidth <= NARROW;
     const tree = narrow ? stackedTree() : settings.tree;
     if (tree.kind === "tabs" && !tree.panels.length) {
       return html`<main class="dock"><p class="empty">No panel is open. Choose one under “Panels”.</p></main>`;

@@ -1,5 +1,5 @@
 // The field: the season's picture, the robot, its path, and what robot code publishes. The wheel zooms, dragging moves.
-import { sizeCanvas } from "../canvas.js";
+import { font, sizeCanvas } from "../canvas.js";
 import { command } from "../connection.js";
 import { numberText } from "../format.js";
 import * as draw from "../field/draw.js";
@@ -67,7 +67,7 @@ export class FieldPanel extends Live {
       <div class="field-line">
         <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose[0])} ft</b><i>y</i><b>${numberText(pose[1])} ft</b><i>heading</i><b>${numberText(heading(pose[2]), 1)}°</b>` : "No physics.py: pyfrc create-physics writes one"}</span>
         <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
-        <${Menu} label="Show" title="What is drawn" items=${layers} up />
+        <${Menu} label="Show" title="What is drawn" items=${layers} />
       </div>
     </div>`;
   }
@@ -119,7 +119,7 @@ export class FieldPanel extends Live {
       else for (const pose of object.poses) draw.drawRobot(context, this.view, field, pose, { body: name, alpha: 0.8, outline: true });
       const [x, y] = this.view.toScreen(object.poses[0]);
       context.fillStyle = color(name);
-      context.font = `11px ${color("font")}`;
+      context.font = font(11);
       context.textAlign = "left";
       context.textBaseline = "bottom";
       context.fillText(object.name, x + 8, y - 8);

@@ -1,5 +1,5 @@
 // The Mechanism2d drawings that robot code publishes.
-import { sizeCanvas } from "../canvas.js";
+import { font, sizeCanvas } from "../canvas.js";
 import { plain } from "../format.js";
 import { model } from "../model.js";
 import { color } from "../settings.js";
@@ -97,7 +97,7 @@ function drawMechanism(context, { name, tree }, box) {
   }
   context.restore();
   context.fillStyle = color("muted");
-  context.font = `12px ${color("font")}`;
+  context.font = font(12);
   context.textAlign = "center";
   context.textBaseline = "bottom";
   context.fillText(name, box.x + box.width / 2, bottom - height * scale - 3);

@@ -1,5 +1,6 @@
 // Values over time. Curves are added by "+" or by dragging a value here; dragging in the plot zooms, a double click follows again.
 import uPlot from "../../vendor/uplot/uPlot.esm.js";
+import { font } from "../canvas.js";
 import { compared } from "../compare.js";
 import { ask } from "../connection.js";
 import { valueText } from "../format.js";
@@ -7,6 +8,7 @@ import { model } from "../model.js";
 import { nameOf } from "../names.js";
 import { length, look } from "../past.js";
 import { aligned, csvOf, download } from "../plot_data.js";
+import { PlotPicker } from "../plot_picker.js";
 import { drawBands } from "../plot_bands.js";
 import { addToPlot, carriedPath, changePlot, hasPath, plotOf } from "../plotting.js";
 import { unwatch, valueAt, watch } from "../series.js";
@@ -61,6 +63,7 @@ export class PlotPanel extends Live {
         </div>
         ${this.zoom && html`<button class="quiet" onClick=${() => this.follow(seconds)}>Follow again</button>`}
         <div class="spacer"></div>
+        <${PlotPicker} add=${(path) => addToPlot(path, id)} />
         <button class="quiet" title="Save the values as CSV" aria-label="Save the values as CSV" disabled=${!curves.length} onClick=${this.save}><${Icon} name="download" />CSV</button>
         <button class="quiet" title="Remove all curves" disabled=${!curves.length} onClick=${() => changePlot(id, { curves: [] })}>Clear</button>
       </div>
@@ -74,7 +77,7 @@ export class PlotPanel extends Live {
         </li>`)}
       </ul>
       <div class="plot-area" ref=${this.area}>
-        ${!curves.length && html`<p class="empty">Drag a value here, or choose <b class="plus">+</b> beside it.</p>`}
+        ${!curves.length && html`<p class="empty">Drag a value here, choose <b class="plus">+</b> beside it, or search with “Add value”.</p>`}
       </div>
       <canvas class="plot-bands" ref=${this.bands}></canvas>
     </div>`;
@@ -155,13 +158,13 @@ export class PlotPanel extends Live {
     const { clientWidth, clientHeight } = this.area.current;
     const hasLeft = curves.some((curve) => curve.axis === "left");
     const hasRight = curves.some((curve) => curve.axis === "right");
-    const axis = { stroke: color("muted"), font: `11px ${color("font")}`, grid: { stroke: color("grid"), width: 1 }, ticks: { stroke: color("grid"), width: 1, size: 4 } };
+    const axis = { stroke: color("muted"), font: font(11), grid: { stroke: color("grid"), width: 1 }, ticks: { stroke: color("grid"), width: 1, size: 4 } };
     this.plot = new uPlot(
       {
         width: Math.max(clientWidth, 80),
         height: Math.max(clientHeight, 60),
         legend: { show: false },
-        cursor: { sync: { key: sync.key, setSeries: false }, drag: { x: true, y: false, setScale: false }, points: { size: 7 }, bind: { dblclick: () => () => this.follow(this.config.seconds) } },
+        cursor: { y: false, sync: { key: sync.key, setSeries: false }, drag: { x: true, y: false, setScale: false }, points: { size: 7 }, bind: { dblclick: () => () => this.follow(this.config.seconds) } },
         scales: { x: { time: false, auto: false }, left: { range: padded }, right: { range: padded } },
         series: [{}, ...this.lines.map((line) => ({
           scale: line.axis,
@@ -174,8 +177,8 @@ export class PlotPanel extends Live {
         }))],
         axes: [
           { ...axis, size: 26, space: 60, values: (_, ticks) => ticks.map((tick) => `${Number(tick.toFixed(3))} s`) },
-          { ...axis, scale: "left", show: hasLeft || !hasRight, size: 52, space: 34 },
-          { ...axis, scale: "right", side: 1, show: hasRight, size: 52, space: 34, grid: { show: !hasLeft, stroke: color("grid"), width: 1 } },
+          { ...axis, scale: "left", show: hasLeft || !hasRight, size: 56, space: 24, values: tickTexts },
+          { ...axis, scale: "right", side: 1, show: hasRight, size: 56, space: 24, values: tickTexts, grid: { show: !hasLeft, stroke: color("grid"), width: 1 } },
         ],
         hooks: {
           setSelect: [(plot) => this.select(plot)],
@@ -288,6 +291,10 @@ export class PlotPanel extends Live {
     event.preventDefault();
     addToPlot(path, this.props.id);
   };
+}
+
+function tickTexts(_, ticks) {
+  return ticks.map((tick) => (tick === null ? "" : String(Number(tick.toPrecision(6)))));
 }
 
 // A little free space above and below; a constant has some, too.
