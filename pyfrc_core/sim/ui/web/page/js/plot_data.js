@@ -4,17 +4,18 @@ import { indexAfter } from "./series.js";
 
 const PER_PIXEL = 4; // points of a curve; with more, only the lowest and highest of each interval are drawn
 
-// Columns for uPlot: all times, then each curve with its value in force at each of them.
+// Columns for uPlot: all times, then each curve with its value in force at each of them, until its end.
 export function aligned(curves, from, to, width) {
   const parts = curves.map((curve) => thinned(part(curve, from, to), Math.max(width, 50) * PER_PIXEL));
   const times = [...new Set(parts.flatMap((each) => each.t))].sort((one, other) => one - other);
   if (!times.length) return [[], ...parts.map(() => [])];
-  const columns = parts.map(({ t, v }) => {
+  const columns = parts.map(({ t, v }, curve) => {
+    const until = curves[curve].until ?? Infinity;
     const column = new Array(times.length);
     let index = -1;
     for (let row = 0; row < times.length; row++) {
       while (index + 1 < t.length && t[index + 1] <= times[row]) index += 1;
-      column[row] = index < 0 ? null : number(v[index]);
+      column[row] = index < 0 || times[row] > until ? null : number(v[index]);
     }
     return column;
   });
@@ -27,7 +28,8 @@ function number(value) {
 }
 
 // The points between two times, with the value in force at both.
-function part({ t, v }, from, to) {
+function part({ t, v, until = Infinity }, from, whole) {
+  const to = Math.min(whole, until);
   const first = Math.max(indexAfter(t, from) - 1, 0);
   const end = indexAfter(t, to);
   if (!t.length || t[first] > to) return { t: [], v: [] };

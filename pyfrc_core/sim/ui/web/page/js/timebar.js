@@ -87,7 +87,7 @@ function BranchesMenu() {
 
 async function nameBranch(branch) {
   const name = await askText("The name of the branch", branch.name);
-  if (name) command("name_branch", { id: branch.id, name });
+  if (name) command("name_branch", { branch: branch.id, text: name });
 }
 
 function RunMenu() {

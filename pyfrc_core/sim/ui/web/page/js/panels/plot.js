@@ -143,7 +143,7 @@ export class PlotPanel extends Live {
     const branch = model.branches.find((each) => each.id === compared.id);
     const answer = await ask("plot", { paths: [...this.watched.keys()], from: 0, to: branch?.to ?? 0, points: 4000, branch: compared.id }).catch(() => null);
     if (!answer || this.otherId !== compared.id) return;
-    this.others = new Map(Object.entries(answer.series));
+    this.others = new Map(Object.entries(answer.series).map(([path, one]) => [path, { ...one, until: branch?.to }]));
     model.announce("series");
   }
 
@@ -173,7 +173,7 @@ export class PlotPanel extends Live {
           dash: line.other ? [6, 4] : undefined,
           paths: uPlot.paths.stepped({ align: 1 }),
           points: { show: false },
-          spanGaps: true,
+          spanGaps: false,
         }))],
         axes: [
           { ...axis, size: 26, space: 60, values: (_, ticks) => ticks.map((tick) => `${Number(tick.toFixed(3))} s`) },
