@@ -6,8 +6,16 @@ from array import array
 from bisect import bisect_left, bisect_right
 from typing import Any
 
+
+class _Missing:
+    """The type of `MISSING`, which is the same object after it was pickled."""
+
+    def __reduce__(self) -> str:
+        return "MISSING"
+
+
 #: A value that a path has not, or no longer.
-MISSING: Any = type("Missing", (), {"__repr__": lambda self: "MISSING"})()
+MISSING: Any = _Missing()
 
 #: About the size of an object in a column, and of a column without changes, in bytes.
 _OBJECT_SIZE, _COLUMN_SIZE = 120, 400

@@ -1,7 +1,8 @@
-"""Every changed value of every packet, kept in memory so that any moment and any plot is there at once.
+"""Every changed value of every packet, kept so that any moment and any plot is there at once.
 
 The changes are in chunks of `_PACKETS` packets. A chunk knows all values at its beginning, so the values of any moment
-need one chunk. Memory is limited: beyond `MOST_BYTES`, former runs are forgotten, then the oldest chunks.
+need one chunk. Memory is limited: beyond `MOST_BYTES`, the oldest chunks are moved to a temporary file; beyond
+`MOST_STORED_BYTES` in it, former runs and the oldest chunks are forgotten.
 """
 
 from __future__ import annotations
@@ -13,47 +14,13 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
+from .chunks import Chunk, ChunkFile
 from .columns import MISSING, Column
 
 #: The number of packets in a chunk, about 20 s of robot time.
 _PACKETS = 1024
-#: About how much memory a history may take.
-MOST_BYTES = 192 << 20
-#: About the size of a value in the list of those at a chunk's beginning, in bytes.
-_BASE_SIZE = 130
-
-
-class _Chunk:
-    """Consecutive packets.
-
-    :param base: all values before its first packet
-    """
-
-    def __init__(self, base: Mapping[str, Any]) -> None:
-        self.base = base
-        self.times = array("d")
-        self.columns: dict[str, Column] = {}
-
-    @property
-    def size(self) -> int:
-        """About how many bytes it takes."""
-        columns = sum(column.size for column in self.columns.values())
-        return 8 * len(self.times) + _BASE_SIZE * len(self.base) + columns
-
-    def packet_at(self, time: float) -> int:
-        """Return the number of the last packet until a moment; -1 before the first."""
-        return bisect_right(self.times, time) - 1
-
-    def until(self, time: float) -> _Chunk:
-        """Return a copy of the part until a moment."""
-        part, last = _Chunk(self.base), self.packet_at(time)
-        if last < 0:
-            return part
-        part.times = self.times[: last + 1]
-        for path, column in self.columns.items():
-            if (kept := column.until(last)) is not None:
-                part.columns[path] = kept
-        return part
+#: About how much memory the histories may take together, and how much space in a temporary file.
+MOST_BYTES, MOST_STORED_BYTES = 64 << 20, 2 << 30
 
 
 @dataclass(frozen=True)
@@ -81,9 +48,7 @@ class History:
     """The values of one run. Use it from one thread at a time."""
 
     def __init__(self) -> None:
-        self._chunks: list[_Chunk] = []
-        #: About the sizes of all chunks but the last, which no longer change.
-        self._sizes: list[int] = []
+        self._chunks: list[Chunk] = []
         #: The number of packets that were forgotten.
         self._forgotten = 0
         self._now: dict[str, Any] = {}
@@ -106,30 +71,23 @@ class History:
     @property
     def size(self) -> int:
         """About how many bytes it takes."""
-        return sum(self._sizes) + (self._chunks[-1].size if self._chunks else 0)
+        return sum(chunk.size for chunk in self._chunks)
 
     def add(self, time: float, values: Mapping[str, Any], gone: Iterable[str] = ()) -> None:
         """Add the changes of one packet, which is not earlier than those before."""
         chunk = self._chunks[-1] if self._chunks else self._next_chunk()
         if len(chunk.times) >= _PACKETS:
             chunk = self._next_chunk()
-        packet = len(chunk.times)
-        chunk.times.append(time)
-        columns, now = chunk.columns, self._now
-        for path, value in values.items():
-            column = columns.get(path)
-            if column is None:
-                column = columns[path] = Column(value)
-            column.append(packet, value)
+        packet, now = chunk.add(time, values), self._now
         now.update(values)
         for path in gone:
-            columns.setdefault(path, Column(MISSING)).append(packet, MISSING)
+            chunk.add_gone(packet, path)
             now.pop(path, None)
 
-    def _next_chunk(self) -> _Chunk:
+    def _next_chunk(self) -> Chunk:
         if self._chunks:
-            self._sizes.append(self._chunks[-1].size)
-        self._chunks.append(_Chunk(dict(self._now)))
+            self._chunks[-1].close()
+        self._chunks.append(Chunk(dict(self._now)))
         return self._chunks[-1]
 
     def forget_oldest(self) -> bool:
@@ -137,20 +95,36 @@ class History:
         if len(self._chunks) < 2:
             return False
         self._forgotten += len(self._chunks.pop(0).times)
-        del self._sizes[0]
         return True
+
+    def forget_file(self, file: ChunkFile) -> None:
+        """Forget the chunks that are in a file, which are the oldest."""
+        while self._chunks[0].is_in(file):
+            self.forget_oldest()
+
+    def store_oldest(self, file: ChunkFile) -> bool:
+        """Move the oldest chunk that is in memory to a file, and return whether there was one besides the last.
+
+        :raises OSError: when the disk is full
+        """
+        former: Chunk | None = None
+        for chunk in self._chunks[:-1]:
+            if not chunk.is_stored:
+                chunk.store(file, former)
+                return True
+            former = chunk
+        return False
 
     def until(self, time: float) -> History:
         """Return the part until a moment, which can grow differently. The two share the chunks before."""
         part = History()
         whole = bisect_right(self._chunks, time, key=lambda chunk: chunk.times[-1] if chunk.times else time)
-        part._chunks, part._sizes = self._chunks[:whole], self._sizes[:whole]
+        part._chunks = self._chunks[:whole]
         part._forgotten = self._forgotten
         if whole < len(self._chunks):
             part._chunks.append(self._chunks[whole].until(time))
         elif part._chunks:  # the last chunk grows: the two may not share it
             part._chunks[-1] = part._chunks[-1].until(time)
-        del part._sizes[max(len(part._chunks) - 1, 0) :]
         part._now = dict(part.values_at(time))
         return part
 

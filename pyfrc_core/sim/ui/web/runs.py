@@ -9,9 +9,10 @@ from typing import Any, Literal
 
 from ...engine.changes import Change, RunBegan
 from ...engine.network_paths import MODE, POSE, TYPE, VALUE
+from .chunks import ChunkFile
 from .columns import MISSING
 from .comparison import FirstDifference
-from .history import MOST_BYTES, History
+from .history import MOST_BYTES, MOST_STORED_BYTES, History
 from .plots import MOST_POINTS, picked, resolve, series
 
 Source = Literal["hal", "network"]
@@ -46,11 +47,15 @@ class Runs:
     """May be used from any thread.
 
     :param most_bytes: about how much memory the values may take
+    :param most_stored: about how much space they may take in a temporary file besides
     """
 
-    def __init__(self, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, most_bytes: int = MOST_BYTES, most_stored: int = MOST_STORED_BYTES) -> None:
         self._lock = threading.Lock()
-        self._most_bytes = most_bytes
+        self._most_bytes, self._most_stored = most_bytes, most_stored
+        #: Where the oldest values are, and those that are older still.
+        self._file: ChunkFile | None = None
+        self._former_file: ChunkFile | None = None
         self._histories: dict[Source, History] = {"hal": History(), "network": History()}
         #: The number of the run that each of the histories has.
         self._numbers: dict[Source, int] = {"hal": 0, "network": 0}
@@ -104,14 +109,37 @@ class Runs:
             self.branches = (*self.branches, leaving)[-_MOST_BRANCHES:]
 
     def _limit(self) -> None:
-        """Keep the values within the memory that they may take."""
+        """Keep the values within the memory and the space that they may take."""
         while self.size > self._most_bytes:
+            if self._store_oldest():
+                continue
             if self.branches:
-                self.branches = self.branches[1:]
+                self.branches, self._leaving = self.branches[1:], None
                 continue
             larger = max(self._histories.values(), key=lambda history: history.size)
             if not larger.forget_oldest():
-                return
+                break
+        if self._file is not None and self._file.size > self._most_stored // 2:
+            self._next_file()
+
+    def _next_file(self) -> None:
+        """Forget what is in the former one of two files, and begin another."""
+        if self._former_file is not None:
+            self.branches, self._leaving = (), None
+            for history in self._histories.values():
+                history.forget_file(self._former_file)
+        self._former_file, self._file = self._file, None
+
+    def _store_oldest(self) -> bool:
+        """Move the oldest values to a file, and return whether there were any that can be moved."""
+        kept = [history for branch in self.branches for history in branch.histories.values()]
+        try:
+            if self._file is None:
+                self._file = ChunkFile()
+            file = self._file
+            return any(history.store_oldest(file) for history in (*kept, *self._histories.values()))
+        except OSError:  # the disk is full
+            return False
 
     @property
     def size(self) -> int:
@@ -163,12 +191,16 @@ class Runs:
             if branch is None:
                 return None
             end = max(history.end for history in self._histories.values())
+            compared: list[tuple[History, History, str]] = []
             found = FirstDifference(branch.begin, min(end, branch.end) + _ROUNDING)
             for source, history in self._histories.items():
                 former = branch.histories[source]
                 known = history.now.keys() | former.now.keys() if paths is None else paths
                 chosen = sorted(path for path in known if source_of(path) == source and not path.startswith(TYPE))
-                found.compare(history, former, chosen)
+                compared += ((history, former, path) for path in chosen)
+        for history, former, path in compared:
+            with self._lock:  # for each value: a collector must not wait for all of them
+                found.compare(history, former, [path])
         return found
 
     def samples(self, paths: Iterable[str], after: Position) -> tuple[dict[str, list[Any]], Position]:
