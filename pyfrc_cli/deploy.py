@@ -87,7 +87,10 @@ def command(
     if rollback and not rollback.isdecimal():
         raise click.UsageError(f"--rollback {rollback!r}: a release is a number; pyfrc deploy-info lists them.")
     with errors_shown(choice, as_json):
-        from pyfrc_core.deploy import session
+        from pyfrc_core.collector import collector_paused
+
+        with collector_paused():
+            from pyfrc_core.deploy import session
 
         talk = user_interface(choice, as_json)
         if rollback is not None:

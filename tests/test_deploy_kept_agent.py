@@ -163,6 +163,7 @@ def test_a_robot_is_sent_the_agent_once(roborio: Roborio, tmp_path: Path) -> Non
             robot.deploy(project, DeployRequest("robot.py", {}))
             robot.close()
             _wait_until(lambda: (roborio.home / ".pyfrc/agent").exists())
+            roborio.wait_for_end_of_deploy()
             sent.append(proxy.bytes_to_robot)
     assert sent[1] < sent[0] - len(agent_package()) / 2
     kept = (roborio.home / ".pyfrc/agent").read_bytes()

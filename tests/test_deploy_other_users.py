@@ -35,6 +35,7 @@ def deploy(roborio: Roborio, directory: Path, number: int, *, start: bool = Fals
                 assert robot.watch(PATIENCE).started
         finally:
             robot.close()
+            roborio.wait_for_end_of_deploy()
     return deployed
 
 

@@ -45,6 +45,8 @@ def roborio() -> Generator[Roborio]:
 @contextlib.contextmanager
 def agent(roborio: Roborio | Proxy, user: str = "lvuser") -> Generator[AgentClient]:
     """An agent on it."""
+    if isinstance(roborio, Roborio):
+        roborio.wait_for_end_of_deploy()  # the one before
     with SshConnection(roborio.host, roborio.port, user) as connection:
         robot = AgentClient.start(connection)
         try:
@@ -203,15 +205,18 @@ def test_cut_anywhere_on_the_wire(roborio: Roborio, tmp_path: Path, way: str) ->
         return program(tmp_path, f"number {number}", **{"data.bin": random.Random(number).randbytes(10_000)})
 
     deploy(roborio, another(10))
+    roborio.wait_for_end_of_deploy()
     with Proxy((roborio.host, roborio.port)) as whole:
         deploy(whole, another(11))
     total = whole.bytes_to_robot if way == "to" else whole.bytes_from_robot
     for number in range(1, 9):
         old, new = disk.startable(), another(20 + number)
         cut = {f"cut_{way}_robot": total * number // 9}
+        roborio.wait_for_end_of_deploy()
         with Proxy((roborio.host, roborio.port), **cut) as proxy, contextlib.suppress(DeployError):
             deploy(proxy, new)
         assert proxy.has_cut
+        roborio.wait_for_end_of_deploy()
         after_cut = disk.startable()
         deploy(roborio, new)
         assert after_cut in (old, disk.startable())

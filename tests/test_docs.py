@@ -51,11 +51,19 @@ def commands(document: str) -> list[str]:
 SHORT_MATCHES = SHORT_MATCH + "\n[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"
 
 
-@pytest.fixture
-def new_project(make_project):
-    project = make_project({})
+@pytest.fixture(scope="module")
+def written(make_shared_project):
+    """What `pyfrc init` writes."""
+    project = make_shared_project({})
     result = project.run("init")
     assert result.code == 0, result.output
+    return project
+
+
+@pytest.fixture
+def new_project(written, make_project):
+    project = make_project({})
+    project.copy(written.path)
     return project
 
 
@@ -232,11 +240,9 @@ def test_the_page_on_getting_started_leads_to_a_driving_robot(make_project) -> N
     assert place != project.path
 
 
-def test_the_page_on_getting_started_lists_the_templates(make_project) -> None:
+def test_the_page_on_getting_started_lists_the_templates(written) -> None:
     page = (ROOT / "docs/getting_started.md").read_text("utf-8")
     assert re.findall(r"^\| `([a-z-]+)` \|", page, re.MULTILINE) == list(TEMPLATES)
-    written = make_project({})
-    written.run("init")
     named = re.findall(
         r"^\| `([^`*]+)`", page.partition("Each project has")[2].partition("## Test it")[0], re.MULTILINE
     )

@@ -45,8 +45,8 @@ def repository(make_project):
     return project
 
 
-def fuzz(project: Any, *arguments: str) -> Any:
-    return project.run("fuzz", "--seed", "1", "--runs", "16", "--against", *arguments)
+def fuzz(project: Any, *arguments: str, runs: int = 4) -> Any:
+    return project.run("fuzz", "--seed", "1", "--runs", str(runs), "--against", *arguments)
 
 
 def test_a_change_is_found_with_its_moment_path_and_values(repository) -> None:
@@ -72,9 +72,22 @@ def test_a_failure_that_only_one_of_both_has_is_a_difference(repository) -> None
 
 def test_a_refactoring_does_the_same(repository) -> None:
     repository.write({"robot.py": SAME})
-    result = fuzz(repository, "HEAD")
+    result = fuzz(repository, "HEAD", runs=16)
     assert result.code == 0, result.output
     assert "16 matches, 0.02 h of robot time: the outputs are those of " in result.stdout
+
+
+def test_where_processes_cannot_be_forked_new_ones_find_the_same(repository) -> None:
+    repository.write({"robot.py": "raise_at_import = 1 / 0\n"})
+    git(repository, "commit", "-am", "Broken")
+    repository.write({"robot.py": ROBOT})
+    errors = [fuzz(repository, "HEAD")]
+    with (repository.path / "pyproject.toml").open("a") as settings:
+        settings.write("[tool.pyfrc.test]\nisolation = 'spawn'\n")
+    errors.append(repository.run("fuzz", "--runs", "1", "--against", "HEAD"))
+    found = [(result.code, result.first_error) for result in errors]
+    assert found == [(1, "robot.py:1: ZeroDivisionError: division by zero")] * 2, errors
+    assert repository.run("fuzz", "--runs", "1", "--against", "HEAD~").code == 0
 
 
 def test_what_cannot_be_compared_is_refused(repository, make_project) -> None:

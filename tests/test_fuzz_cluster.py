@@ -34,7 +34,8 @@ INSTALL, SCHEDULER, WORKER, FUZZ = (shlex.split(line) for block in _BLOCKS for l
 
 SETTINGS = "[tool.pyfrc.fuzz]\nmatch_seconds = 1.5\n"
 
-#: The file that its worker names in its environment has the number of the worker's process: the robot ends it.
+#: The file that its worker names in its environment has the number of a process, which the robot ends; by default the
+#: process that has forked its own.
 ROBOT = """
     import os
     import signal
@@ -45,10 +46,10 @@ ROBOT = """
             self.pad = wpilib.XboxController(0)
 
         def teleopInit(self):
-            victim = os.environ.get("ENDS_A_PROCESS")
-            if victim and os.path.exists(victim):
+            victim = os.environ.get("ENDS_A_PROCESS", "")
+            if os.path.exists(victim):
                 with open(victim) as file:
-                    number = int(file.read())
+                    number = int(file.read() or os.getppid())
                 os.unlink(victim)
                 os.kill(number, signal.SIGKILL)
 
@@ -181,16 +182,18 @@ def test_a_cluster_finds_what_one_process_finds(cluster: Cluster, alone, make_sh
     assert cluster.left_on_workers() == []
 
 
-def test_matches_of_a_worker_that_dies_are_played_by_others(
+def test_matches_whose_process_dies_are_played_again(
     cluster: Cluster, alone, make_shared_project, tmp_path: Path
 ) -> None:
-    victim = tmp_path / "victim"
-    worker = cluster.add_worker({"ENDS_A_PROCESS": str(victim)})
-    victim.write_text(str(worker.pid))
+    a_worker, a_process_of_a_worker = tmp_path / "worker", tmp_path / "process"
+    worker = cluster.add_worker({"ENDS_A_PROCESS": str(a_worker)})
+    a_worker.write_text(str(worker.pid))
+    cluster.add_worker({"ENDS_A_PROCESS": str(a_process_of_a_worker)})
+    a_process_of_a_worker.touch()
     project = copy(make_shared_project)
     result = project.run("fuzz", *CAMPAIGN, "--scheduler", cluster.address)
     assert worker.wait() == -signal.SIGKILL
-    assert not victim.exists()
+    assert list(tmp_path.iterdir()) == []
     assert _everywhere(project, result) == alone, result.output
 
 

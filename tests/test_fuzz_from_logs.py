@@ -53,8 +53,8 @@ def test_a_campaign_goes_on_from_a_log(make_project) -> None:
     assert project.run("sim", "--ui", "none", "--script", "entered.jsonl").code == 0
     (log,) = (project.path / ".pyfrc" / "logs").glob("*.wpilog")
     log.rename(project.path / "match.wpilog")
-    assert project.run("fuzz", "--seed", "1", "--runs", "32").code == 0
-    result = project.run("fuzz", "--seed", "1", "--runs", "32", "--from", "match.wpilog")
+    assert project.run("fuzz", "--seed", "1", "--runs", "16").code == 0
+    result = project.run("fuzz", "--seed", "1", "--runs", "16", "--from", "match.wpilog")
     assert result.code == 1, result.output
     assert "ValueError: the order was entered" in result.stdout
     script = load_script(project.path / "tests/fuzz/valueerror-robot-teleopperiodic.jsonl")

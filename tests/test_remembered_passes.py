@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import sys
 from pathlib import Path
 
@@ -99,11 +100,19 @@ FILES = {
 ALL = {"auto", "teleop", "power", "double"}
 
 
-@pytest.fixture
-def project(make_project):
+@pytest.fixture(scope="module")
+def passed(make_shared_project):
     """A project whose tests have passed with --changed."""
-    made = make_project(FILES)
+    made = make_shared_project(FILES)
     assert ran(made) == ALL
+    return made
+
+
+@pytest.fixture
+def project(passed, make_project):
+    """A copy of it, for one test."""
+    made = make_project({})
+    shutil.copytree(passed.path, made.path, dirs_exist_ok=True)
     return made
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import importlib.util
 import io
 import json
@@ -11,7 +12,7 @@ import shlex
 import shutil
 import sys
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.metadata import distribution, packages_distributions, version
 from pathlib import Path
 
@@ -49,12 +50,23 @@ LONG_FUNCTION = 6
 
 
 @pytest.fixture(scope="module")
-def project(make_shared_project: MakeProject, request: pytest.FixtureRequest) -> RobotProject:
+def project_of(make_shared_project: MakeProject) -> Callable[[str], RobotProject]:
+    """Makes a new project of a template, which all tests share."""
+
+    @functools.cache
+    def project_of(template: str) -> RobotProject:
+        project = make_shared_project({})
+        made = project.run("init", "--template", template)
+        assert made.code == 0, made.output
+        return project
+
+    return project_of
+
+
+@pytest.fixture
+def project(project_of: Callable[[str], RobotProject], request: pytest.FixtureRequest) -> RobotProject:
     """A new project of the template at hand."""
-    project = make_shared_project({})
-    made = project.run("init", "--template", request.param)
-    assert made.code == 0, made.output
-    return project
+    return project_of(request.param)
 
 
 @pytest.fixture
@@ -93,12 +105,11 @@ def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp
     assert "tests/pyfrc_test.py ....." in result.stdout
 
 
-def test_what_the_workflows_install_is_installed_here(make_shared_project: MakeProject) -> None:
+def test_what_the_workflows_install_is_installed_here(project_of: Callable[[str], RobotProject]) -> None:
     """pip reads it, and finds all of it; all lists at once, each once."""
     lists: dict[str, Path] = {}
     for template in TEMPLATES:
-        project = make_shared_project({})
-        assert project.run("init", "--template", template).code == 0
+        project = project_of(template)
         needed = project.path / "requirements.txt"
         lists[needed.read_text("utf-8")] = needed
     program, install, option, _ = INSTALLING

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import socket
 from collections.abc import Iterator
 from pathlib import Path
@@ -244,6 +245,34 @@ def test_what_is_looked_at_apart_does_the_same_as_in_a_new_interpreter(
     warm, cold = project.run("create-physics"), project.run("create-physics", cold=True)
     assert (warm.code, warm.stdout, warm.stderr) == (cold.code, cold.stdout, cold.stderr)
     assert "os._exit" in warm.stderr
+    found_warm, is_warm, found_cold, is_not_warm = (tmp_path / "found").read_text().splitlines()
+    assert (is_warm, is_not_warm) == ("True", "False")
+    assert json.loads(found_warm) == json.loads(found_cold)
+
+
+def test_a_spawned_test_finds_what_it_finds_in_a_new_interpreter(make_project: MakeProject, tmp_path: Path) -> None:
+    tests = f"""
+        import json
+        import os
+        import sys
+
+        def test_it(robot):
+            streams = [[file.encoding, file.errors] for file in (sys.stdin, sys.__stdout__, sys.__stderr__)]
+            found = [sys.path, sys.argv, sys.orig_argv, os.getcwd(), dict(os.environ), streams, hash("robot")]
+            found.append(len(os.listdir("/proc/self/fd")))
+            with open({str(tmp_path)!r} + "/found", "a") as file:
+                print(json.dumps(found), file=file)
+                print("warm_start.py" in open(f"/proc/{{os.getppid()}}/cmdline").read(), file=file)
+            print("printed", flush=True)
+            os.write(2, b"written")
+            assert False
+        """
+    robot = "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+    project = make_project({"robot.py": robot, "tests/test_it.py": tests})
+    warm, cold = (project.run("test", "--isolation", "spawn", "--", "-v", cold=cold) for cold in (False, True))
+    shown_warm, shown_cold = (re.sub("0x[0-9a-f]+", "", run.blocks()["test_it"]) for run in (warm, cold))
+    assert (warm.code, shown_warm, warm.stderr) == (cold.code, shown_cold, cold.stderr)
+    assert "written" in shown_warm
     found_warm, is_warm, found_cold, is_not_warm = (tmp_path / "found").read_text().splitlines()
     assert (is_warm, is_not_warm) == ("True", "False")
     assert json.loads(found_warm) == json.loads(found_cold)

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import conftest
 import pytest
 import warm_start
 from conftest import MakeProject, Result, RobotProject
@@ -118,7 +119,7 @@ def test_plain_pytest_does_the_same_as_in_a_new_interpreter(make_shared_project:
 
 
 def test_modules_are_found_where_a_variable_says(tmp_path: Path, make_project: MakeProject) -> None:
-    conftest = """
+    code = """
         import os
         import sys
 
@@ -129,7 +130,7 @@ def test_modules_are_found_where_a_variable_says(tmp_path: Path, make_project: M
         print(sys.path, flush=True)
         os._exit(0)
         """
-    project = make_project({"conftest.py": conftest})
+    project = make_project({"conftest.py": code})
     (tmp_path / "modules").mkdir()
     (tmp_path / "modules" / "found_elsewhere.py").touch()
     environment = {"PYTHONPATH": os.pathsep.join([str(tmp_path / "modules"), str(tmp_path / "missing")])}
@@ -159,14 +160,22 @@ def test_it_is_told_what_is_typed(make_project: MakeProject) -> None:
 
 def test_a_module_of_the_users_is_found_before_one_of_its_name(make_project: MakeProject) -> None:
     """It starts cold, where that module is the first to be imported."""
-    conftest = "import os\nimport coverage\n\nprint(coverage.__file__, flush=True)\nos._exit(0)\n"
-    project = make_project({"conftest.py": conftest, "coverage.py": ""})
+    code = "import os\nimport coverage\n\nprint(coverage.__file__, flush=True)\nos._exit(0)\n"
+    project = make_project({"conftest.py": code, "coverage.py": ""})
     assert project.run("-s", program="pytest").stdout == f"{project.path / 'coverage.py'}\n"
+
+
+def test_what_a_run_of_the_tests_leaves_hides_no_module(make_project: MakeProject) -> None:
+    """There is a directory with the name of a package in pytest's cache; the next command starts warm, too."""
+    project = make_project(FILES)
+    project.run("test")
+    assert (project.path / ".pytest_cache" / "v" / "pyfrc").is_dir()
+    assert conftest._warm_starts().fit(project.path, conftest._environment())
 
 
 def test_a_module_of_a_package_has_another_name(make_project: MakeProject) -> None:
     """It hides nothing that is imported already, so the command starts warm."""
-    conftest = """
+    code = """
         import os
         import numbers
         import parts.numbers
@@ -175,7 +184,7 @@ def test_a_module_of_a_package_has_another_name(make_project: MakeProject) -> No
         print(parts.numbers.__file__, hasattr(numbers, "Number"), flush=True)
         os._exit(0)
         """
-    project = make_project({"conftest.py": conftest, "parts/__init__.py": "", "parts/numbers.py": ""})
+    project = make_project({"conftest.py": code, "parts/__init__.py": "", "parts/numbers.py": ""})
     assert project.run("-s", program="pytest").stdout == f"True\n{project.path / 'parts/numbers.py'} True\n"
 
 

@@ -20,6 +20,7 @@ import socket
 import subprocess
 import sys
 import types
+import weakref
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -63,29 +64,36 @@ class WarmProcesses:
         atexit.register(process.communicate)
 
 
-def start_warm(address: Callable[[], str]) -> None:
+def start_warm(address: Callable[[], str], of_tests: str | None = None) -> None:
     """Have this process's simulations ask for their hosts, and `run_in_subprocess` for its processes.
 
-    :param address: returns where, when the first is asked for
+    :param address:  returns where, when the first is asked for
+    :param of_tests: where to ask for the processes of isolated tests; without it, they are new interpreters
     """
-    spawn.start = functools.partial(_start, address, spawn.start)
+    spawn.start = functools.partial(_start, address, of_tests, spawn.start)
 
 
-def _start(address: Callable[[], str], cold: StartInterpreter, how: spawn.Start) -> spawn.Interpreter:
+def _start(
+    address: Callable[[], str], of_tests: str | None, cold: StartInterpreter, how: spawn.Start
+) -> spawn.Interpreter:
     hosting = how.call.args[0] if isinstance(how.call, functools.partial) else None
-    is_host = isinstance(hosting, Hosting)
-    # A robot's own process has imported nothing before, nor has a test's, which has the same environment as pytest.
-    if not hosting.fork if isinstance(hosting, Hosting) else how.environment is None:
+    kind = "host" if isinstance(hosting, Hosting) else "test" if how.environment is None else "call"
+    # A robot's own process has imported nothing before.
+    if (isinstance(hosting, Hosting) and not hosting.fork) or (kind == "test" and of_tests is None):
         return cold(how)
     environment = {**os.environ, **(how.environment or {})}
     with Path(os.devnull).open("wb") as unread:
-        output = how.stdout if is_host and isinstance(how.stdout, int) else unread.fileno()
-        warm = _ask(address(), "host" if is_host else "call", sys.path, environment, how.job(), output)
+        output, errors = (
+            unread.fileno() if stream == subprocess.DEVNULL else stream if isinstance(stream, int) else stream.fileno()
+            for stream in (how.stdout, how.stdout if kind == "host" else how.stderr)
+        )
+        where = of_tests if kind == "test" and of_tests is not None else address()
+        warm = _ask(where, kind, sys.path, environment, how.job(), [output, errors])
     return warm or cold(how)
 
 
 def _ask(
-    address: str, kind: str, path: list[str], environment: Mapping[str, str], stdin: bytes, output: int
+    address: str, kind: str, path: list[str], environment: Mapping[str, str], stdin: bytes, output: list[int]
 ) -> _WarmProcess | None:
     """Have a process forked; return None where a fork would not do."""
     server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -93,7 +101,7 @@ def _ask(
     their_end, our_end = os.pipe()
     with os.fdopen(our_end, "wb") as file:
         request = json.dumps([kind, path, dict(environment)]).encode()
-        socket.send_fds(server, [request], [their_end, output])
+        socket.send_fds(server, [request], [their_end, *output])
         os.close(their_end)
         if not (pid := server.recv(LARGEST)):
             raise RuntimeError("the process that forks others has ended: its traceback is on standard error")
@@ -112,6 +120,7 @@ class _WarmProcess:
     def __init__(self, pid: int, end: socket.socket) -> None:
         self.pid = pid
         self._end = end
+        weakref.finalize(self, end.close)
 
     def poll(self) -> int | None:
         try:
@@ -137,7 +146,7 @@ class _WarmProcess:
 
 
 class _Request(NamedTuple):
-    """A process to become: its kind, `sys.path`, environment, input and output, and whom to send its number."""
+    """A process to become: its kind, `sys.path`, environment, three streams, and whom to send its number."""
 
     kind: str
     path: list[str]
@@ -152,7 +161,7 @@ def _serve(listener: socket.socket) -> _Request | None:
     :return: in a fork, its request; otherwise None, when standard input was closed
     """
     started_with = dict(os.environ)
-    modules = {name.partition(".")[0] for name in sys.modules} - {"__main__", "warm_start"}
+    modules = {name.partition(".")[0] for name in sys.modules} - {"__main__", "warm_start", "warm_processes"}
     known = {*sys.path, str(Path.cwd())}
     processes: dict[int, tuple[int, socket.socket]] = {}
     while True:
@@ -167,7 +176,7 @@ def _serve(listener: socket.socket) -> _Request | None:
                 asking.send(str(status).encode())
         if listener in ready:
             asking = listener.accept()[0]
-            message, streams, _, _ = socket.recv_fds(asking, LARGEST, 2)
+            message, streams, _, _ = socket.recv_fds(asking, LARGEST, 3)
             if not message:  # it has ended since it connected
                 asking.close()
                 continue
@@ -209,24 +218,34 @@ def _become(request: _Request) -> None:
     """Be what Python is after `spawn.start`."""
     if request.kind == "host":
         os.setsid()
-    stdin, output = request.streams
-    for target, descriptor in enumerate((stdin, output, output)):
+    for target, descriptor in enumerate(request.streams):
         os.dup2(descriptor, target)
     os.environ.clear()
     os.environ.update(request.environment)
     sys.dont_write_bytecode = bool(os.environ.get("PYTHONDONTWRITEBYTECODE"))
     sys.orig_argv[1:] = spawn.ARGUMENTS
     sys.argv[:] = spawn.ARGUMENTS[:1]
-    if request.kind != "host":
+    if request.kind == "call":
         for stream in (sys.stdin, sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
     sys.modules["__main__"] = types.ModuleType("__main__")
-    del sys.modules["warm_start"]
+    for name in ("warm_start", "warm_processes"):
+        sys.modules.pop(name, None)
     request.asking.send(str(os.getpid()).encode())
     request.asking.detach()
     os.closerange(3, os.sysconf("SC_OPEN_MAX"))
     spawn.main()
     end_like_python(0)
+
+
+def serve(listener: socket.socket, interrupted: object) -> None:
+    """Fork for each request until standard input is closed; in a fork, be what was requested.
+
+    :param interrupted: the handler of SIGINT there
+    """
+    if (request := _serve(listener)) is not None:
+        signal.signal(signal.SIGINT, interrupted)  # type: ignore[arg-type]
+        _become(request)
 
 
 def main() -> None:
@@ -237,9 +256,7 @@ def main() -> None:
     importlib.import_module("pyfrc_core.sim.engine.robot_side.robot_process")
     gc.collect()
     gc.freeze()
-    if (request := _serve(listener)) is not None:
-        signal.signal(signal.SIGINT, interrupted)
-        _become(request)
+    serve(listener, interrupted)
 
 
 if __name__ == "__main__":

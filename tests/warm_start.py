@@ -15,6 +15,7 @@ import io
 import json
 import os
 import runpy
+import secrets
 import select
 import signal
 import socket
@@ -23,7 +24,7 @@ import sys
 import tempfile
 import threading
 import types
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import PathDistribution
 from pathlib import Path
@@ -125,8 +126,8 @@ class WarmStarts:
         places = (directory, *_search_path(environment))
         return not any(
             path.stem in first and (path.parent in places or not (path.parent / "__init__.py").exists())
-            for path in (path for place in places for path in place.rglob("*"))
-            if path.suffix in ("", ".py")  # modules of packages have longer names
+            for place in places
+            for path in _modules_below(place)  # modules of packages have longer names
         )
 
     def run(
@@ -169,6 +170,16 @@ class WarmStarts:
             return int(word.recv(LARGEST)), printed, errors.result()
 
 
+def _modules_below(place: Path) -> Iterator[Path]:
+    """Yield what may be a module or a package; nothing is imported from hidden directories, as pytest's cache."""
+    for directory, directories, files in os.walk(place):
+        directories[:] = [name for name in directories if not name.startswith(".")]
+        for name in (*directories, *files):
+            path = Path(directory, name)
+            if path.suffix in ("", ".py"):
+                yield path
+
+
 def _search_path(environment: Mapping[str, str]) -> list[Path]:
     """Return the directories of ``PYTHONPATH``."""
     return [Path(place) for place in environment.get("PYTHONPATH", "").split(os.pathsep) if place]
@@ -205,8 +216,34 @@ def _serve(server: socket.socket) -> _Job | None:
                 word.send(str(status).encode())
 
 
-def _become(job: _Job) -> None:
-    """Be what Python is after ``python -m program arguments``."""
+def _fork_processes_of_tests(server: socket.socket, interrupted: object) -> tuple[str, int]:
+    """Fork a process that forks those of isolated tests.
+
+    :return: where it is asked for them, and a descriptor: it ends when that one is closed, in all forks
+    """
+    import warm_processes
+
+    address = f"\0pyfrc-tests-{secrets.token_hex(16)}"
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
+        listener.bind(address)
+        listener.listen(128)
+        ended, alive = os.pipe()
+        if os.fork() == 0:
+            server.close()
+            os.close(alive)
+            os.dup2(ended, 0)
+            os.close(ended)
+            warm_processes.serve(listener, interrupted)
+            _exit_now(0)
+        os.close(ended)
+        return address, alive
+
+
+def _become(job: _Job, of_tests: str) -> None:
+    """Be what Python is after ``python -m program arguments``.
+
+    :param of_tests: where processes of isolated tests are forked
+    """
     for target, descriptor in enumerate(job.streams):
         os.dup2(descriptor, target)
         os.close(descriptor)
@@ -214,7 +251,7 @@ def _become(job: _Job) -> None:
     if address is not None:
         import warm_processes
 
-        warm_processes.start_warm(lambda: address)
+        warm_processes.start_warm(lambda: address, of_tests)
     os.chdir(directory)
     os.environ.clear()
     os.environ.update(environment)
@@ -331,11 +368,13 @@ def main() -> None:
     server.send(json.dumps(list(sys.modules)).encode())
     gc.collect()
     gc.freeze()
+    of_tests, alive = _fork_processes_of_tests(server, interrupted)
     with server:
         job = _serve(server)
+    os.close(alive)
     if job is not None:
         signal.signal(signal.SIGINT, interrupted)
-        _become(job)
+        _become(job, of_tests)
 
 
 if __name__ == "__main__":

@@ -51,6 +51,10 @@ NATIVE_HAL = PrivateName(
     "native.wpihal._init_robotpy_native_wpihal:__lib",
     "hal_data shows the channels of an encoder by it, and compat.hal_callbacks has the HAL report SimDevices by it",
 )
+NETWORK_LOG = PrivateName(
+    "ntcore._logutil:NtLogForwarder",
+    "NetworkTables imports it when it starts: fuzz.match_executor does so once, before the matches' processes",
+)
 
 #: Those that are attributes of modules and classes.
 NAMES = (
@@ -63,6 +67,7 @@ NAMES = (
     SET_STACK_TRACE_HOOK,
     STATE_OF_MACHINE,
     NATIVE_HAL,
+    NETWORK_LOG,
 )
 
 

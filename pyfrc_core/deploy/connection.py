@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
+from ..collector import collector_paused
 from .credentials import NONE_OFFERED, Credentials
 from .discovery import CONNECT_SECONDS, Address
 from .errors import ConnectionFailedError, DeployError
@@ -54,7 +55,8 @@ def _load() -> None:
     if absent:
         sys.modules["invoke"] = None  # type: ignore[assignment]
     try:
-        import paramiko  # noqa: F401
+        with collector_paused():
+            import paramiko  # noqa: F401
     finally:
         if absent:
             del sys.modules["invoke"]

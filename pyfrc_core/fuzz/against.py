@@ -1,7 +1,7 @@
 """Compare the robot's code with that of another commit: the same inputs, and where outputs first differ.
 
-Two versions of a module cannot be imported in one process. So the other commit's matches are played, some at a time, in
-a new interpreter.
+Two versions of a module cannot be imported in one process. So the other commit's matches are played in another one
+(`other_commit`).
 """
 
 from __future__ import annotations
@@ -11,12 +11,9 @@ import time
 from collections.abc import Generator, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import count, islice
 from pathlib import Path
 
-from ..processes.call import run_in_subprocess
-from ..processes.crash_report import CrashLog
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.script import InputScript
@@ -29,6 +26,7 @@ from .goals import Line
 from .inputs import Input
 from .match import FuzzTask, MatchResult, ReplayTask, Task
 from .match_executor import MatchExecutor, open_match_executor
+from .other_commit import Play, open_other_commit
 from .revision import Revision, exported
 from .shrink import Shrinker
 from .stream import Stream
@@ -69,11 +67,12 @@ def compare(project: Project, revision: str, options: CampaignOptions) -> Compar
     deadline = None if options.seconds is None else time.monotonic() + options.seconds
     with (
         exported(project, revision) as other,
+        open_other_commit(other.project, options.jobs) as (play_other, is_ready),
         open_match_executor(project, options.jobs) as executor,
         tempfile.TemporaryDirectory(prefix="pyfrc-traces-") as traces,
         executor.interruptible(),
     ):
-        both = _BothVersions(executor, other.project, Path(traces))
+        both = _BothVersions(executor, play_other, is_ready, Path(traces))
         stream = Stream(options.seed, 0, 1, options.recorded)
         matches, seconds = 0, 0.0
         while (options.runs is None or matches < options.runs) and (deadline is None or time.monotonic() < deadline):
@@ -112,10 +111,12 @@ def _shortest(
 class _BothVersions(MatchExecutor):
     """Plays each script with both versions of the code: a difference is the result's failure."""
 
-    def __init__(self, executor: MatchExecutor, other: Project, directory: Path) -> None:
+    def __init__(self, executor: MatchExecutor, play_other: Play, is_ready: bool, directory: Path) -> None:
         super().__init__(executor.project, executor.jobs, directory)
         self._executor = executor
-        self._other = other
+        self._play_other = play_other
+        #: How many tasks to play together: the caller may not need all, but calls of the other commit may be slow.
+        self._sizes = (self.jobs, self.jobs) if is_ready else (2 * self.jobs, _BATCH)
         self._numbers = count()
 
     @property
@@ -124,15 +125,15 @@ class _BothVersions(MatchExecutor):
 
     def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
         left = iter(tasks)
-        size = 2 * self.jobs
+        size, later = self._sizes
         while together := [task for task in islice(left, size) if isinstance(task, ReplayTask)]:
             yield from self._compare([replace(task, ends_with=None) for task in together])
-            size = _BATCH
+            size = later
 
     def _compare(self, tasks: Sequence[ReplayTask]) -> list[MatchResult]:
         mine, theirs = self._traced(tasks), self._traced(tasks)
         now = list(self._executor.play(mine))
-        before = run_in_subprocess(partial(_play_all, tasks=theirs, jobs=self.jobs), self._other, "in the other commit")
+        before = self._play_other(theirs)
         files = [(task.trace, other.trace) for task, other in zip(mine, theirs, strict=True)]
         results = []
         for played, other, (file, other_file) in zip(now, before, files, strict=True):
@@ -145,11 +146,6 @@ class _BothVersions(MatchExecutor):
 
     def _traced(self, tasks: Sequence[ReplayTask]) -> list[ReplayTask]:
         return [replace(task, trace=self._directory / f"{next(self._numbers)}.trace.jsonl") for task in tasks]
-
-
-def _play_all(project: Project, log: CrashLog, tasks: Sequence[ReplayTask], jobs: int) -> list[MatchResult]:
-    with open_match_executor(project, jobs) as executor:
-        return list(executor.play(tasks))
 
 
 def _difference(now: MatchResult, before: MatchResult, file: Path, file_before: Path) -> MatchResult:

@@ -9,7 +9,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import wpilib
 from wpilib.interfaces import GenericHID
@@ -83,23 +84,51 @@ def watch_controls() -> Iterator[AskedControls]:
         yield asked
 
 
+def prepare_control_watch() -> None:
+    """Find the functions that read controls: forks of this process then have them."""
+    _reading_functions()
+
+
+class _Reading(NamedTuple):
+    """A function that reads a control.
+
+    :param reads: returns what it reads; for functions of the driver station, the key in `hal_data`
+    """
+
+    owner: Any
+    name: str
+    real: Callable[..., Any]
+    reads: _Reads | str
+
+
 def _patches(asked: AskedControls) -> Iterator[Patch]:
+    for owner, name, real, reads in _reading_functions():
+        wrapped = asked.wrap_static(real, reads) if isinstance(reads, str) else asked.wrap(real, reads)
+        yield Patch(owner, name, wrapped)
+
+
+@cache
+def _reading_functions() -> list[_Reading]:
+    return list(_find_reading_functions())
+
+
+def _find_reading_functions() -> Iterator[_Reading]:
     for name, kind in _BY_NUMBER.items():
-        yield Patch(GenericHID, name, asked.wrap(vars(GenericHID)[name], _numbered(kind)))
-    for name in vars(GenericHID):
+        yield _Reading(GenericHID, name, vars(GenericHID)[name], _numbered(kind))
+    for name, function in vars(GenericHID).items():
         if re.match(r"POV\w", name):
-            yield Patch(GenericHID, name, asked.wrap(vars(GenericHID)[name], lambda *_: ("povs", 0)))
+            yield _Reading(GenericHID, name, function, _always("povs", 0))
     for name, kind in _OF_DRIVER_STATION.items():
-        yield Patch(wpilib.DriverStation, name, asked.wrap_static(getattr(wpilib.DriverStation, name), kind))
+        yield _Reading(wpilib.DriverStation, name, getattr(wpilib.DriverStation, name), kind)
     for owner in _GAMEPADS:
         for name, reads in _named(owner):
-            yield Patch(owner, name, asked.wrap(vars(owner)[name], reads))
+            yield _Reading(owner, name, vars(owner)[name], reads)
     for name, real in vars(wpilib.Joystick).items():
         if (axis := _AXIS.match(name)) is not None:
-            yield Patch(wpilib.Joystick, name, asked.wrap(real, _channel(f"get{axis[1]}Channel")))
+            yield _Reading(wpilib.Joystick, name, real, _channel(f"get{axis[1]}Channel"))
         elif (button := _NAME.match(name)) is not None and button[1].lower() in ("trigger", "top"):
             number = 1 if button[1].lower() == "trigger" else 2
-            yield Patch(wpilib.Joystick, name, asked.wrap(real, _always("buttons", number)))
+            yield _Reading(wpilib.Joystick, name, real, _always("buttons", number))
 
 
 def _named(owner: Any) -> Iterator[tuple[str, _Reads]]:

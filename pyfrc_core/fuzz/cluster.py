@@ -15,7 +15,7 @@ import time
 import uuid
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Executor, Future
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -86,7 +86,8 @@ def open_cluster_executor(project: Project, address: str) -> Iterator[ClusterMat
             yield ClusterMatchExecutor(project, client, address, name, Path(temporary))
         finally:
             if client.status == "running":
-                client.unregister_worker_plugin(name)
+                with suppress(OSError, TimeoutError):  # the scheduler is lost, which the client has not noticed yet
+                    client.unregister_worker_plugin(name)
 
 
 class ClusterMatchExecutor(PooledMatchExecutor):

@@ -91,7 +91,10 @@ class ProjectOnWorker(WorkerPlugin):
         if versions() != self._expected:
             return pickle.dumps(PyfrcError(f"a worker has {versions()}, this computer has {self._expected}"))
         process = self._take()
-        result: bytes = process.request(task)
+        try:
+            result: bytes = process.request(task)
+        except EOFError:
+            raise EOFError("a process that plays matches on a worker has ended") from None
         with self._lock:
             self._idle.append(process)
         return result

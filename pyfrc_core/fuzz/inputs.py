@@ -15,6 +15,7 @@ from wpilib.simulation import SimDeviceSim
 
 from ..hal import HalData, format_path
 from ..hal.devices import KINDS
+from ..hal.modules import Modules
 from ..hal.sim_device_list import Signature
 from .gamepads import TRIGGERS
 from .robot_constants import UNKNOWN, RobotConstants
@@ -126,7 +127,7 @@ class SensorFinder:
 
     def _devices(self) -> _Devices:
         hal_data = self._hal_data
-        modules = tuple([tuple(hal_data[key]) for key in _MODULES])
+        modules = tuple([exists() for exists in _modules()])
         return _Devices(_used(), modules, hal_data["accelerometer"]["active"], hal_data["CAN"].signature())
 
 
@@ -134,7 +135,7 @@ class _Devices(NamedTuple):
     """The devices that exist: those of the roboRIO that have a sensor, and all others."""
 
     channels: tuple[tuple[str, int], ...]
-    modules: tuple[tuple[int, ...], ...]
+    modules: tuple[bool, ...]
     accelerometer: bool
     sim_devices: Signature
 
@@ -150,9 +151,16 @@ def _channels() -> list[tuple[tuple[str, int], Callable[[], bool]]]:
     ]
 
 
+@cache
+def _modules() -> list[Callable[[], bool]]:
+    """Return a function for each possible module on the CAN bus that returns whether the robot has created it."""
+    return [slot.get for slot in Modules().initialized()]
+
+
 def prepare_sensor_search() -> None:
     """Prepare a search for sensors: forks of this process then find it prepared."""
     _channels()
+    _modules()
 
 
 def _used() -> tuple[tuple[str, int], ...]:

@@ -9,12 +9,14 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..hal import devices_exist
 from ..invariants.load import Invariant, load_invariants
 from ..invariants.watch import BrokenInvariantError, watch_invariants
 from ..physics.construct import construct
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.crash_moment import CrashMoment
+from ..runtime.deferred_imports import deferred_imports
 from ..runtime.exceptions import TestEnded, TestRanTooLong
 from ..runtime.hang_detector import HangDetector
 from ..runtime.loading import load_robot
@@ -138,8 +140,9 @@ def robot_constants(project: Project) -> RobotConstants:
     return find_constants(robot_lines(project).functions)
 
 
+@lru_cache(maxsize=1)
 def load(project: Project) -> type[Any]:
-    """Import the robot program, its physics and its rules.
+    """Import the robot program, its physics and its rules, with the first call; return the robot class.
 
     :raises RobotCodeError: when its code fails
     :raises InvariantError: when a rule cannot be called
@@ -158,6 +161,16 @@ def load(project: Project) -> type[Any]:
 def invariants_of(project: Project) -> tuple[Invariant, ...]:
     """Return the project's rules, which the first call imports."""
     return load_invariants(project)
+
+
+@lru_cache(maxsize=1)
+def imported_devices(project: Project) -> bool | None:
+    """Return whether importing the robot has created devices in the HAL; None if more is imported when a run begins.
+
+    The first call must come before a robot runs in this process.
+    """
+    load(project)
+    return devices_exist() if not deferred_imports.waiting else None
 
 
 def match_seconds(project: Project, schedule: SeedSchedule) -> float:
@@ -255,12 +268,12 @@ def _robot(
     hang_seconds: float | None = None,
 ) -> Iterator[tuple[RobotRun, MisbehaviorNotes]]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
-    load(project)  # before robot time begins
+    imported_devices(project)  # before robot time begins
     run = RobotRun()
     settings = project.settings.fuzz
     hang_detector = HangDetector(run, project.files, hang_seconds or settings.hang_seconds, log)
     with hang_detector.watching():
-        run.open()
+        run.open(imported_devices(project))
         CrashMoment(log, run)
         LoopLimit(run, project.files, project.settings)
         notes = MisbehaviorNotes(run.clock, project.files, ends_with)

@@ -18,6 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ..compat.wpilib_private import NETWORK_LOG
 from ..errors import RobotCodeError
 from ..hal import devices_exist
 from ..processes.call import ForkedCall, run_in_subprocess
@@ -27,6 +28,7 @@ from ..project import Project
 from ..runtime.clock import to_us
 from ..runtime.fork_obstacles import reasons_not_to_fork
 from ..runtime.scripts.script import InputScript
+from .asked_controls import prepare_control_watch
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .fuzz_run import read_journal
 from .goals import Line
@@ -37,6 +39,7 @@ from .match import (
     MatchResult,
     ReplayTask,
     Task,
+    imported_devices,
     match_seconds,
     play,
     robot_constants,
@@ -227,9 +230,12 @@ class ForkedMatchExecutor(MatchExecutor):
         if self._imported:
             robot_lines(project)
             robot_constants(project)
+            imported_devices(project)
         # Each match asks for these; the first call prepares the answer, and forks inherit what it has made.
         devices_exist()
         prepare_sensor_search()
+        prepare_control_watch()
+        NETWORK_LOG.find()
         gc.freeze()  # a garbage collection in a fork would copy the memory of all objects
 
     @property
@@ -243,20 +249,19 @@ class ForkedMatchExecutor(MatchExecutor):
             more = True
             while more or waiting:
                 self._check_interrupt()
+                # First, since the caller may close the generator then: a shorter script has failed.
+                if waiting and waiting[0][1].finished:
+                    yield self._result(*waiting.popleft())
+                    continue
                 while more and sum(not work.finished for _, work in waiting) < self.jobs:
                     task = next(left, None)
                     if task is None:
                         more = False
                     else:
                         waiting.append((task, self._begin(task)))
-                if not waiting:
-                    return
-                if waiting[0][1].finished:
-                    yield self._result(*waiting.popleft())
-                else:
-                    wait_for_any([work.fileno() for _, work in waiting if not work.finished])
-                    for _, work in waiting:
-                        work.poll()
+                wait_for_any([work.fileno() for _, work in waiting if not work.finished])
+                for _, work in waiting:
+                    work.poll()
         finally:
             for _, work in waiting:
                 work.close()

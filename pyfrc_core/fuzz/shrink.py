@@ -76,7 +76,9 @@ class Shrinker:
         self._executor = executor
         self._inputs = inputs
         self._most_runs = min(most_runs, _MOST_HANGING_RUNS) if failure.kind == HANGS else most_runs
-        self._hang_seconds = _SHORT_HANG_SECONDS if failure.kind == HANGS else None
+        self._hang_seconds: float | None = None
+        if failure.kind == HANGS:
+            self._hang_seconds = min(_SHORT_HANG_SECONDS, executor.project.settings.fuzz.hang_seconds)
         self._header = replace(script, steps=())
         self._whole = Start(tuple(_writes(script)), script.end_us)
         self._writes, self._end_us = self._whole

@@ -16,12 +16,9 @@ class _Missing:
 MISSING: Any = _Missing()
 
 
-class Change(NamedTuple):
-    """A value that has changed, or come: then `old` is `MISSING`."""
-
-    path: str
-    old: Any
-    new: Any
+#: A value that has changed, or come: its path, the old value or `MISSING`, and the new one. Not a named tuple, because
+#: a trace has dozens of them in each packet.
+Change = tuple[str, Any, Any]
 
 
 class Changes(NamedTuple):
@@ -67,13 +64,13 @@ class ChangeReader:
             return Changes([], [])
         if source.paths is not self._paths:
             return self._compare_all()
-        changed = []
+        changed: list[Change] = []
         paths, before, now = self._paths, self._values, source.values
         for position in source.changed_since(version):
             old, new = before[position], now[position]
-            if not same(old, new):
+            if (old != new and new == new) or not same(old, new):  # NaN differs from itself
                 before[position] = new
-                changed.append(Change(paths[position], old, new))
+                changed.append((paths[position], old, new))
         return Changes(changed, [])
 
     def skip(self, refresh: bool = True) -> None:
@@ -91,9 +88,9 @@ class ChangeReader:
     def _compare_all(self) -> Changes:
         before = dict(zip(self._paths, self._values, strict=True))
         self._paths, self._values = self._source.paths, self._source.values.copy()
-        changed = []
+        changed: list[Change] = []
         for path, new in zip(self._paths, self._values, strict=True):
             old = before.pop(path, MISSING)
             if not same(old, new):
-                changed.append(Change(path, old, new))
+                changed.append((path, old, new))
         return Changes(changed, list(before))

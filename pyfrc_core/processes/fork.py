@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from .crash_report import write_all
 from .exit import exit_now
-from .owner import end_with
+from .owner import end_with, prepare_end_with
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
 FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
@@ -49,6 +49,7 @@ class Fork:
         os.set_blocking(self._pipe, False)
         sys.stdout.flush()
         sys.stderr.flush()
+        prepare_end_with()
         owner = os.getpid() if threading.current_thread() is threading.main_thread() else None
         with forking_quietly():
             self._pid = os.fork()

@@ -5,10 +5,25 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from functools import cache
+from typing import Any
 
 from .exit import exit_now
 
 _PR_SET_PDEATHSIG = 1
+
+
+@cache
+def _libc() -> Any:
+    import ctypes  # not where nothing is started
+
+    return ctypes.CDLL(None)
+
+
+def prepare_end_with() -> None:
+    """Load what `end_with` needs: forks of this process then have it."""
+    if sys.platform == "linux":
+        _libc().prctl  # noqa: B018 - looked up, and kept
 
 
 def end_with(owner: int) -> None:
@@ -20,9 +35,7 @@ def end_with(owner: int) -> None:
     if sys.platform != "linux":
         return
     if os.getppid() == owner:
-        import ctypes  # not where nothing is started
-
-        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+        _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
         if os.getppid() == owner:
             return
     try:

@@ -95,6 +95,11 @@ class DeferredImports(MetaPathFinder):
             del self._waiting[library]
         return sys.modules[library]
 
+    @property
+    def waiting(self) -> frozenset[str]:
+        """Return the libraries that are yet to be imported."""
+        return frozenset(self._waiting)
+
     def is_waiting(self, library: str) -> bool:
         """Return whether the library is yet to be imported."""
         return library in self._waiting

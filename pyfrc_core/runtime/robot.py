@@ -127,14 +127,19 @@ class RobotRun:
         self._started = self._ended = False
         self._closing = contextlib.ExitStack()
 
-    def open(self) -> None:
-        """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
+    def open(self, has_devices: bool | None = None) -> None:
+        """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet.
+
+        :param has_devices: whether devices exist in the HAL, if the caller knows: the search takes a millisecond
+        """
         deferred_imports.import_all()
         restart_numbers()
         self._closing.enter_context(active_run.set_to(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
         ntcore.NetworkTableInstance.getDefault().startLocal()
-        if not devices_exist():  # of an earlier run in this process, only its inputs are left
+        if has_devices is None:
+            has_devices = devices_exist()
+        if not has_devices:  # of an earlier run in this process, only its inputs are left
             timing.forget_inputs()
         self.connection.boot()
         # What the first packet brings: it may still be changed.

@@ -212,6 +212,13 @@ class Roborio:
                 raise AssertionError(f"the robot program has not said {text!r} in {seconds} s, but:\n{self._said}")
             return self._said
 
+    def wait_for_end_of_deploy(self) -> None:
+        """Wait until no agent holds the deploy lock: one whose laptop has gone may need a while to notice that."""
+        import fcntl  # which Windows has not
+
+        with contextlib.suppress(FileNotFoundError), (self.home / ".pyfrc/lock").open() as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+
     def put(self, name: str, content: str | bytes, *, owner: int = LVUSER, mode: int = 0o644) -> Path:
         """Write a file on its disk (`name` counts from its root)."""
         file = self.disk / name.lstrip("/")

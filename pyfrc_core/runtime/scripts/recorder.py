@@ -129,15 +129,15 @@ class Recorder:
 
     def _look(self) -> list[Change]:
         """Return what has changed since the last look, in the order in which a script has it."""
-        found = []
+        found: list[Change] = []
         mode = modes.mode_name()
         if mode != self._mode:
-            found.append(Change(MODE, self._mode, mode))
+            found.append((MODE, self._mode, mode))
             self._mode = mode
         changed, gone = self._changes.look()
         if changed or gone:
             found += self._look_at_sticks()
-            self._left = next((change.new for change in changed if change.path == REMAINING), self._left)
+            self._left = next((new for path, _, new in changed if path == REMAINING), self._left)
         return [*found, *changed, *self._network.look()]
 
     def _look_at_sticks(self) -> Iterator[Change]:
@@ -156,7 +156,7 @@ class Recorder:
                 self._sticks[f"{path}.pov_count"] = povs
         for target, value in self._sticks.items():
             if before.get(target, MISSING) != value:
-                yield Change(target, before.get(target, MISSING), value)
+                yield target, before.get(target, MISSING), value
 
     def _writes(self, changes: list[Change]) -> Iterator[tuple[str, Any]]:
         for target, old, value in changes:
@@ -240,7 +240,7 @@ class _Network:
             places = {target: place for place, target in enumerate(self._found)}
             changed.sort(key=places.__getitem__)
         return [
-            Change(target, before[target], self._found[target])
+            (target, before[target], self._found[target])
             for target in changed
             if not same(before[target], self._found[target])
         ]
