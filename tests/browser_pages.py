@@ -30,7 +30,10 @@ CHOOSER = "Auto <img src=x onerror=alert(1)>"
 
 ROBOT = {
     "robot.py": f"""
+        import ntcore
         import wpilib
+        from wpimath.geometry import Pose2d, Rotation2d
+        from wpimath.kinematics import SwerveModuleState
 
         CHOOSER = {CHOOSER!r}
         HOSTILE = {HOSTILE!r}
@@ -56,6 +59,10 @@ ROBOT = {
                 wpilib.SmartDashboard.putData("Arm", self.mechanism)
                 self.field = wpilib.Field2d()
                 wpilib.SmartDashboard.putData("Plan", self.field)
+                self.field.getObject("path").setPoses([Pose2d(2 + n / 2, 4 + n / 8, Rotation2d(0.2)) for n in range(12)])
+                self.field.getObject("goal").setPose(8, 5.5, Rotation2d(0.5))
+                table = ntcore.NetworkTableInstance.getDefault()
+                self.modules = table.getStructArrayTopic("/SmartDashboard/Modules", SwerveModuleState).publish()
                 self.alert = wpilib.Alert("the battery is low", wpilib.Alert.AlertType.kWarning)
                 self.alert.set(True)
                 print(HOSTILE)
@@ -64,6 +71,7 @@ ROBOT = {
             def robotPeriodic(self):
                 kp = wpilib.SmartDashboard.getNumber("kP", 0)
                 wpilib.SmartDashboard.putNumber("doubled", 2 * kp)
+                self.modules.set([SwerveModuleState(2 * kp, Rotation2d(0.7)) for _ in range(4)])
 
             def disabledPeriodic(self):
                 pass

@@ -190,6 +190,29 @@ def test_networktables_are_edited_live(person: Seen) -> None:
     page.locator("[data-path='nt:/SmartDashboard/Arm/pivot/arm/angle']").wait_for()
 
 
+def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> None:
+    found = person.page.evaluate(
+        """async () => {
+          const { model } = await import("/static/js/model.js");
+          const { fieldObjects, swerveStates } = await import("/static/js/field/published.js");
+          const { mechanisms } = await import("/static/js/panels/mechanism.js");
+          const objects = fieldObjects(model.values, model.hello.field);
+          return {
+            objects: objects.map(({ name, poses, isPath }) => [name, poses.length, isPath]),
+            goal: objects.find(({ name }) => name === "goal").poses[0],
+            swerve: swerveStates(model.values)[0].states[0],
+            mechanism: mechanisms(model.values).map(({ name }) => name),
+          };
+        }"""
+    )
+    assert found["objects"] == [["path", 12, True], ["goal", 1, False]]
+    # From WPILib's metres, y upwards, to feet, y downwards; angles are clockwise.
+    height = person.simulation.field.height
+    assert found["goal"] == pytest.approx([8 / 0.3048, height - 5.5 / 0.3048, -0.5])
+    assert found["swerve"] == pytest.approx({"speed": 1.0, "angle": 0.7})
+    assert found["mechanism"] == ["Arm"]
+
+
 def test_nothing_of_the_robot_is_ever_html(person: Seen) -> None:
     page = person.page
     page.locator(".line-text", has_text=HOSTILE).first.wait_for()

@@ -247,6 +247,14 @@ def test_a_second_window_sees_the_same_and_a_viewer_cannot_drive(browser, server
         person.page.get_by_text("2 windows").wait_for(state="detached")
 
 
+def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> None:
+    with served(make_project(ROBOT), speed=1, paused=False) as server, page_of(browser, server) as person:
+        server.front_end.close()
+        person.page.get_by_text("The simulation was closed. This is its last state.").wait_for()
+        person.state("Teleoperated disabled")
+        person.wrong.clear()  # the browser's own words about the lost connection
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(1366, 768), (3840, 2160), (820, 1180)])
 def test_everything_fits_and_can_be_read(browser, server, size, scheme) -> None:

@@ -118,11 +118,12 @@ export class FieldPanel extends Live {
       if (object.isPath) draw.drawTrail(context, this.view, object.poses, name, 2);
       else for (const pose of object.poses) draw.drawRobot(context, this.view, field, pose, { body: name, alpha: 0.8, outline: true });
       const [x, y] = this.view.toScreen(object.poses[0]);
+      const above = object.isPath ? 8 : (Math.hypot(field.robot_length, field.robot_width) / 2) * this.view.scale + 2;
       context.fillStyle = color(name);
       context.font = font(11);
-      context.textAlign = "left";
+      context.textAlign = "center";
       context.textBaseline = "bottom";
-      context.fillText(object.name, x + 8, y - 8);
+      context.fillText(object.name, x, y - above);
     });
   }
 
@@ -136,7 +137,7 @@ export class FieldPanel extends Live {
     draw.drawRobot(context, this.view, field, robot, { body });
     if (!this.shows("swerve")) return;
     for (const { states, wanted } of swerveStates(values)) {
-      draw.drawSwerve(context, this.view, field, robot, states, wanted ? "amber" : "green");
+      draw.drawSwerve(context, this.view, field, robot, states, wanted ? "swerve-wanted" : "swerve");
     }
   }
 
