@@ -59,7 +59,9 @@ ROBOT = {
                 wpilib.SmartDashboard.putData("Arm", self.mechanism)
                 self.field = wpilib.Field2d()
                 wpilib.SmartDashboard.putData("Plan", self.field)
-                self.field.getObject("path").setPoses([Pose2d(2 + n / 2, 4 + n / 8, Rotation2d(0.2)) for n in range(12)])
+                path = [Pose2d(2 + n / 2, 4 + n / 8, Rotation2d(0.2)) for n in range(12)]
+                self.field.getObject("path").setPoses(path)
+                self.field.getObject("tags").setPoses([Pose2d(5 * (n % 2), n, Rotation2d()) for n in range(8)])
                 self.field.getObject("goal").setPose(8, 5.5, Rotation2d(0.5))
                 table = ntcore.NetworkTableInstance.getDefault()
                 self.modules = table.getStructArrayTopic("/SmartDashboard/Modules", SwerveModuleState).publish()

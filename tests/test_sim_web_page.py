@@ -198,14 +198,14 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
           const { mechanisms } = await import("/static/js/panels/mechanism.js");
           const objects = fieldObjects(model.values, model.hello.field);
           return {
-            objects: objects.map(({ name, poses, isPath }) => [name, poses.length, isPath]),
+            objects: objects.map(({ name, poses, isPath }) => [name, poses.length, isPath]).sort(),
             goal: objects.find(({ name }) => name === "goal").poses[0],
             swerve: swerveStates(model.values)[0].states[0],
             mechanism: mechanisms(model.values).map(({ name }) => name),
           };
         }"""
     )
-    assert found["objects"] == [["path", 12, True], ["goal", 1, False]]
+    assert found["objects"] == [["goal", 1, False], ["path", 12, True], ["tags", 8, False]]
     # From WPILib's metres, y upwards, to feet, y downwards; angles are clockwise.
     height = person.simulation.field.height
     assert found["goal"] == pytest.approx([8 / 0.3048, height - 5.5 / 0.3048, -0.5])

@@ -1,5 +1,6 @@
 // The values of watched paths over time: from the server's history, and then as they change.
 import { ask } from "./connection.js";
+import { plain } from "./format.js";
 import { model } from "./model.js";
 
 const FIRST_POINTS = 4000; // of the history, when a path begins to be watched
@@ -10,7 +11,7 @@ const series = new Map(); // path: { kind, t: [], v: [], users, loaded }
 export function watch(path) {
   let one = series.get(path);
   if (!one) {
-    one = { path, kind: "number", t: [], v: [], users: 0, loaded: false };
+    one = { path, kind: "number", t: [], v: [], users: 0 };
     series.set(path, one);
     subscribe();
     load(one);
@@ -41,19 +42,20 @@ async function load(one) {
     // What came while the answer was on its way follows it.
     const last = past.t.length ? past.t[past.t.length - 1] : -1;
     const newer = one.t.findIndex((t) => t > last);
-    one.kind = past.kind === "other" && one.v.length ? kindOf(one.v[0]) : past.kind;
     one.t = past.t.concat(newer < 0 ? [] : one.t.slice(newer));
     one.v = past.v.concat(newer < 0 ? [] : one.v.slice(newer));
-    one.loaded = true;
+    one.kind = kindOfAll(one);
     model.announce("series");
   } catch {
     // A new connection loads it again.
   }
 }
 
-export function kindOf(value) {
+// Whether a series has numbers, booleans or texts: the newest value decides.
+function kindOfAll({ kind, v }) {
   const kinds = { number: "number", boolean: "boolean", string: "text" };
-  return kinds[typeof value] ?? "other";
+  const newest = plain(v[v.length - 1] ?? null);
+  return newest === null ? kind : (kinds[typeof newest] ?? "other");
 }
 
 function append(samples) {
@@ -65,7 +67,7 @@ function append(samples) {
       one.t.push(list[index]);
       one.v.push(list[index + 1]);
     }
-    if (!one.loaded && list.length) one.kind = kindOf(list[1]);
+    one.kind = kindOfAll(one);
   }
   model.announce("series");
 }

@@ -125,6 +125,13 @@ export function drawRobot(context, view, field, pose, { body = "accent", alpha =
   context.restore();
 }
 
+// A small arrowhead, for one of many poses.
+export function drawPlace(context, view, pose, name) {
+  context.fillStyle = color(name);
+  path(context, view, [beside(pose, 0.7, 0), beside(pose, -0.35, 0.45), beside(pose, -0.35, -0.45)], true);
+  context.fill();
+}
+
 export function drawSwerve(context, view, field, pose, modules, name) {
   const length = field.robot_length * 0.36;
   const width = field.robot_width * 0.36;

@@ -3,7 +3,8 @@ import { plain } from "../format.js";
 import { model } from "../model.js";
 
 const FOOT = 0.3048; // metres
-const MOST_POSES = 6; // an object with more poses is a trajectory
+const FEWEST = 7; // poses of a trajectory
+const STEP = 2.5; // feet between its poses, at most
 
 // A pose of WPILib, in metres from the field's lower left corner, as x, y in feet and an angle in radians, clockwise.
 export function fromMetres(x, y, radians, field) {
@@ -29,6 +30,13 @@ function angleOf(rotation) {
   return rotation?.value ?? rotation?.radians ?? 0;
 }
 
+// Whether poses follow each other, as on a trajectory, or are places here and there, such as vision targets.
+function isTrajectory(poses) {
+  if (poses.length < FEWEST) return false;
+  const steps = poses.slice(1).map(([x, y], index) => Math.hypot(x - poses[index][0], y - poses[index][1]));
+  return steps.every((step) => step <= STEP);
+}
+
 // The objects of every Field2d: { name, path, poses, isPath }.
 export function fieldObjects(values, field) {
   const objects = [];
@@ -44,14 +52,14 @@ export function fieldObjects(values, field) {
       // Nothing has moved this one yet: a Field2d begins with its robot in the corner.
       if (name === "Robot" && Array.isArray(value) && value.every((number) => number === 0)) continue;
       const poses = posesOf(value, field);
-      if (poses.length) objects.push({ name, path: each, poses, isPath: poses.length > MOST_POSES });
+      if (poses.length) objects.push({ name, path: each, poses, isPath: isTrajectory(poses) });
     }
   }
   for (const [path, value] of values) {
     // Poses that robot code publishes as structs, beside any Field2d.
     if (!path.startsWith("nt:/") || !/^(struct:)?Pose2d/.test(model.types[path] ?? "")) continue;
     const poses = posesOf(value, field);
-    if (poses.length) objects.push({ name: path.split("/").pop(), path, poses, isPath: poses.length > MOST_POSES });
+    if (poses.length) objects.push({ name: path.split("/").pop(), path, poses, isPath: isTrajectory(poses) });
   }
   return objects;
 }

@@ -20,6 +20,8 @@ const LAYERS = [
   ["tags", "AprilTags"],
 ];
 const DEGREES = 180 / Math.PI;
+const MOST_ROBOTS = 3; // of more poses, each is a small arrowhead
+const LEAST_NAMED = 8; // pixels per foot: names would cover a smaller field
 const TURN = 15; // degrees by an arrow key
 
 export class FieldPanel extends Live {
@@ -50,13 +52,17 @@ export class FieldPanel extends Live {
     return settings.get("fieldLayers")[layer] !== false;
   }
 
+  // The menu's item for something that can be hidden.
+  layer(name, text) {
+    const shown = this.shows(name);
+    return { text, checked: shown, act: () => settings.set("fieldLayers", { ...settings.get("fieldLayers"), [name]: !shown }) };
+  }
+
   render() {
     const pose = model.shown.robot;
-    const layers = LAYERS.map(([layer, text]) => ({
-      text,
-      checked: this.shows(layer),
-      act: () => settings.set("fieldLayers", { ...settings.get("fieldLayers"), [layer]: !this.shows(layer) }),
-    }));
+    const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));
+    const objects = fieldObjects(model.shown.values, model.hello.field).map(({ path, name }) => this.layer(path, name));
+    if (objects.length) layers.push({ separator: true }, ...objects);
     layers.push({ separator: true }, { text: "Turn the field round", checked: Boolean(this.view?.turned), act: this.turnRound });
     return html`<div class="field">
       <div class="field-canvas" tabindex="0" role="application" aria-label="Field. Arrow keys move the robot, with Shift they turn it"
@@ -114,11 +120,14 @@ export class FieldPanel extends Live {
 
   drawObjects(context, field) {
     fieldObjects(model.shown.values, field).forEach((object, index) => {
+      if (!this.shows(object.path)) return;
       const name = `curve-${(index + 2) % 8}`;
       if (object.isPath) draw.drawTrail(context, this.view, object.poses, name, 2);
+      else if (object.poses.length > MOST_ROBOTS) for (const pose of object.poses) draw.drawPlace(context, this.view, pose, name);
       else for (const pose of object.poses) draw.drawRobot(context, this.view, field, pose, { body: name, alpha: 0.8, outline: true });
+      if (this.view.scale < LEAST_NAMED) return;
       const [x, y] = this.view.toScreen(object.poses[0]);
-      const above = object.isPath ? 8 : (Math.hypot(field.robot_length, field.robot_width) / 2) * this.view.scale + 2;
+      const above = object.isPath || object.poses.length > MOST_ROBOTS ? 8 : (Math.hypot(field.robot_length, field.robot_width) / 2) * this.view.scale + 2;
       context.fillStyle = color(name);
       context.font = font(11);
       context.textAlign = "center";

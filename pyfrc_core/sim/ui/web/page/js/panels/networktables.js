@@ -39,6 +39,8 @@ export class NetworkTablesPanel extends Live {
 }
 
 function byName(one, other) {
+  const [first, second] = [one.name.startsWith("."), other.name.startsWith(".")];
+  if (first !== second) return first - second; // ".schema" and the like at the end
   return one.name.localeCompare(other.name, "en", { numeric: true });
 }
 
