@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from sim_robots import FILES
 from web_pages import served
+from websockets.exceptions import ConnectionClosed
 
 DASHBOARD = {
     "robot.py": """
@@ -301,6 +302,23 @@ def test_messages_that_make_no_sense_are_errors_and_nothing_more(make_project) -
         for text in ("", "nonsense", "[1]", "7", '"x"'):
             page.socket.send(text)
         page.run_for(0.1)
+
+
+def test_a_mistake_of_pyfrcs_own_is_printed_and_ends_one_connection(make_project, monkeypatch, capsys) -> None:
+    def broken(self: object, clients: int) -> dict[str, object]:
+        raise ZeroDivisionError("a mistake")
+
+    with served(make_project(FILES)) as server, server.page() as page:
+        with monkeypatch.context() as patched:
+            patched.setattr("pyfrc_core.sim.ui.web.updates.UpdateBuilder.update", broken)
+            page.command("enable")
+            with pytest.raises(ConnectionClosed) as closed:
+                page.until(lambda: False)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1011
+        with server.page() as again:
+            again.run_for(0.1)
+    assert "a mistake" in capsys.readouterr().err
 
 
 def test_a_flood_of_output_leaves_the_page_alive(make_project) -> None:

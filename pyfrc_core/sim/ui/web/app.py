@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import mimetypes
+import traceback
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
@@ -33,8 +34,10 @@ PAGE = Path(__file__).with_name("page")
 _TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 
 _NO_KEY = "This address lacks its key. Open the address that pyfrc sim has printed.\n"
-#: The code that closes a connection which sends something other than text.
-_UNSUPPORTED = 1003
+#: The codes that close a connection: it sent something other than text; pyfrc has a mistake.
+_UNSUPPORTED, _ERROR = 1003, 1011
+#: What sending and receiving raise when a page has gone; RuntimeError: it was closed meanwhile.
+_GONE = (WebSocketDisconnect, RuntimeError, OSError)
 
 
 class _PageFiles(StaticFiles):
@@ -121,23 +124,31 @@ class WebApp:
         )
         self._clients[number] = client
         self.wake()
-        sending = asyncio.create_task(client.send_updates())
+        tasks = {asyncio.create_task(client.send_updates()), asyncio.create_task(self._receive(socket, client))}
         try:
-            await self._receive(socket, client)
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            sending.cancel()
             self._clients.pop(number, None)
             self.wake()
-            with suppress(asyncio.CancelledError, Exception):
-                await sending
+            for task in tasks:
+                task.cancel()
+            for found in await asyncio.gather(*tasks, return_exceptions=True):
+                if isinstance(found, Exception) and not isinstance(found, _GONE):
+                    await self._report(socket, found)
+
+    @staticmethod
+    async def _report(socket: WebSocket, error: Exception) -> None:
+        """Print an error of pyfrc's own, and end the connection: the page connects again, and gets everything."""
+        traceback.print_exception(error)
+        with suppress(*_GONE):
+            await socket.close(_ERROR)
 
     @staticmethod
     async def _receive(socket: WebSocket, client: PageClient) -> None:
-        with suppress(WebSocketDisconnect, RuntimeError):  # RuntimeError: it was closed while a message was sent
-            while True:
-                try:
-                    text = await socket.receive_text()
-                except KeyError:  # bytes
-                    await socket.close(_UNSUPPORTED)
-                    return
-                await client.receive(text)
+        while True:
+            try:
+                text = await socket.receive_text()
+            except KeyError:  # bytes
+                await socket.close(_UNSUPPORTED)
+                return
+            await client.receive(text)
