@@ -49,7 +49,7 @@ class Server:
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._socket.bind((address, options.port))
-            self._socket.listen(64)  # who comes before the loop runs waits, and is not refused
+            self._socket.listen(64)  # a browser that comes before the loop runs is not refused
         except OSError as wrong:
             self._socket.close()
             raise UsageError(
@@ -86,7 +86,7 @@ class Server:
             log_config=None,
             log_level="critical",  # the terminal is the robot's
             access_log=False,
-            proxy_headers=False,  # anybody can send them
+            proxy_headers=False,  # any client can send them
             server_header=False,
             ws_max_size=_MOST_MESSAGE,
             ws_per_message_deflate=False,  # takes longer than sending it on the same computer
