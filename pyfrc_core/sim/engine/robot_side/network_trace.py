@@ -66,10 +66,15 @@ class NetworkTrace:
         self.look(now)
         self._lines.clear()
 
-    def take_lines(self) -> tuple[str, ...]:
-        """Return the lines since the last call."""
-        lines, self._lines = tuple(self._lines), []
-        return lines
+    def report(self, now: float, is_base: bool, is_known: bool) -> tuple[dict[str, Any], tuple[str, ...]]:
+        """Return all values, where the report is a base, and the lines since the last report.
+
+        :param is_known: whether the changes are those of a replay, which need no lines
+        """
+        self.look(now)
+        lines = () if is_known else tuple(self._lines)
+        self._lines.clear()
+        return dict(self.values) if is_base else {}, lines
 
     def _plain(self, name: str, type_name: str, value: ntcore.Value) -> Any:
         found = value.value()

@@ -316,7 +316,8 @@ class Session:
         steps = () if self._recorder is None else self._recorder.steps_from(max(0, self._steps_sent - 2))
         overruns, worst_us = run.overruns_until_now()
         drawings, vision = self._renderer.drawings(), self._targets_seen()
-        network = self._look_at_network(base is not None)
+        network = self._network
+        tables = ({}, ()) if network is None else network.report(run.clock.now, base is not None, not self._tracing)
         update = Update(
             time_us=run.clock.now_us - self._beyond_us,
             mode=modes.mode_name(),
@@ -334,8 +335,8 @@ class Session:
             robot=self._robot_pose(),
             base=base,
             lines=tuple(self._lines),
-            network_base=network[0],
-            network_lines=network[1],
+            network_base=tables[0],
+            network_lines=tables[1],
             trail=tuple(self._path.points),
             distance=self._path.distance,
             mode_seconds={mode: packets * PACKET_US / 1_000_000 for mode, packets in self._mode_packets.items()},
@@ -355,16 +356,6 @@ class Session:
         self._lines.clear()
         self._path.points.clear()
         self._notes.clear()
-
-    def _look_at_network(self, is_base: bool) -> tuple[dict[str, Any], tuple[str, ...]]:
-        """Return all values of NetworkTables for a base, and their changes since the last update."""
-        if self._network is None:
-            return {}, ()
-        self._network.look(self._run.clock.now)
-        lines = self._network.take_lines()
-        if is_base and not self._tracing:  # the first update after a replay: its changes are those of the past
-            return dict(self._network.values), ()
-        return dict(self._network.values) if is_base else {}, lines
 
     @property
     def _controller(self) -> PhysicsInterface | None:
