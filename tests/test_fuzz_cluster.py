@@ -54,13 +54,13 @@ ROBOT = """
                 os.kill(number, signal.SIGKILL)
 
         def teleopPeriodic(self):
-            if self.pad.getBButton() and self.pad.getXButton():
-                raise ValueError("chord")
+            if self.pad.getBButton():
+                raise ValueError("button")
             if self.pad.getPOV() == 315:
                 open(os.path.join(os.path.dirname(__file__), "missing.txt"))
     """
 
-CAMPAIGN = ("--seed", "1", "--runs", "24")
+CAMPAIGN = ("--seed", "1", "--runs", "8")
 
 
 class Cluster:
