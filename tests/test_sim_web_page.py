@@ -16,6 +16,7 @@ PADS = """
     window.plug = (axes, buttons) => {
       window.fakePads = [{
         id: "Test Pad (STANDARD GAMEPAD Vendor: 1234 Product: 5678)", index: 0, connected: true, mapping: "standard",
+        vibrationActuator: { playEffect: async (kind, effect) => { window.rumbled = effect; } },
         axes, buttons: Array.from({ length: 17 }, (_, index) => ({
           pressed: buttons.includes(index), value: buttons.includes(index) ? 1 : 0, touched: false })),
       }];
@@ -271,6 +272,8 @@ def test_a_gamepad_moves_a_joystick_until_it_is_unplugged(browser, server) -> No
         page.get_by_label("Gamepad of joystick 2").select_option(label="Test Pad")
         person.until(lambda: person.value("joysticks[2].axes")[1] == pytest.approx(-0.75, abs=0.01))
         person.until(lambda: person.value("joysticks[0].axes")[1] == 0)
+        person.simulation.write({"joysticks[2].left_rumble": 65535})
+        page.wait_for_function("() => window.rumbled && window.rumbled.strongMagnitude === 1")
         page.evaluate("window.fakePads = []")
         person.until(lambda: person.value("joysticks[2].axes")[1] == 0)
 

@@ -157,6 +157,54 @@ def test_driving_on_from_the_past_keeps_the_rest_as_a_branch(person: Seen) -> No
     assert end > 1.0
 
 
+def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
+    page = person.page
+    drive(person)
+    timeline = page.get_by_role("slider", name="Timeline")
+    box = timeline.bounding_box()
+    # The timeline has 10 s at least, between two edges of 8 pixels.
+    whole = max(person.simulation.status.length, 10)
+
+    def x(seconds: float) -> float:
+        return 8 + seconds / whole * (box["width"] - 16)
+
+    page.mouse.move(box["x"] + x(0.2), box["y"] + 14)
+    page.mouse.down()
+    page.mouse.move(box["x"] + x(0.5), box["y"] + 14, steps=5)
+    page.mouse.up()
+    page.locator(".clock", has_text="0:00.5").wait_for()
+    page.get_by_role("button", name="Mark", exact=True).click()
+    page.get_by_label("A mark at").fill("<i>here</i>")
+    page.keyboard.press("Enter")
+    timeline.hover(position={"x": x(0.5), "y": 14})
+    page.locator(".timeline-tip", has_text="<i>here</i>").wait_for()
+    page.keyboard.press("Tab")  # the keys reach what the mouse reaches
+    person.choose("Restart, save, end", "Save the recording")
+    page.get_by_label("Save the recording").fill("kept/drive.jsonl")
+    page.keyboard.press("Enter")
+    page.get_by_text("Saved kept/drive.jsonl").wait_for()
+    assert (person.simulation.project.root / "kept/drive.jsonl").is_file()
+    page.get_by_label("Hide this message").click()
+    page.get_by_text("Saved kept/drive.jsonl").wait_for(state="detached")
+
+
+def test_every_value_can_be_searched_and_plotted_by_keys_alone(person: Seen) -> None:
+    page = person.page
+    person.tab("Plot 1").focus()
+    page.keyboard.press("Enter")
+    picker = person.button("Add value")
+    for search in ("joystick 0 axis 1", "robot angle", "mode"):
+        picker.focus()
+        page.keyboard.press("Enter")
+        page.get_by_label("Search all values").fill(search)
+        page.keyboard.press("Enter")
+        page.get_by_label("Search all values").wait_for(state="detached")
+    page.locator(".curve-name", has_text="Mode").wait_for()
+    assert plotted(person) == ["Joystick 0 axis 1", "Robot angle, rad", "Mode"]
+    page.locator("[data-panel='plot:1'] canvas.plot-bands").wait_for()
+    page.get_by_label("Axis of sim.mode").wait_for(state="detached")  # a text has none
+
+
 def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:
     page = person.page
     person.button("Enable").click()

@@ -10,6 +10,7 @@ import { Live, createRef, html } from "./view.js";
 const MODE_COLORS = { autonomous: "mode-auto", teleop: "mode-teleop", test: "mode-test" };
 const MARK_COLORS = { failure: "red", error: "red", warning: "amber", overrun: "amber", press: "accent", own: "own", run: "muted" };
 const NEAR = 5; // pixels between the pointer and a mark
+const MOST_NAMED = 5; // marks beside the pointer
 const HEIGHT = 46;
 const EDGE = 8; // pixels at both ends
 const SHORTEST = 10; // seconds on the timeline at least
@@ -41,8 +42,13 @@ export class Timeline extends Live {
         onPointerDown=${this.begin} onPointerMove=${this.move} onPointerUp=${this.end} onPointerLeave=${this.leave} onKeyDown=${this.key}>
       <canvas ref=${this.canvas}></canvas>
       ${hover && html`<div class="timeline-tip" style=${{ left: `${hover.left}px` }}>
-        <b>${clock(hover.t)}</b>${hover.marks.map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
+        <b>${clock(hover.t)}</b>${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
     </div>`;
+  }
+
+  marksNear(t) {
+    const reach = (NEAR / this.width) * this.whole;
+    return model.marks.filter((mark) => Math.abs(mark.t - t) <= reach).slice(-MOST_NAMED);
   }
 
   // -- drawing
@@ -164,9 +170,7 @@ export class Timeline extends Live {
     if (this.dragging) look(t);
     const box = this.canvas.current.getBoundingClientRect();
     const left = Math.min(Math.max(event.clientX - box.left, 60), box.width - 60);
-    const reach = (NEAR / box.width) * this.whole;
-    const marks = model.marks.filter((mark) => Math.abs(mark.t - t) <= reach).slice(-5);
-    this.setState({ hover: { t, left, marks } });
+    this.setState({ hover: { t, left } });
   };
 
   end = (event) => {
