@@ -92,6 +92,12 @@ ROBOT = {
                 self.right.set(-forward + turn)
                 if self.stick.getRawButton(5):
                     self.left.set(1 / 0)
+                if self.stick.getRawButton(6):
+                    while True:
+                        pass
+                if self.stick.getRawButton(7):
+                    for number in range(300):
+                        print("flood", number)
 
             def disabledInit(self):
                 self.left.set(0)

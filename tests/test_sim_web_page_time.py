@@ -226,6 +226,26 @@ def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:
     assert person.simulation.snapshot.time < failed_at + 60
 
 
+def test_a_robot_that_floods_the_console_or_hangs_leaves_the_page_alive(person: Seen) -> None:
+    page = person.page
+    person.button("Enable").click()
+    page.keyboard.down("7")
+    page.locator(".line-text", has_text="flood").first.wait_for()
+    page.get_by_label("Search the output").fill("flood 299")
+    page.locator(".line-text", has_text="flood 299").first.wait_for()
+    page.keyboard.press("Enter")  # in the box: it does not disable the robot
+    assert person.simulation.snapshot.enabled
+    page.keyboard.up("7")
+    page.locator(".field-canvas").click(position={"x": 5, "y": 5})
+    page.keyboard.down("6")
+    person.state("Not responding")
+    page.keyboard.up("6")
+    person.tab("NetworkTables").click()
+    page.get_by_label("Search NetworkTables").wait_for()
+    page.keyboard.press("F9")
+    person.state("Teleoperated disabled")
+
+
 def test_the_console_is_filtered_and_searched(person: Seen) -> None:
     page = person.page
     page.locator(".line.warning", has_text="this is a warning").first.wait_for()

@@ -12,15 +12,32 @@ export const html = htm.bind(h);
 // A component that renders again when one of these parts of the model has changed: `parts = ["station", "status"]`.
 export class Live extends Component {
   parts = [];
+  interval = 0; // milliseconds between two renderings at least, for what changes faster than anyone can read
+  #renderedAt = 0;
+  #timer = null;
 
   componentDidMount() {
     this.stopListening = model.listen((changed) => {
-      if (this.parts.some((part) => changed.has(part))) this.setState({});
+      if (this.parts.some((part) => changed.has(part))) this.#renderSoon();
     });
   }
 
   componentWillUnmount() {
     this.stopListening();
+    clearTimeout(this.#timer);
+  }
+
+  #renderSoon() {
+    if (this.#timer !== null) return;
+    const wait = this.interval && this.#renderedAt + this.interval - performance.now();
+    if (wait <= 0) this.#renderNow();
+    else this.#timer = setTimeout(() => this.#renderNow(), wait);
+  }
+
+  #renderNow() {
+    this.#timer = null;
+    this.#renderedAt = performance.now();
+    this.setState({});
   }
 }
 

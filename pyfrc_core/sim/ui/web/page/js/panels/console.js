@@ -7,10 +7,11 @@ import { SourceLink } from "../source.js";
 import { Icon, Live, classes, createRef, html } from "../view.js";
 
 const LEVELS = [["info", "Output"], ["warning", "Warnings"], ["error", "Errors"], ["pyfrc", "pyfrc"]];
-const MOST_SHOWN = 400;
+const MOST_SHOWN = 150;
 
 export class ConsolePanel extends Live {
   parts = ["console", "shown", "settings", "hello"];
+  interval = 150;
   state = { search: "", shown: MOST_SHOWN };
   list = createRef();
   follow = true;
