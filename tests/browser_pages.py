@@ -92,10 +92,10 @@ ROBOT = {
                 self.right.set(-forward + turn)
                 if self.stick.getRawButton(5):
                     self.left.set(1 / 0)
-                if self.stick.getRawButton(6):
+                if self.stick.getRawButton(8):
                     while True:
                         pass
-                if self.stick.getRawButton(7):
+                if self.stick.getRawButton(9):
                     for number in range(300):
                         print("flood", number)
 
