@@ -337,7 +337,8 @@ def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
                 assert whole == list(size), layout
                 outside = page.locator(".station button, .timebar button").evaluate_all(
                     "all => all.map((each) => [each.textContent, each.getBoundingClientRect()])"
-                    ".filter(([, box]) => box.right > innerWidth + 1 || box.bottom > innerHeight + 1).map(([text]) => text)"
+                    ".filter(([, box]) => box.right > innerWidth + 1 || box.bottom > innerHeight + 1)"
+                    ".map(([text]) => text)"
                 )
                 assert outside == [], (size, layout)
         assert page.evaluate(CONTRASTS) == []
