@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 
 import pytest
 from browser_pages import ROBOT, Seen, missing_browser, open_browser, page_of, served
+from sim_robots import PATIENCE
 from skips import require
 
 require("the page of pyfrc sim in a browser", missing_browser())
@@ -107,6 +109,51 @@ def test_values_are_plotted_zoomed_and_saved(person: Seen) -> None:
     page.reload()
     page.locator(".curve-name", has_text="left motor").wait_for()
     assert plotted(person) == ["PWM 0 left motor"]
+
+
+#: A series as the page has it, and as the history of the server has it.
+SERIES = """async (path) => {
+  const { watch } = await import("/static/js/series.js");
+  const { ask } = await import("/static/js/connection.js");
+  const answer = await ask("plot", { paths: [path], from: 0, to: 1e6, points: 20000, branch: null });
+  const rounded = ({ t, v }) => t.map((time, index) => `${time.toFixed(2)} ${v[index].toFixed(3)}`);
+  return [rounded(watch(path)), rounded(answer.series[path])];
+}"""
+
+
+def same_series(person: Seen, path: str) -> None:
+    """Wait until the page has what the server has, without holes."""
+    person.page.get_by_role("button", name="Run", exact=True).first.wait_for()
+
+    def differs() -> list[str]:
+        shown, kept = person.page.evaluate(SERIES, path)
+        return sorted(set(shown) ^ set(kept))
+
+    ends = time.monotonic() + PATIENCE
+    while differs() and time.monotonic() < ends:  # the last samples are on their way
+        person.page.evaluate("new Promise(requestAnimationFrame)")
+    assert differs() == []
+
+
+def test_curves_have_no_holes_when_they_are_added_or_a_run_goes_on(person: Seen) -> None:
+    page = person.page
+    add = "path => import('/static/js/plotting.js').then(({ addToPlot }) => addToPlot(path, 'plot:1'))"
+    person.button("Enable").click()
+    page.keyboard.down("w")
+    person.until(lambda: person.value("pwm[0].value") == 1)
+    page.evaluate(add, "sim.pose[0]")
+    since = person.simulation.snapshot.time
+    person.until(lambda: person.simulation.snapshot.time > since + 0.3)
+    page.evaluate(add, "pwm[0].value")
+    person.until(lambda: person.simulation.snapshot.time > since + 0.6)
+    page.keyboard.press("F5")
+    same_series(person, "sim.pose[0]")
+    person.simulation.rewind(since)
+    person.until(lambda: person.simulation.status.state == "paused" and person.simulation.snapshot.time <= since + 0.02)
+    page.keyboard.press("F5")
+    person.until(lambda: person.simulation.snapshot.time > since + 0.4)
+    page.keyboard.press("F5")
+    same_series(person, "sim.pose[0]")
 
 
 def test_looking_back_shows_the_past_everywhere_and_changes_nothing(person: Seen) -> None:

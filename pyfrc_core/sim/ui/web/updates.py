@@ -46,9 +46,10 @@ class UpdateBuilder:
         self._position: Position | None = None
 
     def subscribe(self, paths: Iterable[str]) -> None:
-        """Send every change of these values from now on."""
+        """Send every change of these values from now on; of values that are sent already, without a hole."""
+        if not self._subscribed or self._position is None:
+            self._position = self._collector.runs.position()
         self._subscribed = tuple(paths)
-        self._position = self._collector.runs.position()
 
     def update(self, clients: int) -> dict[str, Any]:
         """Return what has changed, empty when nothing has."""

@@ -5,6 +5,8 @@ import { model } from "./model.js";
 
 const FIRST_POINTS = 4000; // of the history, when a path begins to be watched
 
+const LATEST = 1e9; // seconds: whatever the newest moment is when the server answers
+
 const series = new Map(); // path: { kind, t: [], v: [], users, loaded }
 
 // Watch a path, and return its series, which grows. Each `watch` needs an `unwatch`.
@@ -34,9 +36,8 @@ function subscribe() {
 }
 
 async function load(one) {
-  const to = Math.max(model.status.length ?? 0, model.t);
   try {
-    const answer = await ask("plot", { paths: [one.path], from: 0, to, points: FIRST_POINTS, branch: null });
+    const answer = await ask("plot", { paths: [one.path], from: 0, to: LATEST, points: FIRST_POINTS, branch: null });
     const past = answer.series[one.path];
     if (!past) return;
     // What came while the answer was on its way follows it.
@@ -78,6 +79,7 @@ function forgetAfter(t) {
     const end = indexAfter(one.t, t);
     one.t.length = end;
     one.v.length = end;
+    load(one); // what came between that moment and this message
   }
   model.announce("series");
 }
