@@ -19,8 +19,8 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 @project_options
 @click.option(
     "--ui",
-    type=click.Choice(["tk", "wpilib", "none"]),
-    help="The window: pyfrc's, or WPILib's own; or none. Default: tk, where there is a display.",
+    type=click.Choice(["tk", "web", "wpilib", "none"]),
+    help="pyfrc's window, a page in the browser, WPILib's window, or none. Default: tk, where there is a display.",
 )
 @click.option(
     "--mode",
@@ -61,6 +61,19 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
     multiple=True,
     metavar="NAME",
     help="Load one of WPILib's simulation extensions: ds-socket, ws-server, ws-client.",
+)
+@click.option(
+    "--share",
+    type=click.Choice(["view", "drive"]),
+    is_flag=False,
+    flag_value="view",
+    help="With --ui web: serve the page to the network, too, to look only or to drive.",
+)
+@click.option(
+    "--port",
+    type=click.IntRange(1, 65535),
+    metavar="PORT",
+    help="With --ui web: serve the page here. Default: any free port.",
 )
 def command(directory: Path | None, main: Path | None, robot_class: str | None, **request: Any) -> None:
     """Drive the robot on the desk: simulate it, with its physics, in a window or without one.

@@ -26,6 +26,7 @@ _SYSTEM_PROGRAMS = ("/usr/local/sbin", "/usr/sbin", "/sbin")
 _PACKAGES = {
     "apt-get install": {
         "Xvfb": "xvfb",
+        "chromium": "chromium",
         "git": "git",
         "ip": "iproute2",
         "ssh-keygen": "openssh-client",
@@ -35,6 +36,7 @@ _PACKAGES = {
     },
     "dnf install": {
         "Xvfb": "xorg-x11-server-Xvfb",
+        "chromium": "chromium",
         "git": "git",
         "ip": "iproute",
         "ssh-keygen": "openssh-clients",
@@ -44,6 +46,7 @@ _PACKAGES = {
     },
     "pacman -S": {
         "Xvfb": "xorg-server-xvfb",
+        "chromium": "chromium",
         "git": "git",
         "ip": "iproute2",
         "ssh-keygen": "openssh",

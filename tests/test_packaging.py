@@ -27,6 +27,8 @@ def test_the_wheel_carries_the_packages_their_types_and_the_templates(tmp_path: 
     for file in (ROOT / "templates").rglob("*"):
         if file.is_file() and "__pycache__" not in file.parts:
             assert f"pyfrc_cli/templates/{file.relative_to(ROOT / 'templates').as_posix()}" in names
+    page = ROOT / "pyfrc_core" / "sim" / "ui" / "web" / "page"
+    assert {file.relative_to(ROOT).as_posix() for file in page.rglob("*") if file.is_file()} <= names
     assert not [name for name in names if name.startswith(("tests/", "templates/"))]
 
 
@@ -40,6 +42,7 @@ def test_the_wheel_carries_the_packages_their_types_and_the_templates(tmp_path: 
         ["add-tests", "--help"],
         ["config", "--help"],
         ["create-physics", "--help"],
+        ["sim", "--help"],
         ["--version"],
     ],
 )
@@ -53,6 +56,7 @@ try:
 except SystemExit:
     pass
 big = {{"wpilib", "hal", "pytest", "pydantic", "coverage", "numpy", "hypothesis", "commands2"}}
+big |= {{"starlette", "uvicorn", "websockets", "asyncio", "tkinter"}}
 assert not big & set(sys.modules), big & set(sys.modules)
 """
     python("-c", code)

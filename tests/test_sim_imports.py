@@ -17,6 +17,7 @@ PROGRAM = """
     from pyfrc_core.sim.simulate import SimRequest, simulate
 
     code = simulate(find_project(Path.cwd()), SimRequest(ui="none", seconds=0.5, quiet=True), print)
+    import pyfrc_core.sim.ui.web
     import pyfrc_core.sim.ui.wpilib
     if importlib.util.find_spec("tkinter") is not None:
         import pyfrc_core.sim.ui.tk

@@ -8,6 +8,7 @@ from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Literal
 
 from ..errors import UsageError
 from ..interruption import ending_like_ctrl_c
@@ -32,6 +33,8 @@ class SimRequest:
     :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
     :param nt_port: None: the usual port, or none when unattended; 0: none
     :param quiet: print only the robot's output and what is wrong
+    :param share: what clients on the network may do with a page; None: they are not served
+    :param port: where to serve a page; None: at any free port
     """
 
     ui: str | None = None
@@ -49,6 +52,8 @@ class SimRequest:
     nt_port: int | None = None
     extensions: tuple[str, ...] = ()
     quiet: bool = False
+    share: Literal["view", "drive"] | None = None
+    port: int | None = None
 
 
 def simulate(project: Project, request: SimRequest, say: Callable[[str], object]) -> int:
@@ -64,7 +69,9 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     kind = FRONT_ENDS[ui]
     if request.mode is not None and kind.interactive:
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
-    front_end = make_front_end(ui, Wishes(say, request.mode, request.seconds, request.watch, request.quiet))
+    if not kind.is_served and (request.share is not None or request.port is not None):
+        raise UsageError("--share and --port are for the simulator in a browser", remedy="Add --ui web.")
+    front_end = make_front_end(ui, _wishes(request, say))
     ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script))
     unattended = not kind.interactive and ends_by_itself
     port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
@@ -79,6 +86,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         wpilog=request.wpilog,
         extensions=(*request.extensions, *kind.extensions),
         start_position=request.start_position,
+        network_values=kind.shows_network,
     )
     simulation = Simulation(project, options)
     files = OutputFiles(request.record, request.wpilog, request.picture)
@@ -102,6 +110,18 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         for file in () if request.quiet else written:
             say(f"wrote {file}\n")
     return code
+
+
+def _wishes(request: SimRequest, say: Callable[[str], object]) -> Wishes:
+    return Wishes(
+        say,
+        request.mode,
+        request.seconds,
+        watching=request.watch,
+        quiet=request.quiet,
+        share=request.share,
+        port=request.port or 0,
+    )
 
 
 def _echo(say: Callable[[str], object], text: str) -> None:

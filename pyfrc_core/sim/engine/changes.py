@@ -11,12 +11,16 @@ import json
 import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import islice
 from types import MappingProxyType
 from typing import Any
 
 from ...runtime.trace_lines import REAL_TIME
 from .history import History
+
+#: The types of values that cannot change, and have no parts.
+_PLAIN = frozenset({float, int, bool, str})
 
 
 @dataclass(frozen=True)
@@ -47,10 +51,12 @@ class Change:
     gone: tuple[str, ...] = ()
 
 
+@lru_cache(maxsize=64)  # the snapshot and each reader need the same lines, at about the same time
 def change_of(line: str) -> Change:
     """Return the change that a line of a trace describes."""
     change = json.loads(line)
-    values = {path: frozen(value) for path, value in (change["set"] | change.get(REAL_TIME, {})).items()}
+    found = change["set"] | change.get(REAL_TIME, {})
+    values = {path: value if type(value) in _PLAIN else frozen(value) for path, value in found.items()}
     return Change(change["t"], MappingProxyType(values), tuple(change.get("gone", ())))
 
 

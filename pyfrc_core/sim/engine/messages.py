@@ -41,6 +41,7 @@ class Job:
     :param wpilog: where to write WPILib's data log
     :param extensions: WPILib's simulation extensions to load, by name
     :param tags: the field's tags, if they are known already
+    :param network_values: whether to report the values of NetworkTables
     """
 
     project: Project
@@ -54,6 +55,7 @@ class Job:
     wpilog: Path | None = None
     extensions: tuple[str, ...] = ()
     tags: tuple[Tag, ...] | None = None
+    network_values: bool = False
 
 
 @dataclass(frozen=True)
@@ -81,6 +83,8 @@ class Update:
     :param recorded: how many of them are in the recorded steps; a command in a pause is recorded when time goes on
     :param base: all values of `hal_data`, where `lines` do not continue those sent before
     :param lines: the new lines of the trace (see `pyfrc_core.runtime.trace`)
+    :param network_base: all values of NetworkTables, together with `base`; see `robot_side.network_trace`
+    :param network_lines: the new changes of NetworkTables, in the form of `lines`
     :param trail: the robot's places since the last update
     :param distance: the whole distance that it has driven, in feet
     :param mode_seconds: the time that it has been in each mode
@@ -104,6 +108,8 @@ class Update:
     robot: Pose | None
     base: Mapping[str, Any] | None
     lines: tuple[str, ...]
+    network_base: Mapping[str, Any]
+    network_lines: tuple[str, ...]
     trail: tuple[Point, ...]
     distance: float
     mode_seconds: Mapping[str, float]

@@ -28,6 +28,7 @@ class SimOptions:
     :param extensions: WPILib's simulation extensions to load, by name
     :param start_position: where the robot starts, one of the field's `starts`
     :param fork: False starts each robot in a new interpreter, as on systems where processes cannot be forked
+    :param network_values: whether to report the values of NetworkTables, for `Simulation.network_cursor`
     """
 
     speed: float = 1.0
@@ -41,6 +42,7 @@ class SimOptions:
     extensions: tuple[str, ...] = ()
     start_position: str | None = None
     fork: bool | None = None
+    network_values: bool = False
 
     def check(self) -> None:
         """Check that these options are possible together.

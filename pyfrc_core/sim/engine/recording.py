@@ -15,6 +15,7 @@ from pathlib import Path
 from ...runtime.robot_time import to_us
 from ...runtime.scripts.script import InputScript, Step, trace_beside
 from ...runtime.trace import FORMAT, hashed_part
+from ...runtime.trace_lines import line_time
 from ...text_files import write_whole
 from .history import History, entries
 from .messages import StationState, Update
@@ -37,6 +38,7 @@ class Recording:
         self._changing: tuple[Step, ...] = ()
         self._changing_from = 0
         self._lines: History[str] = History()
+        self._network_lines: History[str] = History()
         self._stations: History[StationState] = History()
         #: The end of the recording, in microseconds of robot time.
         self.length_us = 0
@@ -48,7 +50,9 @@ class Recording:
             self._steps.append(step.at_us, step)
         self._changing, self._changing_from = update.steps, update.steps_from
         for line in update.lines:
-            self._lines.append(to_us(json.loads(line)["t"]), line)
+            self._lines.append(to_us(line_time(line)), line)
+        for line in update.network_lines:
+            self._network_lines.append(to_us(line_time(line)), line)
         if self._stations.last != update.station:
             self._stations.append(update.time_us, update.station)
 
@@ -84,6 +88,7 @@ class Recording:
         part = Recording(self._script_until(time_us), self._known)
         part.length_us = time_us
         part._lines = self._lines.until(time_us)
+        part._network_lines = self._network_lines.until(time_us)
         part._stations = self._stations.until(time_us)
         return part
 
@@ -103,6 +108,11 @@ class Recording:
     def lines(self) -> History[str]:
         """The trace until now: one line for each packet that changed something."""
         return self._lines
+
+    @property
+    def network_lines(self) -> History[str]:
+        """The changes of NetworkTables until now, if they are reported."""
+        return self._network_lines
 
     @property
     def station(self) -> StationState:

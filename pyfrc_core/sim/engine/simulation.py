@@ -16,7 +16,8 @@ from ...processes.crash_report import describe_exit, moment_of
 from ...project import Project
 from ...runtime.robot_time import PACKET_US, to_us
 from ...runtime.scripts.script import InputScript, Step
-from .changes import ChangeCursor, RunChanges
+from .change_streams import ChangeStreams
+from .changes import ChangeCursor
 from .commands import Command
 from .controls import Controls
 from .field import field_of, robot_at, start_named
@@ -69,7 +70,7 @@ class Simulation(Controls):
         self._sending = threading.RLock()
         #: The moment that the robot's process replays to before it goes on.
         self._forward_us = 0
-        self._run = RunChanges(0, self._recording.lines)
+        self._streams = ChangeStreams(self._recording, self._changed, self.options.network_values)
         self._output = OutputLog()
         self._taken = self._output.cursor()
         #: Called with all that robots print, and with their tracebacks, from this object's threads.
@@ -116,8 +117,12 @@ class Simulation(Controls):
         :raises UsageError: when this simulation is not recorded
         """
         self._check_recorded()
-        with self._changed:
-            return ChangeCursor(self._run, self._changed)
+        return self._streams.cursor()
+
+    def network_cursor(self) -> ChangeCursor:
+        """Return a reader of all changes of NetworkTables, as `change_cursor` does of `hal_data`."""
+        self._check_recorded()
+        return self._streams.network_cursor()
 
     def take_output(self) -> str:
         """Return what the robot has printed since the last call, by whatever caller. `output_cursor` is for several."""
@@ -269,6 +274,7 @@ class Simulation(Controls):
             wpilog=options.wpilog,
             extensions=options.extensions,
             tags=self._tags,
+            network_values=options.network_values,
         )
         with self._sending, self._changed:
             self._recording = recording
@@ -279,8 +285,7 @@ class Simulation(Controls):
             starts = self._status.starts + 1
             self._status = replace(self._status, state="starting", failure=None, note="", starts=starts)
             if options.recording:
-                self._run.next = RunChanges(starts, recording.lines)
-                self._run = self._run.next
+                self._streams.begin_run(starts, recording)
             self._launch = self._processes.launch(job)
             self._changed.notify_all()
 
@@ -360,10 +365,7 @@ class Simulation(Controls):
     def _take_in(self, update: Update) -> None:
         if self.options.recording:
             self._recording.add(update)
-            if update.base is not None:
-                # Where changes came before the base, they begin with a change that holds all values.
-                time, base = (0.0, {}) if update.lines else (update.time_us / 1_000_000, update.base)
-                self._run.begin(time, base)
+            self._streams.begin(update)
         else:
             self._recording.length_us = update.time_us
         self._time = update.time_state

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Literal
 
 from ...display import GET_TKINTER, has_display, has_tkinter
 from ...errors import UsageError
@@ -24,6 +25,8 @@ class Wishes:
     :param seconds: for how long, in robot time
     :param watching: whether saved files bring new code
     :param quiet: print only the robot's output and what is wrong
+    :param share: what clients on the network may do, if they are served
+    :param port: where to serve a page; 0: at any free port
     """
 
     say: Callable[[str], object]
@@ -31,6 +34,8 @@ class Wishes:
     seconds: float | None = None
     watching: bool = False
     quiet: bool = False
+    share: Literal["view", "drive"] | None = None
+    port: int = 0
 
 
 @dataclass(frozen=True)
@@ -43,6 +48,8 @@ class FrontEndKind:
     :param opens_display: whether this process opens the window, and ends when the display goes away
     :param prints: whether it prints the robot's output to the terminal itself; otherwise the command does
     :param extensions: the simulation extensions that it needs in the robot's process
+    :param shows_network: whether it shows the values of NetworkTables
+    :param is_served: whether it is a page, which can be shared with the network
     """
 
     make: Callable[[Wishes], FrontEnd]
@@ -51,6 +58,8 @@ class FrontEndKind:
     opens_display: bool = False
     prints: bool = False
     extensions: tuple[str, ...] = ()
+    shows_network: bool = False
+    is_served: bool = False
 
 
 def _make_tk(wishes: Wishes) -> FrontEnd:
@@ -61,6 +70,12 @@ def _make_tk(wishes: Wishes) -> FrontEnd:
             raise
         raise UsageError("--ui tk needs tkinter, which this Python does not have", remedy=GET_TKINTER) from None
     return TkFrontEnd()
+
+
+def _make_web(wishes: Wishes) -> FrontEnd:
+    from .web import WebFrontEnd, WebOptions
+
+    return WebFrontEnd(wishes.say, WebOptions(wishes.share, wishes.port))
 
 
 def _make_wpilib(wishes: Wishes) -> FrontEnd:
@@ -75,6 +90,7 @@ def _make_headless(wishes: Wishes) -> FrontEnd:
 
 FRONT_ENDS: dict[str, FrontEndKind] = {
     "tk": FrontEndKind(_make_tk, needs_display=True, opens_display=True),
+    "web": FrontEndKind(_make_web, shows_network=True, is_served=True),
     "wpilib": FrontEndKind(_make_wpilib, needs_display=True, prints=True, extensions=(WINDOW,)),
     "none": FrontEndKind(_make_headless, interactive=False, prints=True),
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
@@ -23,9 +22,11 @@ from ....runtime.scripts.targets import Targets
 from ....runtime.trace import Trace
 from ..commands import ROBOT_ON_FIELD, ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
 from ..messages import Job, Ready, Update
-from ..scene import Point, Pose, Target
+from ..scene import Pose, Target
 from ..time_state import TimeState
+from .driven_path import DrivenPath
 from .network import Choosers, Served
+from .network_trace import NetworkTrace
 from .pace import Pace, wall
 from .station import Station
 from .user_renderer import UserRenderer
@@ -35,8 +36,8 @@ from .user_renderer import UserRenderer
 _UPDATE_SECONDS, _UNRECORDED_UPDATE_SECONDS = 0.02, 0.1
 #: How long to wait for commands in a pause before reading what dashboards have written, in wall seconds.
 _LOOK_SECONDS = 0.05
-#: The robot's place is read at this interval, in packets; the trail gets a point after this distance, in feet.
-_FOLLOW_PACKETS, _TRAIL_STEP = 2, 0.05
+#: The robot's place is read at this interval, in packets.
+_FOLLOW_PACKETS = 2
 #: The longest run between two looks at commands at full speed, in packets and in wall seconds.
 _MOST_PACKETS, _CHUNK_SECONDS = 50, 0.01
 #: A `robotInit` that waits longer than this is shown while it waits.
@@ -74,13 +75,11 @@ class Session:
         self._lines = _Lines()
         self._trace = Trace(run.hal_data, self._lines)  # type: ignore[arg-type]
         self._lines.clear()  # its header
+        self._network = NetworkTrace(self._robot_pose) if job.network_values else None
         self._renderer = UserRenderer(self._robot_pose)
         self._drawings: tuple[Any, ...] = ()
         self._vision: tuple[Target, ...] = ()
-        self._trail: list[Point] = []
-        self._trail_end: Point = (math.nan, math.nan)
-        self._at: Point | None = None
-        self._distance = 0.0
+        self._path = DrivenPath()
         self._mode_packets: Counter[str] = Counter()
         self._notes: list[str] = []
         self._tracing = False
@@ -317,6 +316,8 @@ class Session:
         steps = () if self._recorder is None else self._recorder.steps_from(max(0, self._steps_sent - 2))
         overruns, worst_us = run.overruns_until_now()
         drawings, vision = self._renderer.drawings(), self._targets_seen()
+        network = self._network
+        tables = ({}, ()) if network is None else network.report(run.clock.now, base is not None, not self._tracing)
         update = Update(
             time_us=run.clock.now_us - self._beyond_us,
             mode=modes.mode_name(),
@@ -334,8 +335,10 @@ class Session:
             robot=self._robot_pose(),
             base=base,
             lines=tuple(self._lines),
-            trail=tuple(self._trail),
-            distance=self._distance,
+            network_base=tables[0],
+            network_lines=tables[1],
+            trail=tuple(self._path.points),
+            distance=self._path.distance,
             mode_seconds={mode: packets * PACKET_US / 1_000_000 for mode, packets in self._mode_packets.items()},
             steps_from=max(0, self._steps_sent - 2),
             steps=steps,
@@ -351,7 +354,7 @@ class Session:
         if self._recorder is not None:
             self._recorder.forget_before(update.steps_from)
         self._lines.clear()
-        self._trail.clear()
+        self._path.points.clear()
         self._notes.clear()
 
     @property
@@ -370,6 +373,8 @@ class Session:
         self._pace.took(wall() - self._packet_began)
         if self._tracing:
             self._trace.look(now)
+            if self._network is not None:
+                self._network.look(now)
 
     def _follow(self) -> None:
         """Note the robot's place and mode. Called for every second packet."""
@@ -378,20 +383,13 @@ class Session:
         self._mode_packets[modes.mode_name() if modes.is_attached() else "disabled"] += _FOLLOW_PACKETS
         if (note := self._refresh.look()) is not None:
             self._notes.append(note)
+        if self._network is not None and not self._tracing:
+            self._network.skip(self._run.clock.now)
         self._mark_position()
 
     def _mark_position(self) -> None:
-        controller = self._controller
-        if controller is None:
-            return
-        x, y, _ = controller.get_position()
-        if self._at is not None:
-            self._distance += math.dist(self._at, (x, y))
-        self._at = (x, y)
-        end_x, end_y = self._trail_end
-        if not abs(x - end_x) + abs(y - end_y) < _TRAIL_STEP:
-            self._trail_end = self._at
-            self._trail.append(self._at)
+        if (controller := self._controller) is not None:
+            self._path.add(*controller.get_position()[:2])
 
     def _targets_seen(self) -> tuple[Target, ...]:
         controller = self._controller

@@ -70,17 +70,22 @@ class DeviceRows:
 
     def __init__(self, config: SimConfig) -> None:
         self._config = config
+        self._paths: frozenset[str] = frozenset()
+        self._decisive: list[str] = []
         self._shape: object = None
         self.panels: tuple[Panel, ...] = ()
 
     def update(self, values: Values) -> bool:
         """Make the panels for these values, and return whether they have changed."""
         # A robot may use a channel as an input and later as an output, and a motor controller in several modes.
-        decisive = [value for path, value in values.items() if path.endswith(".is_input") or changes_rows(path)]
-        shape = values.keys(), decisive
-        if shape == self._shape:
+        is_known = values.keys() == self._paths
+        if not is_known:
+            self._paths = frozenset(values)
+            self._decisive = [path for path in values if path.endswith(".is_input") or changes_rows(path)]
+        shape = [values[path] for path in self._decisive]
+        if is_known and shape == self._shape:
             return False
-        self._shape = frozenset(values), shape[1]
+        self._shape = shape
         before, self.panels = self.panels, tuple(panels_of(values, self._config))
         return self.panels != before
 

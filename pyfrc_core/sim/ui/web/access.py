@@ -1,0 +1,155 @@
+"""Who may see and drive: tokens, and the hosts and origins that requests may have.
+
+The token in the address is the only key: no cookie, which other servers on this computer would get and other pages
+could use. `Host` is checked since a page from elsewhere could have its own name resolved to this computer, and `Origin`
+since any page may open a WebSocket to it.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import secrets
+import socket
+from collections.abc import Awaitable, Callable, MutableMapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+from urllib.parse import parse_qs
+
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+App = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+#: What a client may do; None: nothing.
+Role = Literal["drive", "view"]
+#: What clients on the network may do; None: only this computer is served.
+Share = Literal["view", "drive"]
+
+_HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+}
+
+
+def _token() -> str:
+    return secrets.token_urlsafe(24)
+
+
+@dataclass(frozen=True)
+class Access:
+    """The keys of one server.
+
+    :param share: what clients on the network may do
+    :param drive: the token that drives; `view` is the one that only sees
+    """
+
+    share: Share | None = None
+    drive: str = field(default_factory=_token)
+    view: str = field(default_factory=_token)
+
+    def role_of(self, scope: Scope) -> Role | None:
+        """Return what the client of a request may do."""
+        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[-1].encode()
+        # Both are always compared: the time that it takes shows nothing.
+        drives = secrets.compare_digest(given, self.drive.encode())
+        sees = secrets.compare_digest(given, self.view.encode())
+        if drives and (self.share == "drive" or _is_this_computer(scope)):
+            return "drive"
+        return "view" if sees else None
+
+    def allows_host(self, host: str) -> bool:
+        """Return whether a request may have this `Host` header."""
+        name = _name_of(host)
+        if name in ("localhost", "127.0.0.1", "::1"):
+            return True
+        if self.share is None:
+            return False
+        own = socket.gethostname().lower()
+        return _is_address(name) or name in (own, f"{own}.local")  # no page from elsewhere has such a name
+
+
+def _name_of(host: str) -> str:
+    """Return the name in a `Host` header, without the port."""
+    if host.startswith("["):
+        return host[1:].partition("]")[0]
+    return host.partition(":")[0].lower()
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+def _is_this_computer(scope: Scope) -> bool:
+    client = scope.get("client")
+    if not client:
+        return False
+    try:
+        return ipaddress.ip_address(client[0]).is_loopback
+    except ValueError:
+        return False
+
+
+class Guard:
+    """Refuses requests of other hosts and origins, and adds the headers that keep a page to its own files.
+
+    :param app: what is guarded
+    """
+
+    def __init__(self, app: App, access: Access) -> None:
+        self._app, self._access = app, access
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
+        host = headers.get("host", "")
+        origin = headers.get("origin")
+        if not self._access.allows_host(host) or (origin is not None and origin != f"http://{host}"):
+            await _refuse(scope, receive, send)
+            return
+
+        async def send_guarded(message: MutableMapping[str, Any]) -> None:
+            if message["type"] == "http.response.start":
+                added = {**_HEADERS, "Content-Security-Policy": _policy(host)}
+                message["headers"] = [
+                    *message.get("headers", ()),
+                    *((name.lower().encode(), value.encode()) for name, value in added.items()),
+                ]
+            await send(message)
+
+        await self._app(scope, receive, send_guarded)
+
+
+def _policy(host: str) -> str:
+    """Return a page's Content-Security-Policy. `connect-src` names WebSockets for browsers in which 'self' has none."""
+    rules = {
+        "default-src": "'none'",
+        "script-src": "'self'",
+        "style-src": "'self'",
+        "img-src": "'self' data: blob:",
+        "font-src": "'self'",
+        "connect-src": f"'self' ws://{host}",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+        "frame-ancestors": "'none'",
+    }
+    return "; ".join(f"{name} {value}" for name, value in rules.items())
+
+
+async def _refuse(scope: Scope, receive: Receive, send: Send) -> None:
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.close", "code": 1008})
+        return
+    text = b"This address is not served here.\n"
+    headers = [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", str(len(text)).encode())]
+    await send({"type": "http.response.start", "status": 403, "headers": headers})
+    await send({"type": "http.response.body", "body": text})

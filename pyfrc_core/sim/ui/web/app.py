@@ -1,0 +1,154 @@
+"""The application: the page's files, the field's picture, and the WebSocket of each page."""
+
+from __future__ import annotations
+
+import asyncio
+import mimetypes
+import traceback
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import FileResponse, PlainTextResponse, Response
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from .access import Access, Guard, Receive, Scope, Send
+from .commands import Commands
+from .greeting import greeting
+from .page_client import PageClient
+from .updates import UpdateBuilder
+
+if TYPE_CHECKING:
+    from ...engine.simulation import Simulation
+    from .collector import Collector
+
+#: The page's files.
+PAGE = Path(__file__).with_name("page")
+
+#: Types that some systems have wrong, in the Windows registry for example: browsers refuse modules of another type.
+_TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
+
+_NO_KEY = "This address lacks its key. Open the address that pyfrc sim has printed.\n"
+#: The codes that close a connection: it sent something other than text; pyfrc has a mistake.
+_UNSUPPORTED, _ERROR = 1003, 1011
+#: What sending and receiving raise when a page has gone; RuntimeError: it was closed meanwhile.
+_GONE = (WebSocketDisconnect, RuntimeError, OSError)
+
+
+class _PageFiles(StaticFiles):
+    """The page's files, which a browser asks for again each time: a changed file is there after a reload."""
+
+    def file_response(self, *arguments: Any, **named: Any) -> Response:
+        response = super().file_response(*arguments, **named)
+        response.headers["Cache-Control"] = "no-cache"
+        return response
+
+
+class WebApp:
+    """Serves the pages of one simulation.
+
+    :param commands: what pages can do
+    """
+
+    def __init__(self, simulation: Simulation, collector: Collector, commands: Commands, access: Access) -> None:
+        self._simulation, self._collector, self._access = simulation, collector, access
+        self._commands = commands
+        self._clients: dict[int, PageClient] = {}
+        self._count = 0
+        self._executor = ThreadPoolExecutor(1, "pyfrc sim: web commands")
+        for ending, kind in _TYPES.items():
+            mimetypes.add_type(kind, ending)
+        routes = [
+            Route("/", self._index),
+            Route("/field-image", self._image),
+            WebSocketRoute("/ws", self._page),
+            Mount("/static", _PageFiles(directory=PAGE)),
+        ]
+        self._guarded = Guard(Starlette(routes=routes), access)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request, as ASGI has it."""
+        await self._guarded(scope, receive, send)
+
+    def wake(self) -> None:
+        """Have every page sent what is new. Called on the event loop's thread."""
+        for client in self._clients.values():
+            client.news.set()
+
+    def close(self) -> None:
+        """Carry out no more commands."""
+        self._executor.shutdown(wait=False, cancel_futures=True)
+
+    async def close_pages(self) -> None:
+        """Say to every page that the simulation was closed."""
+        for client in list(self._clients.values()):
+            with suppress(Exception):
+                await asyncio.wait_for(client.close(), 0.5)
+
+    async def _index(self, request: Request) -> Response:
+        if self._access.role_of(request.scope) is None:
+            return PlainTextResponse(_NO_KEY, 403)
+        return FileResponse(PAGE / "index.html", headers={"Cache-Control": "no-cache"})
+
+    async def _image(self, request: Request) -> Response:
+        file = self._simulation.field.image
+        if self._access.role_of(request.scope) is None:
+            return PlainTextResponse(_NO_KEY, 403)
+        if file is None or not file.is_file():
+            return PlainTextResponse("There is no picture of the field.\n", 404)
+        return FileResponse(file, headers={"Cache-Control": "no-cache"})
+
+    async def _page(self, socket: WebSocket) -> None:
+        role = self._access.role_of(socket.scope)
+        if role is None:
+            await socket.close(1008)
+            return
+        await socket.accept()
+        self._count += 1
+        number, token = self._count, socket.query_params.get("token", "")
+        image = f"/field-image?token={token}"
+        client = PageClient(
+            socket,
+            role,
+            self._collector,
+            self._commands,
+            UpdateBuilder(self._collector, image),
+            lambda: greeting(self._simulation, number, role == "view"),
+            lambda: len(self._clients),
+            self._executor,
+        )
+        self._clients[number] = client
+        self.wake()
+        tasks = {asyncio.create_task(client.send_updates()), asyncio.create_task(self._receive(socket, client))}
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._clients.pop(number, None)
+            self.wake()
+            for task in tasks:
+                task.cancel()
+            for found in await asyncio.gather(*tasks, return_exceptions=True):
+                if isinstance(found, Exception) and not isinstance(found, _GONE):
+                    await self._report(socket, found)
+
+    @staticmethod
+    async def _report(socket: WebSocket, error: Exception) -> None:
+        """Print an error of pyfrc's own, and end the connection: the page connects again, and gets everything."""
+        traceback.print_exception(error)
+        with suppress(*_GONE):
+            await socket.close(_ERROR)
+
+    @staticmethod
+    async def _receive(socket: WebSocket, client: PageClient) -> None:
+        while True:
+            try:
+                text = await socket.receive_text()
+            except KeyError:  # bytes
+                await socket.close(_UNSUPPORTED)
+                return
+            await client.receive(text)

@@ -1,0 +1,193 @@
+"""Reads a simulation by cursors, on a thread of its own, and keeps what every page shows."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...engine.changes import Change, RunBegan
+from ...engine.network_paths import MODE
+from ..models.devices import DeviceRows, Panel
+from .console import Console
+from .marks import Marks
+from .runs import Branch, Runs
+
+if TYPE_CHECKING:
+    from ...engine.scene import Field
+    from ...engine.simulation import Simulation
+    from ...engine.snapshot import Failure, Snapshot, Status
+
+#: How often to look when nothing is reported, and the shortest interval of looks, in wall seconds.
+_LONGEST, _SHORTEST = 0.1, 0.008
+#: The most changes that are read at once, since reading them keeps the simulation from going on.
+_MOST_CHANGES = 256
+#: The most such reads in one look.
+_MOST_READS = 4
+_BUTTONS = tuple(f"joysticks[{number}].buttons" for number in range(6))
+
+
+@dataclass(frozen=True)
+class State:
+    """What there is to show at one moment.
+
+    :param network: the values of NetworkTables with their types, by path
+    :param wants_to_run: whether robot time is to go on
+    :param run: the number of the present run, and the moment where it went on
+    """
+
+    snapshot: Snapshot | None
+    status: Status
+    field: Field
+    network: Mapping[str, Any]
+    panels: tuple[Panel, ...]
+    branches: tuple[Branch, ...]
+    wants_to_run: bool
+    run: tuple[int, float]
+
+
+class Collector:
+    """Follows one simulation.
+
+    :param changed: called after each look that found something, on the collector's thread
+    """
+
+    def __init__(self, simulation: Simulation, changed: Callable[[], object]) -> None:
+        self._simulation, self._changed = simulation, changed
+        self.runs, self.marks = Runs(), Marks()
+        self.console = Console(simulation.project.root)
+        self._output = simulation.output_cursor()
+        self._hal, self._network = simulation.change_cursor(), simulation.network_cursor()
+        self._project = simulation.project
+        self._rows = DeviceRows(simulation.project.sim_config)
+        self._network_values: Mapping[str, Any] = {}
+        self._network_changed = False
+        self._run = (0, 0.0)
+        self._overruns = self._starts = 0
+        self._failure: Failure | None = None
+        self._note = ""
+        self._announced: list[str] = []
+        #: The numbers of lines and marks at the last look.
+        self._shown = (0, 0)
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._follow, name="pyfrc sim: web collector", daemon=True)
+        self.state = self._state_of(simulation.snapshot, simulation.status)
+
+    @property
+    def root(self) -> Path:
+        """The project's directory."""
+        return self._simulation.project.root
+
+    def start(self) -> None:
+        """Begin to follow the simulation."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """End. The state stays."""
+        self._over.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def announce(self, text: str) -> None:
+        """Show an event among the robot's output. May be called from any thread."""
+        self._announced.append(text)
+
+    def _follow(self) -> None:
+        while not self._over.is_set():
+            began = time.monotonic()
+            if self.look():
+                self._changed()
+            else:
+                woken = iter((False, True))  # by the next report
+                self._simulation.wait_for(lambda: next(woken, True), _LONGEST)  # noqa: B023
+            self._over.wait(max(began + _SHORTEST - time.monotonic(), 0.0))
+
+    def look(self) -> bool:
+        """Read what is new, and return whether there is anything."""
+        before, shown = self.state, self._shown
+        simulation = self._simulation
+        # Before the changes are read, so that they are at least as new as what is shown beside them.
+        snapshot, status = simulation.snapshot, simulation.status
+        now = 0.0 if before.snapshot is None else before.snapshot.time
+        if output := self._output.read():
+            for line in self.console.add(output, now):
+                if line.level in ("error", "warning"):
+                    self.marks.add(now, line.level, line.text.strip())
+        changes = self._read_changes()
+        if self._network_changed:
+            self._network_changed = False
+            self._network_values = self.runs.network_values()
+        self.state = state = self._state_of(snapshot, status)
+        self._note_events(state, now)
+        self._shown = self.console.count, self.marks.count
+        return changes or state != before or self._shown != shown
+
+    def _read_changes(self) -> bool:
+        """Read the changes until now, but not for longer than the page can wait; return whether there are any."""
+        found = False
+        for _ in range(_MOST_READS):
+            hal, network = self._hal.read(_MOST_CHANGES), self._network.read(_MOST_CHANGES)
+            self.runs.take("hal", hal, self._look_at_hal)
+            self.runs.take("network", network, self._look_at_network)
+            found = found or bool(hal or network)
+            if len(hal) < _MOST_CHANGES and len(network) < _MOST_CHANGES:
+                break
+        return found
+
+    def _state_of(self, snapshot: Snapshot | None, status: Status) -> State:
+        simulation = self._simulation
+        project = simulation.project
+        if project is not self._project:
+            self._project, self._rows = project, DeviceRows(project.sim_config)
+        if snapshot is not None:
+            self._rows.update(snapshot.values)
+        return State(
+            snapshot=snapshot,
+            status=status,
+            field=simulation.field,
+            network=self._network_values,
+            panels=self._rows.panels,
+            branches=self.runs.branches,
+            wants_to_run=simulation.wants_to_run,
+            run=self._run,
+        )
+
+    # -- events ---------------------------------------------------------------------------------------------------
+
+    def _look_at_hal(self, event: RunBegan | Change) -> None:
+        if isinstance(event, RunBegan):
+            self.marks.forget_after(event.time)
+            if event.number > 1:
+                self.marks.add(event.time, "run", f"went on from {event.time:.2f} s" if event.time else "restarted")
+            self._run = event.number, event.time
+        for path in _BUTTONS:
+            if path in event.values:
+                self.marks.look_at_buttons(event.time, path, event.values[path])
+
+    def _look_at_network(self, event: RunBegan | Change) -> None:
+        self._network_changed = True
+        if isinstance(event, Change) and MODE in event.values:
+            self.marks.add(event.time, "mode", str(event.values[MODE]))
+
+    def _note_events(self, state: State, now: float) -> None:
+        status = state.status
+        if status.starts != self._starts:
+            self._starts, self._overruns = status.starts, 0
+            if status.starts > 1:
+                self.console.say("the robot program starts again", now)
+        if status.overruns > self._overruns:
+            self.marks.add(now, "overrun", f"{status.overruns - self._overruns} loop overruns")
+        self._overruns = status.overruns
+        if status.failure is not None and status.failure != self._failure:
+            self.marks.add(status.failure.time, "failure", status.failure.headline)
+            self.console.say(status.failure.details, status.failure.time, "error")
+            self.console.say(f"failed: {status.failure.headline}", status.failure.time, "error")
+        self._failure = status.failure
+        if status.note not in ("", self._note):
+            self.console.say(status.note, now)
+        self._note = status.note
+        while self._announced:
+            self.console.say(self._announced.pop(0), now)

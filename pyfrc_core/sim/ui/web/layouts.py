@@ -1,0 +1,39 @@
+"""The layout of a project's page: what a page has saved, in ``.pyfrc/sim-layout.json``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from ....text_files import keep_out_of_version_control, write_whole
+
+#: The largest layout, in characters of JSON.
+MOST = 256 * 1024
+
+
+def load_layout(root: Path) -> Any:
+    """Return the saved layout; None if there is none that can be read."""
+    try:
+        return json.loads(_file(root).read_text("utf-8"))
+    except (OSError, ValueError):
+        return None
+
+
+def save_layout(root: Path, layout: Any) -> None:
+    """Save a layout.
+
+    :raises ValueError: when it is too large
+    :raises OSError: when it cannot be written
+    """
+    text = json.dumps(layout, indent=1)
+    if len(text) > MOST:
+        raise ValueError(f"the layout has {len(text)} characters; at most {MOST} are saved")
+    file = _file(root)
+    file.parent.mkdir(exist_ok=True)
+    keep_out_of_version_control(file.parent)
+    write_whole(file, [text + "\n"])
+
+
+def _file(root: Path) -> Path:
+    return root / ".pyfrc" / "sim-layout.json"

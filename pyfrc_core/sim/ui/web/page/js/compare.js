@@ -1,0 +1,44 @@
+// The branch that the person compares with: a ghost on the field, dashed curves in the plots.
+import { ask } from "./connection.js";
+import { model } from "./model.js";
+import { indexAfter } from "./series.js";
+
+const POINTS = 4000;
+
+class Compared {
+  id = null;
+  pose = { t: [], v: [] };
+  difference; // the first moment at which the branch differs from the present run; null: none, undefined: not known
+
+  // The robot's place in the branch at a moment; null where the branch knows none.
+  poseAt(t) {
+    if (this.id === null) return null;
+    const branch = model.branches.find((each) => each.id === this.id);
+    if (!branch || t > branch.to + 1e-6) return null;
+    const index = indexAfter(this.pose.t, t + 1e-6) - 1;
+    return index < 0 ? null : this.pose.v[index];
+  }
+
+  async choose(id) {
+    this.id = id;
+    this.pose = { t: [], v: [] };
+    this.difference = undefined;
+    if (id === null) return;
+    const branch = model.branches.find((each) => each.id === id);
+    try {
+      const answer = await ask("plot", { paths: ["sim.pose"], from: 0, to: branch?.to ?? 0, points: POINTS, branch: id });
+      if (this.id === id) this.pose = answer.series["sim.pose"] ?? this.pose;
+      const first = await ask("first_difference", { branch: id, paths: null });
+      if (this.id === id) this.difference = first.t;
+    } catch {
+      // It may be gone, or this server may not compare yet: then there is nothing to show.
+    }
+    model.announce("compared-series", "robot");
+  }
+}
+
+export const compared = new Compared();
+
+model.listen((changed) => {
+  if (changed.has("compared")) compared.choose(model.compared ?? null);
+});

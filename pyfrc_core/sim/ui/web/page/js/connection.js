@@ -1,0 +1,89 @@
+// The WebSocket to `pyfrc sim`. It connects again by itself; each connection begins with the whole state.
+
+export const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
+
+const WAITS = [200, 400, 800, 1500]; // milliseconds between attempts to connect
+
+let socket = null;
+let attempts = 0;
+let finished = false;
+let nextId = 1;
+const requests = new Map(); // id: { resolve, reject }
+let onMessage = () => {};
+let onState = () => {};
+
+// Connect, and call `message` with each message of the server, `state` with "open", "lost", "refused" or "closed".
+export function connect(message, state) {
+  onMessage = message;
+  onState = state;
+  open();
+}
+
+function open() {
+  const scheme = location.protocol === "https:" ? "wss" : "ws";
+  socket = new WebSocket(`${scheme}://${location.host}/ws?token=${encodeURIComponent(TOKEN)}`);
+  socket.onmessage = (event) => receive(JSON.parse(event.data));
+  socket.onopen = () => {
+    attempts = 0;
+    onState("open");
+  };
+  socket.onclose = (event) => {
+    for (const request of requests.values()) request.reject(new Error("the connection was lost"));
+    requests.clear();
+    if (finished) return;
+    if (attempts) checkAddress();
+    onState("lost");
+    setTimeout(open, WAITS[Math.min(attempts, WAITS.length - 1)]);
+    attempts += 1;
+  };
+}
+
+// Another `pyfrc sim` at the same port does not know the key of this address.
+async function checkAddress() {
+  const answer = await fetch(`/?token=${encodeURIComponent(TOKEN)}`).catch(() => null);
+  if (answer?.status !== 403) return;
+  finished = true;
+  onState("refused");
+}
+
+function receive(message) {
+  if (message.type === "answer" || message.type === "error") {
+    const request = requests.get(message.id);
+    requests.delete(message.id);
+    if (message.type === "answer") request?.resolve(message);
+    else if (request) request.reject(new Error(message.message));
+    else onMessage({ type: "problem", text: message.message });
+    return;
+  }
+  if (message.type === "closed") {
+    finished = true;
+    onState("closed");
+    return;
+  }
+  onMessage(message);
+}
+
+function send(message) {
+  if (socket?.readyState !== WebSocket.OPEN) return false;
+  socket.send(JSON.stringify(message));
+  return true;
+}
+
+// Ask the server; the promise has its answer.
+export function ask(type, fields = {}) {
+  const id = nextId++;
+  return new Promise((resolve, reject) => {
+    if (!send({ ...fields, type, id })) return reject(new Error("there is no connection to the simulation"));
+    requests.set(id, { resolve, reject });
+  });
+}
+
+// Carry out a command, such as command("speed", { factor: 0.5 }). A failure is shown to the user.
+export function command(name, fields = {}) {
+  return ask("command", { ...fields, name }).catch((error) => onMessage({ type: "problem", text: error.message }));
+}
+
+// Change inputs: write({ "dio[3].value": true }).
+export function write(values) {
+  return command("write", { values });
+}

@@ -1,0 +1,43 @@
+// Why the robot program has ended: the user's own line first, and the ways to go on.
+import { command } from "./connection.js";
+import { clock } from "./format.js";
+import { model } from "./model.js";
+import { live, look } from "./past.js";
+import { SourceLink } from "./source.js";
+import { Icon, Live, html } from "./view.js";
+
+const BACK = 2; // seconds
+
+export class FailureBar extends Live {
+  parts = ["status", "shown"];
+
+  render() {
+    const failure = model.status.state === "failed" ? model.status.failure : null;
+    if (!failure) return null;
+    return html`<section class="failure" role="alert" aria-label="The robot program has failed">
+      <div class="failure-head">
+        <${Icon} name="warning" />
+        <div class="failure-text">
+          <strong>${failure.headline}</strong>
+          <span>The robot program ended at ${clock(failure.t)}. ${failure.file && html`<${SourceLink} file=${failure.file} line=${failure.line} />`}</span>
+        </div>
+        <div class="failure-actions">
+          <button class="primary" onClick=${() => goBack(failure.t)} disabled=${model.readonly}>Go back 2 s and drive on</button>
+          <button onClick=${() => look(failure.t)}>Values of that moment</button>
+          <button onClick=${restart} disabled=${model.readonly}><${Icon} name="restart" />Restart</button>
+        </div>
+      </div>
+      ${failure.details && html`<details><summary>Traceback</summary><pre>${failure.details}</pre></details>`}
+    </section>`;
+  }
+}
+
+function goBack(t) {
+  live();
+  command("rewind", { t: Math.max(t - BACK, 0) });
+}
+
+function restart() {
+  live();
+  command("restart");
+}

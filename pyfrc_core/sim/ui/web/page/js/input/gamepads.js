@@ -1,0 +1,119 @@
+// The browser's gamepads move joysticks: the first one joystick 0 and so on, unless the person assigns others.
+import { write } from "../connection.js";
+import { model } from "../model.js";
+import { settings } from "../settings.js";
+
+// A gamepad with the browser's "standard" mapping, in the order of the Driver Station.
+const STANDARD_BUTTONS = [0, 1, 2, 3, 4, 5, 8, 9, 10, 11]; // A B X Y LB RB Back Start, left and right stick
+const HATS = { "0,-1": 0, "1,-1": 45, "1,0": 90, "1,1": 135, "0,1": 180, "-1,1": 225, "-1,0": 270, "-1,-1": 315 };
+const STEP = 0.01; // the smallest movement that is passed on
+const STICKS = 6;
+
+const passedOn = {}; // joystick: what was sent last, target: value
+let names = "";
+let starts = null;
+
+export function gamepads() {
+  return [...(navigator.getGamepads?.() ?? [])].filter((pad) => pad?.connected);
+}
+
+// The gamepad of a joystick: "" for none, otherwise its id with a number if there are several of the kind.
+export function assignedTo(stick, pads = gamepads()) {
+  const chosen = settings.get("gamepads")[stick];
+  if (chosen === "none") return null;
+  if (chosen !== undefined) return pads.find((pad) => labelOf(pad, pads) === chosen) ?? null;
+  const taken = new Set(Object.values(settings.get("gamepads")));
+  return pads.filter((pad) => !taken.has(labelOf(pad, pads)))[stick] ?? null;
+}
+
+export function labelOf(pad, pads) {
+  const same = pads.filter((each) => each.id === pad.id);
+  return same.length > 1 ? `${pad.id} #${same.indexOf(pad) + 1}` : pad.id;
+}
+
+export function nameOf(pad) {
+  return pad.id.replace(/\s*\((STANDARD GAMEPAD )?.*Vendor:.*\)$/, "") || pad.id;
+}
+
+// The state of a gamepad as axes, buttons and POV in the order of the Driver Station.
+export function read(pad) {
+  if (pad.mapping !== "standard") {
+    return { axes: [...pad.axes], buttons: pad.buttons.map((button) => button.pressed), pov: -1 };
+  }
+  const [leftX, leftY, rightX, rightY] = pad.axes;
+  const value = (index) => pad.buttons[index]?.value ?? 0;
+  const pressed = (index) => Boolean(pad.buttons[index]?.pressed);
+  const hat = `${pressed(15) - pressed(14)},${pressed(13) - pressed(12)}`;
+  return {
+    axes: [leftX, leftY, value(6), value(7), rightX, rightY],
+    buttons: STANDARD_BUTTONS.map(pressed),
+    pov: HATS[hat] ?? -1,
+  };
+}
+
+function targetsOf(stick, reading) {
+  const targets = {};
+  reading.axes.slice(0, 12).forEach((value, axis) => {
+    targets[`joysticks[${stick}].axes[${axis}]`] = Math.min(Math.max(value ?? 0, -1), 1);
+  });
+  reading.buttons.slice(0, 32).forEach((pressed, index) => {
+    targets[`joysticks[${stick}].buttons[${index + 1}]`] = pressed;
+  });
+  targets[`joysticks[${stick}].povs[0]`] = reading.pov;
+  return targets;
+}
+
+function atRest(target) {
+  if (target.includes(".axes[")) return 0;
+  return target.includes(".povs[") ? -1 : false;
+}
+
+function poll() {
+  requestAnimationFrame(poll);
+  if (!model.hello || model.readonly || model.connection !== "open") return;
+  // A robot that was restarted knows nothing of what was passed on.
+  if (model.status.starts !== starts && model.status.state !== "starting") {
+    starts = model.status.starts;
+    for (const stick of Object.keys(passedOn)) delete passedOn[stick];
+  }
+  const pads = gamepads();
+  const seen = pads.map((pad) => pad.id).join("\n");
+  if (seen !== names) {
+    names = seen;
+    model.announce("gamepads");
+  }
+  const changed = {};
+  for (let stick = 0; stick < STICKS; stick++) {
+    const pad = assignedTo(stick, pads);
+    const before = passedOn[stick];
+    if (!pad && !before) continue;
+    const now = pad ? targetsOf(stick, read(pad)) : Object.fromEntries(Object.keys(before).map((target) => [target, atRest(target)]));
+    for (const [target, value] of Object.entries(now)) {
+      const old = before?.[target] ?? atRest(target);
+      const small = typeof value === "number" && Math.abs(value - old) < STEP && ![-1, 0, 1].includes(value);
+      if (value === old || small) now[target] = old;
+      else changed[target] = value;
+    }
+    if (pad) passedOn[stick] = now;
+    else delete passedOn[stick];
+  }
+  if (Object.keys(changed).length) write(changed);
+}
+
+// Let a joystick's gamepad shake, as long as the robot's code says so.
+function rumble() {
+  const pads = gamepads();
+  for (let stick = 0; stick < STICKS; stick++) {
+    const strength = ["left_rumble", "right_rumble"].map((name) => Number(model.values.get(`joysticks[${stick}].${name}`) ?? 0));
+    if (!strength.some((each) => each > 0)) continue;
+    const [strong, weak] = strength.map((each) => Math.min(each / 65535, 1));
+    assignedTo(stick, pads)?.vibrationActuator
+      ?.playEffect("dual-rumble", { duration: 150, strongMagnitude: strong, weakMagnitude: weak })
+      .catch(() => {});
+  }
+}
+
+export function startGamepads() {
+  requestAnimationFrame(poll);
+  setInterval(rumble, 100);
+}

@@ -1,0 +1,141 @@
+// The Driver Station's keys, the keys of robot time, and the keys that drive.
+//
+// Names of keys are those of the server: "w", "bracketleft", "return", "shift_l".
+import { command, write } from "../connection.js";
+import { model } from "../model.js";
+import { settings } from "../settings.js";
+
+const BY_CODE = {
+  BracketLeft: "bracketleft", BracketRight: "bracketright", Backslash: "backslash", Enter: "return", NumpadEnter: "kp_enter",
+  Space: "space", ShiftLeft: "shift_l", ShiftRight: "shift_r", ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up",
+  ArrowDown: "down",
+};
+
+const ACTIONS = {
+  return: () => command("disable"),
+  kp_enter: () => command("disable"),
+  space: () => command("e_stop"),
+  f5: () => command("toggle"),
+  f6: () => command("step", { packets: 1 }),
+  f8: () => command("attach", { attached: model.station.attached === false }),
+  f9: () => command("restart"),
+};
+const REPEATING = new Set(["f6"]);
+
+const held = new Set();
+const pressedAs = new Map(); // code: name at the time of the press
+let sent = {};
+
+export function keyName(event) {
+  if (BY_CODE[event.code]) return BY_CODE[event.code];
+  if (/^(Digit|Numpad)\d$/.test(event.code)) return event.code.slice(-1);
+  return event.key.length === 1 ? event.key.toLowerCase() : event.key.toLowerCase();
+}
+
+// The bindings that are in force: those of the chosen layout, and the person's own.
+export function bindings() {
+  const { layouts, chosen } = model.hello.options.keyboard;
+  const { chosen: own, own: added } = settings.get("keyboard");
+  const layout = layouts.find((each) => each.name === (own ?? chosen)) ?? layouts[0];
+  const axes = Object.fromEntries(Object.entries(layout.axes).map(([key, moves]) => [key, [...moves]]));
+  const buttons = Object.fromEntries(Object.entries(model.hello.options.keyboard.button_keys).map(([key, button]) => [key, [[0, button]]]));
+  for (const one of added) {
+    // The person's own binding replaces what the key did.
+    delete axes[one.key];
+    delete buttons[one.key];
+  }
+  for (const one of added) {
+    if (one.kind === "axis") (axes[one.key] ??= []).push([one.stick, one.control, one.by]);
+    else (buttons[one.key] ??= []).push([one.stick, one.control]);
+  }
+  return { layout, axes, buttons };
+}
+
+// What the joysticks' controls should be for the keys that are held: target: value.
+function controls() {
+  const { axes, buttons } = bindings();
+  const gentle = held.has("shift_l") || held.has("shift_r") ? model.hello.options.keyboard.gentle : 1;
+  const wanted = {};
+  for (const [key, moves] of Object.entries(axes)) {
+    for (const [stick, axis, by] of moves) {
+      const target = `joysticks[${stick}].axes[${axis}]`;
+      wanted[target] = (wanted[target] ?? 0) + (held.has(key) ? by * gentle : 0);
+    }
+  }
+  for (const target of Object.keys(wanted)) wanted[target] = Math.min(Math.max(wanted[target], -1), 1);
+  for (const [key, pressed] of Object.entries(buttons)) {
+    for (const [stick, button] of pressed) {
+      const target = `joysticks[${stick}].buttons[${button}]`;
+      wanted[target] = wanted[target] || held.has(key);
+    }
+  }
+  return wanted;
+}
+
+function move() {
+  if (!model.hello || model.readonly) return;
+  const wanted = controls();
+  const changed = {};
+  for (const target of new Set([...Object.keys(wanted), ...Object.keys(sent)])) {
+    const rest = target.includes(".axes[") ? 0 : false;
+    const value = wanted[target] ?? rest;
+    if (value !== (sent[target] ?? rest)) changed[target] = value;
+  }
+  sent = wanted;
+  if (Object.keys(changed).length) write(changed);
+}
+
+function isTyping(target) {
+  return target.matches?.('input:not([type="range"]):not([type="checkbox"]):not([type="radio"]), textarea, select, [contenteditable]');
+}
+
+// Whether the keyboard is on a control that Enter, the space bar or arrows work.
+function isControl(target) {
+  return target.matches?.('button, a, summary, input, [role="slider"], [role="separator"], [tabindex="0"]');
+}
+
+function down(event) {
+  if (isTyping(event.target) || event.altKey || event.metaKey || !model.hello) return;
+  const name = keyName(event);
+  if (event.ctrlKey) {
+    if (name === "e") {
+      event.preventDefault();
+      command("enable");
+    }
+    return;
+  }
+  if (["return", "kp_enter", "space", "left", "right", "up", "down"].includes(name) && isControl(event.target)) return;
+  const act = ACTIONS[name];
+  if (act) {
+    event.preventDefault();
+    if (!event.repeat || REPEATING.has(name)) act();
+    return;
+  }
+  if (event.repeat) return;
+  const chord = model.hello.options.keyboard.enable_chord;
+  const before = chord.every((key) => held.has(key));
+  held.add(name);
+  pressedAs.set(event.code, name);
+  if (!before && chord.every((key) => held.has(key))) command("enable");
+  if (["left", "right", "up", "down"].includes(name)) event.preventDefault(); // no scrolling
+  move();
+}
+
+function up(event) {
+  held.delete(pressedAs.get(event.code) ?? keyName(event));
+  pressedAs.delete(event.code);
+  move();
+}
+
+function releaseAll() {
+  held.clear();
+  pressedAs.clear();
+  move();
+}
+
+export function startKeys() {
+  addEventListener("keydown", down);
+  addEventListener("keyup", up);
+  addEventListener("blur", releaseAll);
+  document.addEventListener("focusin", (event) => isTyping(event.target) && releaseAll());
+}

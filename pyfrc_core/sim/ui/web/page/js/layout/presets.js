@@ -1,0 +1,60 @@
+// The layouts that are offered. A tree has rows and columns with sizes, and tabs of panels at its ends.
+
+export function tabs(...panels) {
+  return { kind: "tabs", panels, active: panels[0] };
+}
+
+export function row(sizes, ...children) {
+  return { kind: "row", sizes, children };
+}
+
+export function column(sizes, ...children) {
+  return { kind: "column", sizes, children };
+}
+
+export const PRESETS = {
+  driving: {
+    title: "Driving",
+    tree: row(
+      [23, 53, 24],
+      tabs("devices", "networktables"),
+      column([68, 32], tabs("field", "mechanism"), tabs("console", "plot:1")),
+      column([38, 62], tabs("match"), tabs("joysticks", "keys", "touch")),
+    ),
+  },
+  tuning: {
+    title: "Tuning",
+    tree: row(
+      [26, 50, 24],
+      tabs("networktables", "devices"),
+      column([50, 50], tabs("plot:1"), tabs("plot:2", "console")),
+      column([45, 55], tabs("field", "mechanism"), tabs("widgets", "match", "joysticks")),
+    ),
+  },
+  mechanism: {
+    title: "Mechanism",
+    tree: row(
+      [24, 36, 40],
+      tabs("devices", "networktables"),
+      tabs("mechanism", "field"),
+      column([60, 40], tabs("plot:1"), tabs("console", "joysticks", "keys")),
+    ),
+  },
+  presentation: {
+    title: "Presentation",
+    tree: row([68, 32], tabs("field"), column([50, 50], tabs("plot:1"), tabs("mechanism", "console"))),
+  },
+};
+
+// On a narrow screen: the field and plots above, everything else in tabs below.
+export function stacked(tree) {
+  const panels = panelsOf(tree);
+  const above = panels.filter((id) => id === "field" || id === "mechanism" || id.startsWith("plot:"));
+  const below = panels.filter((id) => !above.includes(id));
+  if (!above.length || !below.length) return tabs(...panels);
+  return column([52, 48], tabs(...above), tabs(...below));
+}
+
+export function panelsOf(tree) {
+  return tree.kind === "tabs" ? tree.panels : tree.children.flatMap(panelsOf);
+}

@@ -1,0 +1,156 @@
+// The state of the simulation, as the server has told it, and the moment that the panels show.
+//
+// `model.values` and its neighbours are the present. `model.shown` is what panels draw: the present, or a moment of
+// the past while `model.past` is set. Changes are announced once per frame of the screen.
+
+const MOST_LINES = 2000;
+
+class Model {
+  connection = "connecting";
+  hello = null;
+  readonly = false;
+  t = 0;
+  status = {};
+  station = {};
+  values = new Map();
+  types = {};
+  panels = [];
+  robot = null;
+  trail = [];
+  formerTrail = [];
+  drawings = [];
+  targets = [];
+  choosers = [];
+  console = [];
+  dropped = 0;
+  marks = [];
+  branches = [];
+  run = { number: 1, t: 0, reason: "start" };
+  clients = 1;
+  problem = "";
+  past = null; // { t, values } while the panels show a moment of the past
+
+  #listeners = new Set();
+  #bound = new Map(); // path: functions that draw its value
+  #changed = new Set();
+  #paths = new Set();
+  #scheduled = false;
+  #sampleListeners = new Set();
+
+  get shown() {
+    return this.past ?? this;
+  }
+
+  // Call a function with the set of changed parts, at most once per frame. Returns a function that ends it.
+  listen(listener) {
+    this.#listeners.add(listener);
+    return () => this.#listeners.delete(listener);
+  }
+
+  // Call a function with a path's value now and whenever it changes. Returns a function that ends it.
+  bind(path, draw) {
+    if (!this.#bound.has(path)) this.#bound.set(path, new Set());
+    this.#bound.get(path).add(draw);
+    draw(this.shown.values.get(path));
+    return () => {
+      this.#bound.get(path)?.delete(draw);
+      if (this.#bound.get(path)?.size === 0) this.#bound.delete(path);
+    };
+  }
+
+  // Call a function with ("samples", {path: [t, v, …]}) or ("run", t), at once.
+  onSamples(listener) {
+    this.#sampleListeners.add(listener);
+    return () => this.#sampleListeners.delete(listener);
+  }
+
+  set(part, value) {
+    this[part] = value;
+    this.announce(part);
+  }
+
+  announce(...parts) {
+    for (const part of parts) this.#changed.add(part);
+    if (this.#scheduled) return;
+    this.#scheduled = true;
+    requestAnimationFrame(() => this.#flush());
+  }
+
+  #flush() {
+    this.#scheduled = false;
+    const changed = this.#changed;
+    const paths = this.#paths;
+    this.#changed = new Set();
+    this.#paths = new Set();
+    const values = this.shown.values;
+    if (changed.has("shown")) {
+      for (const [path, draws] of this.#bound) for (const draw of draws) draw(values.get(path));
+    } else if (!this.past) {
+      for (const path of paths) {
+        const draws = this.#bound.get(path);
+        if (draws) for (const draw of draws) draw(values.get(path));
+      }
+    }
+    for (const listener of [...this.#listeners]) listener(changed);
+  }
+
+  // Show a moment of the past in every panel, or the present (null).
+  show(past) {
+    this.past = past;
+    this.announce("shown", "values", "station", "robot");
+  }
+
+  // Take in `hello` or an `update`.
+  take(message) {
+    if (message.type === "hello") this.#begin(message);
+    else if (message.field) this.hello = { ...this.hello, field: message.field };
+    if (message.run) this.#goOn(message.run, message);
+    if (message.t !== undefined) this.t = message.t;
+    if (message.status) this.status = { ...this.status, ...message.status };
+    if (message.station) this.station = { ...this.station, ...message.station };
+    for (const [path, value] of Object.entries(message.values ?? {})) {
+      if (!this.values.has(path)) this.announce("paths");
+      this.values.set(path, value);
+      this.#paths.add(path);
+    }
+    for (const path of message.gone ?? []) {
+      this.values.delete(path);
+      this.#paths.add(path);
+      this.announce("paths");
+    }
+    if (message.types) Object.assign(this.types, message.types);
+    if (message.trail) this.trail = this.trail.slice(0, message.trail.from).concat(message.trail.points);
+    if (message.former_trail) this.formerTrail = message.former_trail;
+    if (message.console) this.console = this.console.concat(message.console).slice(-MOST_LINES);
+    if (message.console_dropped) this.dropped += message.console_dropped;
+    if (message.marks) this.marks = this.marks.concat(message.marks);
+    for (const part of ["panels", "robot", "drawings", "targets", "choosers", "branches", "clients"]) {
+      if (part in message) this[part] = message[part];
+    }
+    if (message.samples) for (const listener of this.#sampleListeners) listener("samples", message.samples);
+    this.announce(...Object.keys(message));
+  }
+
+  #begin(hello) {
+    this.hello = hello;
+    this.readonly = hello.readonly;
+    this.values = new Map();
+    this.types = {};
+    this.trail = [];
+    this.console = [];
+    this.dropped = 0;
+    this.marks = [];
+    this.announce("hello", "paths", "shown");
+  }
+
+  #goOn(run, message) {
+    this.run = run;
+    if (message.type === "hello") return;
+    if (this.past && this.past.t > run.t) this.show(null);
+    this.marks = [];
+    for (const listener of this.#sampleListeners) listener("run", run.t);
+    this.announce("marks");
+  }
+}
+
+export const model = new Model();

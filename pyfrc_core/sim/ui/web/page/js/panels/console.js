@@ -1,0 +1,79 @@
+// What the robot prints: by level, by time, by search.
+import { clock } from "../format.js";
+import { model } from "../model.js";
+import { look } from "../past.js";
+import { settings } from "../settings.js";
+import { SourceLink } from "../source.js";
+import { Icon, Live, classes, createRef, html } from "../view.js";
+
+const LEVELS = [["info", "Output"], ["warning", "Warnings"], ["error", "Errors"], ["pyfrc", "pyfrc"]];
+const MOST_SHOWN = 150;
+
+export class ConsolePanel extends Live {
+  parts = ["console", "shown", "settings", "hello"];
+  interval = 150;
+  state = { search: "", shown: MOST_SHOWN };
+  list = createRef();
+  follow = true;
+
+  componentDidMount() {
+    super.componentDidMount();
+    this.scrollDown();
+  }
+
+  componentDidUpdate() {
+    if (this.follow) this.scrollDown();
+  }
+
+  scrollDown() {
+    const list = this.list.current;
+    if (list) list.scrollTop = list.scrollHeight;
+  }
+
+  render(_, { search, shown }) {
+    const levels = new Set(settings.get("console").levels);
+    const wanted = search.toLowerCase();
+    const until = model.past ? model.past.t + 1e-6 : Infinity;
+    const lines = model.console.filter((line) => levels.has(line.level) && line.t <= until && (!wanted || line.text.toLowerCase().includes(wanted)));
+    const visible = lines.slice(-shown);
+    return html`<div class="console">
+      <div class="panel-tools">
+        <label class="search"><${Icon} name="search" /><input type="search" placeholder="Search the output" value=${search}
+          aria-label="Search the output" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
+        <div class="segments small" role="group" aria-label="Levels">
+          ${LEVELS.map(([level, text]) => html`<button key=${level} aria-pressed=${levels.has(level)}
+            class=${classes({ chosen: levels.has(level), [`level-${level}`]: true })} onClick=${() => toggle(level)}>${text}
+            <small>${count(level)}</small></button>`)}
+        </div>
+      </div>
+      <div class="lines scroll" ref=${this.list} onScroll=${this.scrolled} tabindex="0" role="log" aria-label="Output of the robot">
+        ${model.dropped > 0 && html`<p class="faint">${model.dropped} lines were left out: the robot prints faster than anyone can read.</p>`}
+        ${lines.length > visible.length && html`<button class="link" onClick=${() => this.setState({ shown: shown + MOST_SHOWN })}>Show earlier lines (${lines.length - visible.length})</button>`}
+        ${visible.map((line) => html`<${Line} key=${line.n} line=${line} />`)}
+        ${!lines.length && html`<p class="empty">${model.console.length ? "No line matches." : "What the robot prints appears here."}</p>`}
+      </div>
+    </div>`;
+  }
+
+  scrolled = () => {
+    const list = this.list.current;
+    this.follow = list.scrollHeight - list.scrollTop - list.clientHeight < 24;
+  };
+}
+
+function Line({ line }) {
+  return html`<div class=${`line ${line.level}`}>
+    <button class="line-time" title="Look at this moment" onClick=${() => look(line.t)}>${clock(line.t)}</button>
+    <span class="line-text">${line.text || " "}</span>
+    ${line.file && html`<${SourceLink} file=${line.file} line=${line.line} />`}
+  </div>`;
+}
+
+function count(level) {
+  return model.console.reduce((sum, line) => sum + (line.level === level), 0);
+}
+
+function toggle(level) {
+  const { levels } = settings.get("console");
+  settings.set("console", { levels: levels.includes(level) ? levels.filter((each) => each !== level) : [...levels, level] });
+}

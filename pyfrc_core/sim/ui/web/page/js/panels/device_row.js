@@ -1,0 +1,231 @@
+// One row of the devices: its label, its value drawn by kind, and for inputs the control that sets it.
+import { write } from "../connection.js";
+import { numberText, plain, valueText } from "../format.js";
+import { model } from "../model.js";
+import { addToPlot, carryPath } from "../plotting.js";
+import { Component, Icon, classes, createRef, html } from "../view.js";
+
+export class DeviceRow extends Component {
+  shouldComponentUpdate(next) {
+    return next.pinned !== this.props.pinned || JSON.stringify(next.row) !== JSON.stringify(this.props.row);
+  }
+
+  render({ row, pinned, pin, named }) {
+    if (row.isHeading) return html`<h4 class="device-heading" title=${row.tooltip}>${row.label}</h4>`;
+    const path = row.paths[0];
+    const Kind = KINDS[row.kind] ?? KINDS.text;
+    const label = row.label.trim();
+    const name = named && row.heading ? `${row.heading} ${label}` : label;
+    return html`<div class=${classes({ row: true, [`kind-${row.kind}`]: true, indented: row.label.startsWith(" ") && !named })}
+        title=${row.tooltip} draggable="true" onDragStart=${(event) => carryPath(event, path)} data-path=${path}>
+      <span class="row-label">${name}</span>
+      <${Kind} row=${row} label=${name} />
+      <span class="row-tools">
+        <button class="tool" title="Plot this value" aria-label=${`Plot ${name}`} onClick=${() => row.paths.forEach((each) => addToPlot(each))}><${Icon} name="plus" /></button>
+        <button class=${classes({ tool: true, on: pinned })} title=${pinned ? "Unpin" : "Pin to the top"} aria-label=${`Pin ${name}`}
+          aria-pressed=${pinned} onClick=${pin}><${Icon} name="pin" /></button>
+      </span>
+    </div>`;
+  }
+}
+
+// A part of a row that draws a path's value in `paint(value)` whenever it changes.
+class Painted extends Component {
+  element = createRef();
+
+  componentDidMount() {
+    this.unbind = this.props.row.paths.map((path, index) => model.bind(path, (value) => this.paint(plain(value), index)));
+  }
+
+  componentWillUnmount() {
+    this.unbind.forEach((end) => end());
+  }
+
+  componentDidUpdate() {
+    this.props.row.paths.forEach((path, index) => this.paint(plain(model.shown.values.get(path)), index));
+  }
+
+  text(value) {
+    const { row } = this.props;
+    return typeof value === "number" ? numberText(value, row.decimals) : valueText(value, row.decimals);
+  }
+}
+
+class Meter extends Painted {
+  paint(value) {
+    const { low, high } = this.props.row;
+    const [bar, text] = this.element.current.children;
+    const zero = low < 0 ? -low / (high - low) : 0;
+    const at = Math.min(Math.max(((value ?? 0) - low) / (high - low), 0), 1);
+    const fill = bar.firstChild;
+    fill.style.left = `${Math.min(zero, at) * 100}%`;
+    fill.style.width = `${Math.abs(at - zero) * 100}%`;
+    fill.classList.toggle("backwards", at < zero);
+    text.textContent = this.text(value);
+  }
+
+  render({ row }) {
+    return html`<span class="meter" ref=${this.element}>
+      <span class=${row.low < 0 ? "bar centered" : "bar"}><i></i></span><span class="number"></span><span class="unit">${row.unit}</span></span>`;
+  }
+}
+
+class Lamp extends Painted {
+  paint(value) {
+    this.element.current.classList.toggle("on", Boolean(value));
+    this.element.current.lastChild.textContent = value ? "on" : "off";
+  }
+
+  render() {
+    return html`<span class="lamp-value" ref=${this.element}><i class="lamp"></i><span></span></span>`;
+  }
+}
+
+class Lamps extends Painted {
+  paint(value, index) {
+    this.element.current.children[index]?.classList.toggle("on", Boolean(value));
+  }
+
+  render({ row }) {
+    return html`<span class="lamps" ref=${this.element}>${row.paths.map((path, index) => html`<i key=${path} class="lamp" title=${String(index)}></i>`)}</span>`;
+  }
+}
+
+class Relay extends Painted {
+  states = [false, false];
+
+  paint(value, index) {
+    this.states[index] = Boolean(value);
+    const [forwards, backwards] = this.states;
+    const text = forwards && backwards ? "on" : forwards ? "forward" : backwards ? "reverse" : "off";
+    this.element.current.textContent = text;
+    this.element.current.classList.toggle("on", forwards || backwards);
+  }
+
+  render() {
+    return html`<span class="word" ref=${this.element}></span>`;
+  }
+}
+
+class Bars extends Painted {
+  paint(value) {
+    const { high } = this.props.row;
+    const element = this.element.current;
+    const list = Array.isArray(value) ? value : [];
+    while (element.children.length < list.length) element.append(document.createElement("i"));
+    while (element.children.length > list.length) element.lastChild.remove();
+    list.forEach((each, index) => {
+      element.children[index].style.height = `${Math.min(Math.max(each / high, 0), 1) * 100}%`;
+    });
+  }
+
+  render() {
+    return html`<span class="bars" ref=${this.element}></span>`;
+  }
+}
+
+class Leds extends Painted {
+  paint(value) {
+    const element = this.element.current;
+    const list = Array.isArray(value) ? value : [];
+    while (element.children.length < list.length) element.append(document.createElement("i"));
+    while (element.children.length > list.length) element.lastChild.remove();
+    list.forEach((each, index) => {
+      const { r = 0, g = 0, b = 0 } = Array.isArray(each) ? { r: each[0], g: each[1], b: each[2] } : (each ?? {});
+      element.children[index].style.background = `rgb(${Number(r)}, ${Number(g)}, ${Number(b)})`;
+    });
+  }
+
+  render() {
+    return html`<span class="leds" ref=${this.element}></span>`;
+  }
+}
+
+class Text extends Painted {
+  paint(value) {
+    this.element.current.textContent = this.text(value);
+    this.element.current.title = this.text(value);
+  }
+
+  render() {
+    return html`<span class="text-value" ref=${this.element}></span>`;
+  }
+}
+
+class Switch extends Painted {
+  paint(value) {
+    this.element.current.checked = Boolean(value);
+  }
+
+  render({ row, label }) {
+    return html`<label class="switch"><input type="checkbox" role="switch" ref=${this.element} aria-label=${label} disabled=${model.readonly}
+      onChange=${(event) => write({ [row.targets?.[0] ?? row.paths[0]]: event.target.checked })} /><i></i></label>`;
+  }
+}
+
+// A number that can be typed: while the person types, it is left alone.
+class NumberBox extends Painted {
+  paint(value) {
+    const box = this.element.current;
+    if (document.activeElement !== box) box.value = this.text(value);
+  }
+
+  render({ row, label }) {
+    return html`<span class="number-box"><input type="text" inputmode="decimal" class="number" ref=${this.element} aria-label=${label}
+      disabled=${model.readonly} onFocus=${(event) => event.target.select()} onKeyDown=${this.key} onBlur=${this.leave} /><span class="unit">${row.unit}</span></span>`;
+  }
+
+  key = (event) => {
+    event.stopPropagation();
+    if (event.key === "Enter") {
+      setNumber(this.props.row, event.target.value);
+      event.target.blur();
+    } else if (event.key === "Escape") event.target.blur();
+  };
+
+  leave = (event) => {
+    event.target.value = this.text(plain(model.shown.values.get(this.props.row.paths[0])));
+  };
+}
+
+function setNumber(row, text) {
+  const value = Number(text.replace(",", "."));
+  if (text.trim() && Number.isFinite(value)) write({ [row.targets?.[0] ?? row.paths[0]]: value });
+}
+
+class Slider extends Painted {
+  paint(value) {
+    const [slider, box] = this.element.current.querySelectorAll("input");
+    if (!this.dragging) slider.value = String(value ?? 0);
+    const { low, high } = this.props.row;
+    slider.style.setProperty("--filled", `${((Number(slider.value) - low) / (high - low)) * 100}%`);
+    if (document.activeElement !== box) box.value = this.text(value);
+  }
+
+  render({ row, label }) {
+    return html`<span class="slider" ref=${this.element}>
+      <input type="range" min=${row.low} max=${row.high} step="any" aria-label=${label} disabled=${model.readonly}
+        onPointerDown=${() => (this.dragging = true)} onPointerUp=${() => (this.dragging = false)} onInput=${this.slide} />
+      <input type="text" inputmode="decimal" class="number" aria-label=${`${label}, as a number`} disabled=${model.readonly}
+        onFocus=${(event) => event.target.select()} onKeyDown=${this.key} />
+      <span class="unit">${row.unit}</span></span>`;
+  }
+
+  slide = (event) => {
+    const { row } = this.props;
+    write({ [row.targets?.[0] ?? row.paths[0]]: Number(Number(event.target.value).toFixed(row.decimals)) });
+  };
+
+  key = (event) => {
+    event.stopPropagation();
+    if (event.key === "Enter") {
+      setNumber(this.props.row, event.target.value);
+      event.target.blur();
+    } else if (event.key === "Escape") event.target.blur();
+  };
+}
+
+const KINDS = {
+  meter: Meter, lamp: Lamp, lamps: Lamps, relay: Relay, bars: Bars, leds: Leds, text: Text,
+  switch: Switch, slider: Slider, number: NumberBox,
+};

@@ -1,0 +1,67 @@
+// Every motor and sensor: outputs as bars and lamps, inputs to set. Values are drawn without rendering the rows again.
+import { model } from "../model.js";
+import { settings } from "../settings.js";
+import { Icon, Live, classes, html } from "../view.js";
+import { DeviceRow } from "./device_row.js";
+
+export class DevicesPanel extends Live {
+  parts = ["panels", "settings", "hello"];
+  state = { search: "", closed: {} };
+
+  render(_, { search, closed }) {
+    const words = search.toLowerCase().split(/\s+/).filter(Boolean);
+    const pins = new Set(settings.get("pins"));
+    const groups = namedGroups(model.panels);
+    const pinned = groups.flatMap((group) => group.rows).filter((row) => pins.has(rowKey(row)));
+    const found = groups
+      .map((group) => ({ ...group, rows: group.rows.filter((row) => matches(row, group.title, words)) }))
+      .filter((group) => group.rows.length);
+    return html`<div class="devices">
+      <label class="search"><${Icon} name="search" /><input type="search" placeholder="Search devices" value=${search}
+        aria-label="Search devices" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
+      <div class="scroll">
+        ${pinned.length > 0 && html`<${Group} title="Pinned" rows=${pinned} pins=${pins} />`}
+        ${found.map((group) => html`<${Group} key=${group.title} title=${group.title} rows=${group.rows} pins=${pins}
+          closed=${closed[group.title] && !words.length}
+          toggle=${() => this.setState({ closed: { ...closed, [group.title]: !closed[group.title] } })} />`)}
+        ${!found.length && html`<p class="empty">${model.panels.length ? "No device is called that." : "Devices appear here when the robot creates them."}</p>`}
+      </div>
+    </div>`;
+  }
+}
+
+// The groups, where the rows of a device with a heading know its name.
+function namedGroups(panels) {
+  return panels.map((panel) => {
+    let heading = "";
+    const rows = panel.rows.map((row) => {
+      if (row.kind === "text" && !row.paths.length) heading = row.label;
+      else if (!row.label.startsWith(" ")) heading = "";
+      return { ...row, heading: row.label.startsWith(" ") ? heading : "", isHeading: row.kind === "text" && !row.paths.length };
+    });
+    return { title: panel.title, rows };
+  });
+}
+
+function matches(row, title, words) {
+  const text = `${title} ${row.heading} ${row.label} ${row.paths.join(" ")}`.toLowerCase();
+  return words.every((word) => text.includes(word));
+}
+
+export function rowKey(row) {
+  return row.paths[0] ?? `heading ${row.label}`;
+}
+
+function Group({ title, rows, pins, closed, toggle }) {
+  return html`<section class="group">
+    <h3><button class=${classes({ fold: true, closed })} aria-expanded=${!closed} onClick=${toggle} disabled=${!toggle}>
+      ${toggle && html`<${Icon} name="chevron" />`}${title}</button></h3>
+    ${!closed && rows.map((row) => html`<${DeviceRow} key=${rowKey(row)} row=${row} pinned=${pins.has(rowKey(row))}
+      named=${title === "Pinned"} pin=${() => togglePin(rowKey(row))} />`)}
+  </section>`;
+}
+
+function togglePin(key) {
+  const pins = settings.get("pins");
+  settings.set("pins", pins.includes(key) ? pins.filter((each) => each !== key) : [...pins, key]);
+}

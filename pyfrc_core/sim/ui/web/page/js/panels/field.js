@@ -1,0 +1,231 @@
+// The field: the season's picture, the robot, its path, and what robot code publishes. The wheel zooms, dragging moves.
+import { font, sizeCanvas } from "../canvas.js";
+import { command } from "../connection.js";
+import { numberText } from "../format.js";
+import * as draw from "../field/draw.js";
+import { fieldObjects, swerveStates } from "../field/published.js";
+import { Viewport } from "../field/viewport.js";
+import { Menu } from "../menu.js";
+import { model } from "../model.js";
+import { compared } from "../compare.js";
+import { color, settings } from "../settings.js";
+import { Icon, Live, createRef, html } from "../view.js";
+
+const LAYERS = [
+  ["trail", "Path of the robot"],
+  ["former", "Earlier path"],
+  ["drawings", "Drawings of the code"],
+  ["objects", "Field2d objects"],
+  ["swerve", "Swerve arrows"],
+  ["tags", "AprilTags"],
+];
+const DEGREES = 180 / Math.PI;
+const MOST_ROBOTS = 3; // of more poses, each is a small arrowhead
+const LEAST_NAMED = 8; // pixels per foot: names would cover a smaller field
+const TURN = 15; // degrees by an arrow key
+
+export class FieldPanel extends Live {
+  parts = ["t", "robot", "shown", "values", "trail", "former_trail", "drawings", "targets", "hello", "field", "settings", "window", "compared", "compared-series"];
+  canvas = createRef();
+
+  componentDidMount() {
+    super.componentDidMount();
+    this.view = new Viewport(model.hello.field);
+    this.sizes = new ResizeObserver(() => this.draw());
+    this.sizes.observe(this.canvas.current.parentElement);
+    this.canvas.current.addEventListener("wheel", this.wheel, { passive: false });
+    this.loadImage();
+    this.draw();
+  }
+
+  componentWillUnmount() {
+    super.componentWillUnmount();
+    this.sizes.disconnect();
+  }
+
+  componentDidUpdate() {
+    this.loadImage();
+    this.draw();
+  }
+
+  shows(layer) {
+    return settings.get("fieldLayers")[layer] !== false;
+  }
+
+  // The menu's item for something that can be hidden.
+  layer(name, text) {
+    const shown = this.shows(name);
+    return { text, checked: shown, act: () => settings.set("fieldLayers", { ...settings.get("fieldLayers"), [name]: !shown }) };
+  }
+
+  render() {
+    const pose = model.shown.robot;
+    const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));
+    const objects = fieldObjects(model.shown.values, model.hello.field).map(({ path, name }) => this.layer(path, name));
+    if (objects.length) layers.push({ separator: true }, ...objects);
+    layers.push({ separator: true }, { text: "Turn the field round", checked: Boolean(this.view?.turned), act: this.turnRound });
+    return html`<div class="field">
+      <div class="field-canvas" tabindex="0" role="application" aria-label="Field. Arrow keys move the robot, with Shift they turn it"
+        onPointerDown=${this.begin} onPointerMove=${this.drag} onPointerUp=${this.end} onPointerCancel=${this.end}
+        onDblClick=${this.whole} onContextMenu=${(event) => event.preventDefault()} onKeyDown=${this.key}>
+        <canvas ref=${this.canvas}></canvas>
+      </div>
+      <div class="field-line">
+        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose[0])} ft</b><i>y</i><b>${numberText(pose[1])} ft</b><i>heading</i><b>${numberText(heading(pose[2]), 1)}°</b>` : "No physics.py: pyfrc create-physics writes one"}</span>
+        <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
+        <${Menu} label="Show" title="What is drawn" items=${layers} />
+      </div>
+    </div>`;
+  }
+
+  // -- drawing
+
+  loadImage() {
+    const address = model.hello.field.image;
+    if (address === this.imageAddress) return;
+    this.imageAddress = address;
+    this.image = null;
+    if (!address) return;
+    const image = new Image();
+    image.onload = () => {
+      this.image = image;
+      this.draw();
+    };
+    image.src = address;
+  }
+
+  draw() {
+    const canvas = this.canvas.current;
+    if (!canvas || !this.view) return;
+    const { clientWidth, clientHeight } = canvas.parentElement;
+    if (!clientWidth || !clientHeight) return;
+    const context = sizeCanvas(canvas, clientWidth, clientHeight);
+    const { view } = this;
+    const { field } = model.hello;
+    view.field = field;
+    view.resize(clientWidth, clientHeight);
+    draw.drawCarpet(context, view, field, this.image);
+    if (this.shows("tags")) draw.drawTags(context, view, field.tags);
+    if (this.shows("former")) draw.drawTrail(context, view, model.formerTrail, "former", 2, [7, 5]);
+    if (this.shows("trail")) {
+      context.globalAlpha = model.past ? 0.35 : 1;
+      draw.drawTrail(context, view, model.trail, "accent", 2.5);
+      context.globalAlpha = 1;
+    }
+    if (this.shows("drawings")) for (const drawing of model.drawings) draw.drawDrawing(context, view, drawing);
+    draw.drawTargets(context, view, model.targets);
+    if (this.shows("objects")) this.drawObjects(context, field);
+    this.drawRobots(context, field);
+  }
+
+  drawObjects(context, field) {
+    fieldObjects(model.shown.values, field).forEach((object, index) => {
+      if (!this.shows(object.path)) return;
+      const name = `curve-${(index + 2) % 8}`;
+      if (object.isPath) draw.drawTrail(context, this.view, object.poses, name, 2);
+      else if (object.poses.length > MOST_ROBOTS) for (const pose of object.poses) draw.drawPlace(context, this.view, pose, name);
+      else for (const pose of object.poses) draw.drawRobot(context, this.view, field, pose, { body: name, alpha: 0.8, outline: true });
+      if (this.view.scale < LEAST_NAMED) return;
+      const [x, y] = this.view.toScreen(object.poses[0]);
+      const above = object.isPath || object.poses.length > MOST_ROBOTS ? 8 : (Math.hypot(field.robot_length, field.robot_width) / 2) * this.view.scale + 2;
+      context.fillStyle = color(name);
+      context.font = font(11);
+      context.textAlign = "center";
+      context.textBaseline = "bottom";
+      context.fillText(object.name, x, y - above);
+    });
+  }
+
+  drawRobots(context, field) {
+    const { robot, values, station } = model.shown;
+    const ghost = compared.poseAt(model.past?.t ?? model.t);
+    if (ghost) draw.drawRobot(context, this.view, field, ghost, { body: "own", alpha: 0.75 });
+    if (model.past && model.robot) draw.drawRobot(context, this.view, field, model.robot, { body: "muted", alpha: 0.35 });
+    if (!robot) return;
+    const body = (station.alliance ?? model.station.alliance ?? "").startsWith("red") ? "alliance-red" : "blue";
+    draw.drawRobot(context, this.view, field, robot, { body });
+    if (!this.shows("swerve")) return;
+    for (const { states, wanted } of swerveStates(values)) {
+      draw.drawSwerve(context, this.view, field, robot, states, wanted ? "swerve-wanted" : "swerve");
+    }
+  }
+
+  // -- the pointer and the keys
+
+  place(event) {
+    const box = this.canvas.current.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  onRobot(place) {
+    const { robot, field } = { robot: model.robot, field: model.hello.field };
+    if (!robot || model.past || model.readonly) return false;
+    return Math.hypot(place[0] - robot[0], place[1] - robot[1]) < Math.max(field.robot_length, field.robot_width) / 2;
+  }
+
+  begin = (event) => {
+    const place = this.view.toField(...this.place(event));
+    event.currentTarget.setPointerCapture(event.pointerId);
+    if (this.onRobot(place)) {
+      const kind = event.button === 2 || event.shiftKey ? "turn" : "move";
+      this.held = { kind, by: [model.robot[0] - place[0], model.robot[1] - place[1]] };
+    } else this.held = { kind: "pan", last: this.place(event) };
+  };
+
+  drag = (event) => {
+    const pixel = this.place(event);
+    const place = this.view.toField(...pixel);
+    if (!this.held) {
+      event.currentTarget.style.cursor = this.onRobot(place) ? "grab" : "default";
+      return;
+    }
+    event.currentTarget.style.cursor = "grabbing";
+    const { kind, last, by } = this.held;
+    const { robot } = model;
+    if (kind === "pan") {
+      this.view.pan(pixel[0] - last[0], pixel[1] - last[1]);
+      this.held.last = pixel;
+      this.draw();
+    } else if (kind === "move") {
+      command("place", { x: place[0] + by[0], y: place[1] + by[1], degrees: robot[2] * DEGREES });
+    } else {
+      command("place", { x: robot[0], y: robot[1], degrees: Math.atan2(place[1] - robot[1], place[0] - robot[0]) * DEGREES });
+    }
+  };
+
+  end = (event) => {
+    this.held = null;
+    event.currentTarget.blur();
+  };
+
+  wheel = (event) => {
+    event.preventDefault();
+    this.view.zoomAt(Math.exp(-event.deltaY * 0.0015), ...this.place(event));
+    this.draw();
+  };
+
+  whole = () => {
+    this.view.reset();
+    this.draw();
+  };
+
+  turnRound = () => {
+    this.view.turned = !this.view.turned;
+    this.setState({});
+  };
+
+  key = (event) => {
+    const way = { ArrowLeft: [-0.25, 0], ArrowRight: [0.25, 0], ArrowUp: [0, -0.25], ArrowDown: [0, 0.25] }[event.key];
+    const { robot } = model;
+    if (!way || !robot || model.past || model.readonly) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const degrees = robot[2] * DEGREES;
+    if (event.shiftKey) command("place", { x: robot[0], y: robot[1], degrees: degrees + Math.sign(way[0] + way[1]) * TURN });
+    else command("place", { x: robot[0] + way[0], y: robot[1] + way[1], degrees });
+  };
+}
+
+function heading(radians) {
+  return ((((radians * DEGREES + 180) % 360) + 360) % 360) - 180;
+}

@@ -1,0 +1,177 @@
+// The six joysticks: their gamepads, axes, buttons and POV.
+import { command, write } from "../connection.js";
+import { numberText, plain } from "../format.js";
+import { assignedTo, gamepads, labelOf, nameOf } from "../input/gamepads.js";
+import { model } from "../model.js";
+import { settings } from "../settings.js";
+import { Component, Live, classes, createRef, html } from "../view.js";
+import { StickPad, axisTarget } from "./stick_pad.js";
+
+const BUTTONS = 12;
+const POVS = [315, 0, 45, 270, -1, 90, 225, 180, 135];
+const ARROWS = { 315: "↖", 0: "↑", 45: "↗", 270: "←", 90: "→", 225: "↙", 180: "↓", 135: "↘" };
+
+export class JoysticksPanel extends Live {
+  parts = ["gamepads", "settings", "hello", "paths", "shown"];
+  state = { stick: 0 };
+
+  render(_, { stick }) {
+    const { axes, buttons } = model.hello.options.joysticks[stick];
+    const plugged = model.shown.values.has(`joysticks[${stick}].axes`);
+    const axisNumbers = Object.keys(axes).map(Number);
+    const buttonNumbers = [...new Set([...Array.from({ length: BUTTONS }, (_, index) => index + 1), ...Object.keys(buttons).map(Number)])].sort((one, other) => one - other);
+    return html`<div class="joysticks">
+      <div class="segments small" role="tablist" aria-label="Joystick">
+        ${[0, 1, 2, 3, 4, 5].map((number) => html`<button key=${number} role="tab" aria-selected=${number === stick}
+          class=${classes({ chosen: number === stick, has: assignedTo(number) !== null })} onClick=${() => this.setState({ stick: number })}>${number}</button>`)}
+      </div>
+      <div class="scroll" key=${stick}>
+        <${GamepadChoice} stick=${stick} plugged=${plugged} />
+        <div class="stick-row">
+          <${StickPad} stick=${stick} x=${0} y=${1} label="Axes 0 and 1" />
+          <${Pov} stick=${stick} />
+        </div>
+        ${axisNumbers.map((axis) => html`<${Axis} key=${axis} stick=${stick} axis=${axis} label=${axes[axis]} />`)}
+        <div class="buttons">
+          ${buttonNumbers.map((button) => html`<${Button} key=${button} stick=${stick} button=${button} label=${buttons[button] ?? ""} />`)}
+        </div>
+      </div>
+    </div>`;
+  }
+}
+
+function GamepadChoice({ stick, plugged }) {
+  const pads = gamepads();
+  const assigned = assignedTo(stick, pads);
+  const choose = (event) => {
+    const { [stick]: _, ...others } = settings.get("gamepads");
+    settings.set("gamepads", event.target.value === "auto" ? others : { ...others, [stick]: event.target.value });
+  };
+  const chosen = settings.get("gamepads")[stick] ?? "auto";
+  return html`<div class="gamepad">
+    <label class="check"><input type="checkbox" checked=${plugged} disabled=${model.readonly}
+      onChange=${(event) => command("plug", { stick, plugged: event.target.checked })} />Plugged in</label>
+    <select aria-label=${`Gamepad of joystick ${stick}`} value=${chosen} onChange=${choose} disabled=${model.readonly}>
+      <option value="auto" selected=${chosen === "auto"}>${assigned && chosen === "auto" ? nameOf(assigned) : "Automatic: no gamepad"}</option>
+      <option value="none" selected=${chosen === "none"}>Keyboard and mouse only</option>
+      ${pads.map((pad) => html`<option key=${labelOf(pad, pads)} value=${labelOf(pad, pads)} selected=${chosen === labelOf(pad, pads)}>${nameOf(pad)}</option>`)}
+      ${!["auto", "none", ...pads.map((pad) => labelOf(pad, pads))].includes(chosen) && html`<option value=${chosen} selected>${chosen} (not connected)</option>`}
+    </select></div>`;
+}
+
+class Axis extends Component {
+  element = createRef();
+
+  componentDidMount() {
+    const { stick, axis } = this.props;
+    this.unbind = model.bind(`joysticks[${stick}].axes`, (axes) => {
+      const value = plain(axes?.[axis]) ?? 0;
+      const [slider, text] = this.element.current.children[1].children;
+      if (document.activeElement !== slider) slider.value = String(value);
+      text.textContent = numberText(value, 2);
+    });
+  }
+
+  componentWillUnmount() {
+    this.unbind();
+  }
+
+  render({ stick, axis, label }) {
+    return html`<label class="axis" ref=${this.element}><span class="row-label">${label}</span><span class="slider">
+      <input type="range" min="-1" max="1" step="0.01" aria-label=${`Axis ${label}`} disabled=${model.readonly}
+        onInput=${(event) => write({ [axisTarget(stick, axis)]: Number(event.target.value) })}
+        onDblClick=${() => write({ [axisTarget(stick, axis)]: 0 })} />
+      <span class="number"></span></span></label>`;
+  }
+}
+
+class Button extends Component {
+  element = createRef();
+
+  componentDidMount() {
+    const { stick, button } = this.props;
+    this.unbind = model.bind(`joysticks[${stick}].buttons`, (buttons) => {
+      this.pressed = Boolean(buttons?.[button]);
+      this.element.current.classList.toggle("pressed", this.pressed);
+      this.element.current.setAttribute("aria-pressed", String(this.pressed));
+    });
+  }
+
+  componentWillUnmount() {
+    this.unbind();
+    if (this.holding) this.press(false);
+  }
+
+  press(pressed) {
+    const { stick, button } = this.props;
+    command("button", { stick, button, pressed });
+  }
+
+  render({ button, label }) {
+    return html`<button ref=${this.element} class="stick-button" title=${`${label || `Button ${button}`}: the right mouse button keeps it pressed`}
+      disabled=${model.readonly} onPointerDown=${this.down} onPointerUp=${this.up} onPointerCancel=${this.up}
+      onContextMenu=${this.keep} onKeyDown=${this.key} onKeyUp=${this.keyUp}><b>${button}</b><small>${label}</small></button>`;
+  }
+
+  down = (event) => {
+    if (event.button !== 0) return;
+    event.currentTarget.setPointerCapture(event.pointerId);
+    this.holding = true;
+    this.press(true);
+  };
+
+  up = () => {
+    if (!this.holding) return;
+    this.holding = false;
+    this.press(false);
+  };
+
+  keep = (event) => {
+    event.preventDefault();
+    this.press(!this.pressed);
+  };
+
+  key = (event) => {
+    if (![" ", "Enter"].includes(event.key) || event.repeat) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.press(true);
+  };
+
+  keyUp = (event) => {
+    if ([" ", "Enter"].includes(event.key)) this.press(false);
+  };
+}
+
+class Pov extends Component {
+  element = createRef();
+
+  componentDidMount() {
+    this.unbind = model.bind(`joysticks[${this.props.stick}].povs`, (povs) => {
+      const angle = povs?.[0] ?? -1;
+      this.angle = angle;
+      [...this.element.current.children].forEach((button, index) => button.classList.toggle("pressed", angle !== -1 && POVS[index] === angle));
+    });
+  }
+
+  componentWillUnmount() {
+    this.unbind();
+  }
+
+  turn(angle) {
+    command("pov", { stick: this.props.stick, pov: 0, angle });
+  }
+
+  render() {
+    return html`<div class="pov" role="group" aria-label="POV" ref=${this.element}>
+      ${POVS.map((angle) => angle === -1
+        ? html`<i key=${angle}>POV</i>`
+        : html`<button key=${angle} aria-label=${`POV ${angle}°`} disabled=${model.readonly}
+          onPointerDown=${(event) => event.button === 0 && (event.currentTarget.setPointerCapture(event.pointerId), this.turn(angle))}
+          onPointerUp=${(event) => event.button === 0 && this.turn(-1)}
+          onContextMenu=${(event) => (event.preventDefault(), this.turn(this.angle === angle ? -1 : angle))}
+          onKeyDown=${(event) => [" ", "Enter"].includes(event.key) && !event.repeat && (event.preventDefault(), event.stopPropagation(), this.turn(angle))}
+          onKeyUp=${(event) => [" ", "Enter"].includes(event.key) && this.turn(-1)}>${ARROWS[angle]}</button>`)}
+    </div>`;
+  }
+}

@@ -1,0 +1,80 @@
+// The keys that drive: the chosen layout, and the person's own bindings.
+import { bindings, keyName } from "../input/keys.js";
+import { model } from "../model.js";
+import { settings } from "../settings.js";
+import { Icon, Live, html } from "../view.js";
+
+const STATION_KEYS = [
+  ["[ ] \\ together, Ctrl+E", "enable"],
+  ["Enter", "disable"],
+  ["Space", "emergency stop"],
+  ["F5", "pause or run"],
+  ["F6", "step by one packet"],
+  ["F8", "disconnect or connect the driver station"],
+  ["F9", "restart the robot"],
+  ["Shift, held", "gentle driving"],
+];
+const NAMES = { left: "←", right: "→", up: "↑", down: "↓", bracketleft: "[", bracketright: "]", backslash: "\\" };
+
+export class KeysPanel extends Live {
+  parts = ["settings", "hello"];
+  state = { key: "", kind: "axis", stick: 0, control: 0, by: 1 };
+
+  render(_, state) {
+    const { keyboard } = model.hello.options;
+    const saved = settings.get("keyboard");
+    const { layout, axes, buttons } = bindings();
+    const own = new Set(saved.own.map((each) => each.key));
+    return html`<div class="keys scroll form">
+      <label>Keys that drive
+        <select value=${layout.name} onChange=${(event) => change({ chosen: event.target.value })}>
+          ${keyboard.layouts.map((each) => html`<option key=${each.name} value=${each.name} selected=${each.name === layout.name}>${each.name}</option>`)}
+        </select></label>
+      <p class="faint">${layout.help}</p>
+      <table><thead><tr><th>Key</th><th>Does</th><th></th></tr></thead><tbody>
+        ${Object.entries(axes).map(([key, moves]) => html`<tr key=${`axis ${key}`}><td><kbd>${NAMES[key] ?? key.toUpperCase()}</kbd></td>
+          <td>${moves.map(([stick, axis, by]) => `joystick ${stick} axis ${axis} ${by > 0 ? "+" : "−"}${Math.abs(by)}`).join(", ")}</td>
+          <td>${own.has(key) && html`<${Remove} name=${key} />`}</td></tr>`)}
+        ${saved.own.filter((each) => each.kind === "button").map(({ key }) => html`<tr key=${`button ${key}`}><td><kbd>${NAMES[key] ?? key.toUpperCase()}</kbd></td>
+          <td>${(buttons[key] ?? []).map(([stick, button]) => `joystick ${stick} button ${button}`).join(", ")}</td>
+          <td><${Remove} name=${key} /></td></tr>`)}
+      </tbody></table>
+      <fieldset disabled=${model.readonly}><legend>Add a key</legend>
+        <div class="binding">
+          <input type="text" readonly value=${state.key ? (NAMES[state.key] ?? state.key.toUpperCase()) : ""} placeholder="Press a key" aria-label="Key" onKeyDown=${this.takeKey} />
+          <select aria-label="Kind" value=${state.kind} onChange=${(event) => this.setState({ kind: event.target.value })}>
+            <option value="axis">axis</option><option value="button">button</option></select>
+          <label>joystick <input type="number" min="0" max="5" value=${state.stick} onInput=${(event) => this.setState({ stick: Number(event.target.value) })} /></label>
+          <label>number <input type="number" min="0" max="32" value=${state.control} onInput=${(event) => this.setState({ control: Number(event.target.value) })} /></label>
+          ${state.kind === "axis" && html`<label>by <input type="number" min="-1" max="1" step="0.1" value=${state.by} onInput=${(event) => this.setState({ by: Number(event.target.value) })} /></label>`}
+          <button disabled=${!state.key} onClick=${this.add}>Add</button>
+        </div></fieldset>
+      <h4>The driver station</h4>
+      <table><tbody>${STATION_KEYS.map(([key, what]) => html`<tr key=${key}><td><kbd>${key}</kbd></td><td>${what}</td></tr>`)}
+        <tr><td><kbd>1</kbd> to <kbd>9</kbd>, <kbd>0</kbd></td><td>buttons 1 to 10 of joystick 0</td></tr></tbody></table>
+    </div>`;
+  }
+
+  takeKey = (event) => {
+    if (event.key === "Tab") return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.setState({ key: keyName(event) });
+  };
+
+  add = () => {
+    const { key, kind, stick, control, by } = this.state;
+    const others = settings.get("keyboard").own.filter((each) => each.key !== key);
+    change({ own: [...others, { key, kind, stick, control: kind === "button" ? Math.max(control, 1) : control, by }] });
+    this.setState({ key: "" });
+  };
+}
+
+function Remove({ name }) {
+  const remove = () => change({ own: settings.get("keyboard").own.filter((each) => each.key !== name) });
+  return html`<button class="tool" aria-label=${`Remove the key ${name}`} onClick=${remove}><${Icon} name="close" /></button>`;
+}
+
+function change(part) {
+  settings.set("keyboard", { ...settings.get("keyboard"), ...part });
+}

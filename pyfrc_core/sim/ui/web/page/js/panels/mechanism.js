@@ -1,0 +1,119 @@
+// The Mechanism2d drawings that robot code publishes.
+import { font, sizeCanvas } from "../canvas.js";
+import { plain } from "../format.js";
+import { model } from "../model.js";
+import { color } from "../settings.js";
+import { Live, createRef, html } from "../view.js";
+
+export class MechanismPanel extends Live {
+  parts = ["values", "paths", "shown", "settings", "window", "hello"];
+  canvas = createRef();
+
+  componentDidMount() {
+    super.componentDidMount();
+    this.sizes = new ResizeObserver(() => this.draw());
+    this.sizes.observe(this.canvas.current.parentElement);
+    this.draw();
+  }
+
+  componentWillUnmount() {
+    super.componentWillUnmount();
+    this.sizes.disconnect();
+  }
+
+  componentDidUpdate() {
+    this.draw();
+  }
+
+  render() {
+    const found = mechanisms(model.shown.values);
+    return html`<div class="mechanism"><canvas ref=${this.canvas} role="img" aria-label=${found.map((each) => each.name).join(", ")}></canvas>
+      ${!found.length && html`<p class="empty">A Mechanism2d that the robot publishes appears here: SmartDashboard.putData("Arm", mechanism).</p>`}</div>`;
+  }
+
+  draw() {
+    const canvas = this.canvas.current;
+    if (!canvas) return;
+    const { clientWidth, clientHeight } = canvas.parentElement;
+    if (!clientWidth) return;
+    const context = sizeCanvas(canvas, clientWidth, clientHeight);
+    const found = mechanisms(model.shown.values);
+    const columns = Math.ceil(Math.sqrt(found.length)) || 1;
+    const rows = Math.ceil(found.length / columns) || 1;
+    found.forEach((mechanism, index) => {
+      const box = {
+        x: ((index % columns) * clientWidth) / columns + 10,
+        y: (Math.floor(index / columns) * clientHeight) / rows + 10,
+        width: clientWidth / columns - 20,
+        height: clientHeight / rows - 20,
+      };
+      drawMechanism(context, mechanism, box);
+    });
+  }
+}
+
+// Every Mechanism2d as a tree of its folder: { name, tree }.
+export function mechanisms(values) {
+  const found = [];
+  for (const [path, type] of values) {
+    if (type !== "Mechanism2d" || !path.startsWith("nt:/") || !path.endsWith("/.type")) continue;
+    const folder = path.slice(0, -"/.type".length);
+    found.push({ name: folder.split("/").pop(), tree: treeOf(values, folder) });
+  }
+  return found;
+}
+
+function treeOf(values, folder) {
+  const tree = { values: {}, children: {} };
+  for (const [path, value] of values) {
+    if (!path.startsWith(`${folder}/`)) continue;
+    const parts = path.slice(folder.length + 1).split("/");
+    let node = tree;
+    for (const part of parts.slice(0, -1)) node = node.children[part] ??= { values: {}, children: {} };
+    node.values[parts[parts.length - 1]] = plain(value);
+  }
+  return tree;
+}
+
+function drawMechanism(context, { name, tree }, box) {
+  const [width, height] = tree.values.dims ?? [1, 1];
+  const caption = 18;
+  const scale = Math.min(box.width / width, (box.height - caption) / height);
+  const left = box.x + (box.width - width * scale) / 2;
+  const bottom = box.y + box.height;
+  context.fillStyle = tree.values.backgroundColor ?? color("track");
+  context.beginPath();
+  context.roundRect(left, bottom - height * scale, width * scale, height * scale, 8);
+  context.fill();
+  context.save();
+  context.clip();
+  for (const root of Object.values(tree.children)) {
+    const at = [left + (root.values.x ?? 0) * scale, bottom - (root.values.y ?? 0) * scale];
+    for (const child of Object.values(root.children)) drawLigament(context, child, at, 0, scale);
+    context.beginPath();
+    context.arc(...at, 4, 0, 2 * Math.PI);
+    context.fillStyle = color("robot-front");
+    context.fill();
+  }
+  context.restore();
+  context.fillStyle = color("muted");
+  context.font = font(12);
+  context.textAlign = "center";
+  context.textBaseline = "bottom";
+  context.fillText(name, box.x + box.width / 2, bottom - height * scale - 3);
+}
+
+// A ligament begins where its parent ends, and turns by its angle against it.
+function drawLigament(context, node, [x, y], parentAngle, scale) {
+  const angle = parentAngle + ((node.values.angle ?? 0) * Math.PI) / 180;
+  const length = (node.values.length ?? 0) * scale;
+  const end = [x + Math.cos(angle) * length, y - Math.sin(angle) * length];
+  context.strokeStyle = node.values.color ?? color("accent");
+  context.lineWidth = Math.max(node.values.weight ?? 6, 1);
+  context.lineCap = "round";
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(...end);
+  context.stroke();
+  for (const child of Object.values(node.children)) drawLigament(context, child, end, angle, scale);
+}

@@ -1,0 +1,92 @@
+// A square (or a big round stick) that moves two axes, by mouse, finger or arrow keys; it returns when released.
+import { write } from "../connection.js";
+import { plain } from "../format.js";
+import { model } from "../model.js";
+import { Component, createRef, html } from "../view.js";
+
+export function axisTarget(stick, axis) {
+  return `joysticks[${stick}].axes[${axis}]`;
+}
+
+export class StickPad extends Component {
+  element = createRef();
+
+  componentDidMount() {
+    this.follow();
+  }
+
+  componentDidUpdate(before) {
+    if (before.stick !== this.props.stick) this.follow();
+  }
+
+  follow() {
+    this.unbind?.();
+    this.unbind = model.bind(`joysticks[${this.props.stick}].axes`, (axes) => {
+      const { x, y } = this.props;
+      if (!this.dragging) this.paint(plain(axes?.[x]) ?? 0, plain(axes?.[y]) ?? 0);
+    });
+  }
+
+  componentWillUnmount() {
+    this.unbind();
+    if (this.dragging) this.move(0, 0);
+  }
+
+  paint(x, y) {
+    const knob = this.element.current.querySelector(".knob");
+    knob.style.left = `${50 + x * 50}%`;
+    knob.style.top = `${50 + y * 50}%`;
+  }
+
+  render({ round, label }) {
+    return html`<div class=${round ? "stick round" : "stick"} ref=${this.element} tabindex="0" role="application" aria-label=${label}
+      onPointerDown=${this.begin} onPointerMove=${this.drag} onPointerUp=${this.end} onPointerCancel=${this.end} onKeyDown=${this.key} onKeyUp=${this.keyUp}>
+      <div class="area"><i class="knob"></i></div></div>`;
+  }
+
+  move(x, y) {
+    const { stick, x: axisX, y: axisY } = this.props;
+    this.paint(x, y);
+    write({ [axisTarget(stick, axisX)]: x, [axisTarget(stick, axisY)]: y });
+  }
+
+  begin = (event) => {
+    if (model.readonly) return;
+    event.preventDefault();
+    event.currentTarget.setPointerCapture(event.pointerId);
+    this.dragging = true;
+    this.drag(event);
+  };
+
+  drag = (event) => {
+    if (!this.dragging) return;
+    const box = this.element.current.querySelector(".area").getBoundingClientRect();
+    let x = ((event.clientX - box.left) / box.width) * 2 - 1;
+    let y = ((event.clientY - box.top) / box.height) * 2 - 1;
+    if (this.props.round) {
+      const far = Math.max(Math.hypot(x, y), 1);
+      x /= far;
+      y /= far;
+    }
+    const limited = (value) => Number(Math.min(Math.max(value, -1), 1).toFixed(3));
+    this.move(limited(x), limited(y));
+  };
+
+  end = () => {
+    if (!this.dragging) return;
+    this.dragging = false;
+    this.move(0, 0);
+  };
+
+  key = (event) => {
+    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (!way || event.repeat || model.readonly) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.move(...way);
+  };
+
+  keyUp = (event) => {
+    if (event.key.startsWith("Arrow")) this.move(0, 0);
+  };
+}

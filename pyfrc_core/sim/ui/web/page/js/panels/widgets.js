@@ -1,0 +1,84 @@
+// What robot code has put on the dashboard: choosers, PID controllers, commands, alerts and single values, as cards.
+import { write } from "../connection.js";
+import { numberText, plain, shortNumber, valueText } from "../format.js";
+import { model } from "../model.js";
+import { addToPlot } from "../plotting.js";
+import { Icon, Live, html } from "../view.js";
+import { Chooser } from "./match.js";
+
+// Shown elsewhere: on the field, or as a drawing.
+const ELSEWHERE = new Set(["Field2d", "Mechanism2d", "String Chooser", "Alerts", "FMSInfo"]);
+const ALERTS = [["errors", "red"], ["warnings", "amber"], ["infos", "accent"]];
+
+export class WidgetsPanel extends Live {
+  parts = ["values", "paths", "choosers", "shown", "hello"];
+  interval = 80;
+
+  render() {
+    const { values } = model.shown;
+    const folders = sendables(values);
+    const cards = folders.filter((each) => !ELSEWHERE.has(each.type));
+    const alerts = folders.filter((each) => each.type === "Alerts");
+    return html`<div class="widgets scroll">
+      ${alerts.map((each) => html`<${Alerts} key=${each.path} folder=${each} values=${values} />`)}
+      ${model.choosers.map((chooser) => html`<div class="card form" key=${chooser.name}><${Chooser} chooser=${chooser} /></div>`)}
+      ${cards.map((each) => {
+        const Card = each.type === "Command" ? CommandCard : ValuesCard;
+        return html`<${Card} key=${each.path} folder=${each} values=${values} />`;
+      })}
+      ${!cards.length && !alerts.length && !model.choosers.length && html`<p class="empty">Choosers, PID controllers, commands and alerts that the robot publishes with SmartDashboard.putData appear here.</p>`}
+    </div>`;
+  }
+}
+
+// Folders with a ".type": { path, name, type }.
+function sendables(values) {
+  const found = [];
+  for (const [path, type] of values) {
+    if (!path.startsWith("nt:/") || !path.endsWith("/.type") || typeof type !== "string") continue;
+    const folder = path.slice(0, -"/.type".length);
+    const parents = found.filter((each) => folder.startsWith(`${each.path}/`));
+    if (parents.length === 0) found.push({ path: folder, name: folder.split("/").pop(), type });
+  }
+  return found;
+}
+
+function Alerts({ folder, values }) {
+  const lines = ALERTS.flatMap(([kind, name]) => (plain(values.get(`${folder.path}/${kind}`)) ?? []).map((text) => ({ name, text })));
+  return html`<div class="card"><h4>${folder.name}</h4>${lines.map(({ name, text }, index) => html`<p key=${index} class=${`alert ${name}`}><${Icon} name="warning" />${text}</p>`)}
+    ${!lines.length && html`<p class="faint">No alerts.</p>`}</div>`;
+}
+
+function CommandCard({ folder, values }) {
+  const running = Boolean(values.get(`${folder.path}/running`));
+  return html`<div class="card command"><h4>${folder.name}</h4>
+    <button class=${running ? "stop" : "go"} disabled=${model.readonly} onClick=${() => write({ [`${folder.path}/running`]: !running })}>${running ? "Cancel" : "Run"}</button></div>`;
+}
+
+function ValuesCard({ folder, values }) {
+  const rows = [...values].filter(([path]) => path.startsWith(`${folder.path}/`) && !path.slice(folder.path.length + 1).startsWith("."));
+  return html`<div class="card"><h4>${folder.name}<span class="chip">${folder.type}</span></h4>
+    ${rows.map(([path, value]) => html`<${ValueRow} key=${path} path=${path} name=${path.slice(folder.path.length + 1)} value=${plain(value)} />`)}</div>`;
+}
+
+function ValueRow({ path, name, value }) {
+  const number = typeof value === "number";
+  const set = (event) => {
+    event.stopPropagation();
+    if (event.key !== "Enter") return;
+    const typed = number ? Number(event.target.value.replace(",", ".")) : event.target.value;
+    if (!number || Number.isFinite(typed)) write({ [path]: typed });
+    event.target.blur();
+  };
+  const nudge = (by) => write({ [path]: Number((value + by).toPrecision(10)) });
+  const step = number && value ? 10 ** Math.floor(Math.log10(Math.abs(value)) - 0.3) / (Math.abs(value) >= 1 ? 10 : 1) : 0.1;
+  return html`<div class="row"><span class="row-label">${name}</span>
+    ${typeof value === "boolean"
+      ? html`<label class="switch"><input type="checkbox" role="switch" aria-label=${name} checked=${value} disabled=${model.readonly} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
+      : number || typeof value === "string"
+        ? html`<span class="number-box">${number && html`<button class="tool always" aria-label=${`Less ${name}`} disabled=${model.readonly} onClick=${() => nudge(-step)}>−</button>`}
+            <input type="text" class=${number ? "number" : ""} aria-label=${name} value=${number ? shortNumber(value) : value} title=${number ? numberText(value, 6) : value} disabled=${model.readonly} onKeyDown=${set} onFocus=${(event) => event.target.select()} />
+            ${number && html`<button class="tool always" aria-label=${`More ${name}`} disabled=${model.readonly} onClick=${() => nudge(step)}>+</button>`}</span>`
+        : html`<span class="faint">${valueText(value)}</span>`}
+    <span class="row-tools"><button class="tool" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span></div>`;
+}

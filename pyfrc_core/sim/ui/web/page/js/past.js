@@ -1,0 +1,68 @@
+// Looking at the past: one moment in every panel at once. Nothing is run, and nothing is lost.
+import { ask, command } from "./connection.js";
+import { model } from "./model.js";
+
+const PACKET = 0.02; // seconds
+
+let wanted = null;
+let asking = false;
+
+export function length() {
+  return Math.max(model.status.length ?? 0, model.t);
+}
+
+// Show the packet that is nearest to a moment. While an answer is on its way, only the newest wish counts.
+export function look(t) {
+  wanted = Math.min(Math.max(Math.round(t / PACKET) * PACKET, 0), length());
+  if (!asking) fetchWanted();
+}
+
+export function lookBy(seconds) {
+  look((wanted ?? model.past?.t ?? model.t) + seconds);
+}
+
+async function fetchWanted() {
+  asking = true;
+  while (wanted !== null) {
+    const t = wanted;
+    try {
+      const answer = await ask("values", { t, branch: null });
+      if (wanted !== null) show(t, new Map(Object.entries(answer.values)));
+    } catch (error) {
+      if (wanted === t) model.set("problem", error.message);
+    }
+    if (wanted === t) break;
+  }
+  asking = false;
+}
+
+function show(t, values) {
+  const mode = values.get("sim.mode") ?? "disabled";
+  const enabled = !mode.startsWith("disabled");
+  model.show({
+    t,
+    values,
+    robot: values.get("sim.pose") ?? null,
+    station: { ...model.station, mode, enabled, text: modeText(mode), kind: enabled ? "enabled" : "disabled" },
+  });
+}
+
+function modeText(mode) {
+  const names = { autonomous: "Autonomous", teleop: "Teleoperated", test: "Test" };
+  const chosen = mode === "disabled" ? "teleop" : mode.replace("disabled ", "");
+  return `${names[chosen] ?? chosen} ${mode.startsWith("disabled") ? "disabled" : "enabled"}`;
+}
+
+// Show the present again.
+export function live() {
+  wanted = null;
+  if (model.past) model.show(null);
+}
+
+// Go back to the moment that is shown, and drive on from there. What came later is kept as a branch.
+export function driveOn() {
+  const t = model.past?.t;
+  if (t === undefined) return;
+  live();
+  command("rewind", { t });
+}

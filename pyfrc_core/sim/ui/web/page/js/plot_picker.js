@@ -1,0 +1,98 @@
+// "Add a value": a search through everything that can be plotted, also the elements of lists.
+import { valueText } from "./format.js";
+import { model } from "./model.js";
+import { nameOf } from "./names.js";
+import { showBeside } from "./popup.js";
+import { Component, Icon, createRef, html } from "./view.js";
+
+const MOST = 60;
+const LONGEST_LIST = 16; // elements of a list that are offered
+
+export class PlotPicker extends Component {
+  state = { open: false, search: "" };
+  element = createRef();
+
+  componentDidMount() {
+    document.addEventListener("pointerdown", this.outside);
+  }
+
+  componentWillUnmount() {
+    document.removeEventListener("pointerdown", this.outside);
+  }
+
+  componentDidUpdate(_, before) {
+    if (!this.state.open) return;
+    showBeside(this.element.current.querySelector(".menu-list"), this.element.current);
+    if (!before.open) this.element.current.querySelector("input").focus();
+  }
+
+  outside = (event) => {
+    if (this.state.open && !this.element.current.contains(event.target)) this.setState({ open: false });
+  };
+
+  render(_, { open, search }) {
+    const found = open ? searched(search) : [];
+    return html`<div class="menu picker" ref=${this.element} onKeyDown=${this.key}>
+      <button class="quiet" aria-expanded=${open} onClick=${() => this.setState({ open: !open, search: "" })}><${Icon} name="plus" />Add value</button>
+      ${open && html`<div class="menu-list" popover="manual">
+        <label class="search"><${Icon} name="search" /><input type="search" value=${search} placeholder="Search all values"
+          aria-label="Search all values" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
+        <ul>${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.add(path)}>
+          <span>${nameOf(path)}</span><small>${valueText(valueAtPath(path)).slice(0, 24)}</small></button></li>`)}</ul>
+        ${!found.length && html`<p class="faint">No value is called that.</p>`}
+      </div>`}
+    </div>`;
+  }
+
+  add(path) {
+    this.setState({ open: false });
+    this.props.add(path);
+  }
+
+  key = (event) => {
+    if (!this.state.open) return;
+    const items = [...this.element.current.querySelectorAll("input, li button")];
+    const by = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (event.key === "Escape") this.setState({ open: false });
+    else if (event.key === "Enter" && event.target.matches("input")) items[1]?.click();
+    else if (by) items[(items.indexOf(document.activeElement) + by + items.length) % items.length].focus();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  };
+}
+
+function searched(text) {
+  const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+  const found = [];
+  for (const path of allPaths()) {
+    const whole = `${nameOf(path)} ${path}`.toLowerCase();
+    if (words.every((word) => whole.includes(word))) found.push(path);
+    if (found.length >= MOST) break;
+  }
+  return found;
+}
+
+// The paths of single values, what people plot most first.
+function* allPaths() {
+  const late = [];
+  for (const [path, value] of model.values) {
+    const isLate = path.startsWith("nt:/LiveWindow") || path.startsWith("event.") || /\/\.\w+$/.test(path);
+    for (const each of expanded(path, value)) {
+      if (isLate) late.push(each);
+      else yield each;
+    }
+  }
+  yield* late;
+}
+
+function expanded(path, value) {
+  if (Array.isArray(value)) return value.slice(0, LONGEST_LIST).map((_, index) => `${path}[${index}]`);
+  return [path];
+}
+
+function valueAtPath(path) {
+  if (model.values.has(path)) return model.values.get(path);
+  const element = /^(.*)\[(\d+)\]$/.exec(path);
+  return element ? model.values.get(element[1])?.[Number(element[2])] : undefined;
+}

@@ -1,0 +1,114 @@
+// The values of watched paths over time: from the server's history, and then as they change.
+import { ask } from "./connection.js";
+import { plain } from "./format.js";
+import { model } from "./model.js";
+
+const FIRST_POINTS = 4000; // of the history, when a path begins to be watched
+
+const LATEST = 1e9; // seconds: whatever the newest moment is when the server answers
+
+const series = new Map(); // path: { kind, t: [], v: [], users, loaded }
+
+// Watch a path, and return its series, which grows. Each `watch` needs an `unwatch`.
+export function watch(path) {
+  let one = series.get(path);
+  if (!one) {
+    one = { path, kind: "number", t: [], v: [], users: 0 };
+    series.set(path, one);
+    subscribe();
+    load(one);
+  }
+  one.users += 1;
+  return one;
+}
+
+export function unwatch(path) {
+  const one = series.get(path);
+  if (!one) return;
+  one.users -= 1;
+  if (one.users > 0) return;
+  series.delete(path);
+  subscribe();
+}
+
+function subscribe() {
+  ask("subscribe", { paths: [...series.keys()] }).catch(() => {});
+}
+
+async function load(one) {
+  try {
+    const answer = await ask("plot", { paths: [one.path], from: 0, to: LATEST, points: FIRST_POINTS, branch: null });
+    const past = answer.series[one.path];
+    if (!past) return;
+    // What came while the answer was on its way follows it.
+    const last = past.t.length ? past.t[past.t.length - 1] : -1;
+    const newer = one.t.findIndex((t) => t > last);
+    one.t = past.t.concat(newer < 0 ? [] : one.t.slice(newer));
+    one.v = past.v.concat(newer < 0 ? [] : one.v.slice(newer));
+    one.kind = kindOfAll(one);
+    model.announce("series");
+  } catch {
+    // A new connection loads it again.
+  }
+}
+
+// Whether a series has numbers, booleans or texts: the newest value decides.
+function kindOfAll({ kind, v }) {
+  const kinds = { number: "number", boolean: "boolean", string: "text" };
+  const newest = plain(v[v.length - 1] ?? null);
+  return newest === null ? kind : (kinds[typeof newest] ?? "other");
+}
+
+function append(samples) {
+  for (const [path, list] of Object.entries(samples)) {
+    const one = series.get(path);
+    if (!one) continue;
+    for (let index = 0; index < list.length; index += 2) {
+      if (one.t.length && list[index] < one.t[one.t.length - 1]) continue;
+      one.t.push(list[index]);
+      one.v.push(list[index + 1]);
+    }
+    one.kind = kindOfAll(one);
+  }
+  model.announce("series");
+}
+
+// Another run goes on from a moment: what came later is forgotten.
+function forgetAfter(t) {
+  for (const one of series.values()) {
+    const end = indexAfter(one.t, t);
+    one.t.length = end;
+    one.v.length = end;
+    load(one); // what came between that moment and this message
+  }
+  model.announce("series");
+}
+
+model.onSamples((what, content) => (what === "samples" ? append(content) : forgetAfter(content)));
+model.listen((changed) => {
+  if (!changed.has("hello") || !series.size) return;
+  subscribe();
+  for (const one of series.values()) {
+    one.t = [];
+    one.v = [];
+    load(one);
+  }
+});
+
+// The number of times that are not after `t`, which is also the index of the first one after it.
+export function indexAfter(times, t) {
+  let low = 0;
+  let high = times.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+// The value in force at `t`; undefined before the first.
+export function valueAt(one, t) {
+  const index = indexAfter(one.t, t + 1e-6) - 1;
+  return index < 0 ? undefined : one.v[index];
+}

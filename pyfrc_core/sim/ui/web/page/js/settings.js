@@ -1,0 +1,109 @@
+// What a person has arranged: panels, plots, pins, keys, gamepads, light or dark. The server keeps it for the project.
+import { ask } from "./connection.js";
+import { model } from "./model.js";
+import { PRESETS } from "./layout/presets.js";
+
+const SAVE_AFTER = 400; // milliseconds without another change
+// A page that is reloaded before that finds its arrangement here, in this tab of the browser.
+const UNSAVED = "pyfrc-unsaved";
+
+const DEFAULTS = {
+  version: 1,
+  theme: "auto",
+  layout: "driving",
+  trees: {},
+  plots: {},
+  pins: [],
+  fieldLayers: {},
+  keyboard: { chosen: null, own: [] },
+  gamepads: {},
+  console: { levels: ["info", "warning", "error", "pyfrc"] },
+};
+
+class Settings {
+  values = structuredClone(DEFAULTS);
+  #timer = null;
+
+  // Take over what was saved. What this version does not know, or what is broken, is left at its default.
+  load(saved) {
+    const unsaved = sessionStorage.getItem(UNSAVED);
+    if (unsaved && !model.readonly) {
+      this.#take(JSON.parse(unsaved));
+      this.save();
+    } else this.#take(saved);
+  }
+
+  #take(saved) {
+    if (saved === null || typeof saved !== "object" || saved.version !== 1) return;
+    for (const [name, value] of Object.entries(DEFAULTS)) {
+      const given = saved[name];
+      if (given === undefined || typeof given !== typeof value || Array.isArray(given) !== Array.isArray(value)) continue;
+      this.values[name] = structuredClone(given);
+    }
+  }
+
+  get(name) {
+    return this.values[name];
+  }
+
+  set(name, value) {
+    this.values[name] = value;
+    model.announce("settings");
+    if (model.readonly) return;
+    sessionStorage.setItem(UNSAVED, JSON.stringify(this.values));
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => this.save(), SAVE_AFTER);
+  }
+
+  async save() {
+    const timer = this.#timer;
+    await ask("layout", { layout: this.values }).catch((error) => model.set("problem", error.message));
+    if (timer === this.#timer) sessionStorage.removeItem(UNSAVED);
+  }
+
+  // The panels' arrangement in the chosen layout.
+  get tree() {
+    const name = this.values.layout;
+    return this.values.trees[name] ?? (PRESETS[name] ?? PRESETS.driving).tree;
+  }
+
+  set tree(tree) {
+    this.set("trees", { ...this.values.trees, [this.values.layout]: tree });
+  }
+
+  // Give the chosen layout its first arrangement again.
+  resetTree() {
+    const { [this.values.layout]: _, ...others } = this.values.trees;
+    this.set("trees", others);
+  }
+}
+
+export const settings = new Settings();
+
+// Set what the chosen theme says on the page: "light", "dark", or what the system prefers.
+export function applyTheme() {
+  document.documentElement.dataset.theme = isDark() ? "dark" : "light";
+}
+
+export function isDark() {
+  const theme = settings.get("theme");
+  return theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : theme === "dark";
+}
+
+// The value of a colour of theme.css, for canvases.
+let colorsOf = {};
+let colorsFor = "";
+export function color(name) {
+  const theme = document.documentElement.dataset.theme;
+  if (colorsFor !== theme) {
+    colorsFor = theme;
+    colorsOf = {};
+  }
+  colorsOf[name] ??= getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  return colorsOf[name];
+}
+
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  applyTheme();
+  model.announce("settings", "shown");
+});

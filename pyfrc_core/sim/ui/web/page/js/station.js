@@ -1,0 +1,109 @@
+// The driver station, along the top: modes, enabling, match, emergency stop; and the page's own menus.
+import { command } from "./connection.js";
+import { PRESETS, panelsOf } from "./layout/presets.js";
+import { activate, close, largestTabs, placeOf, put } from "./layout/tree.js";
+import { Menu } from "./menu.js";
+import { model } from "./model.js";
+import { PANELS, panelTitle } from "./panels/all.js";
+import { applyTheme, isDark, settings } from "./settings.js";
+import { Icon, Live, classes, html } from "./view.js";
+
+const MODES = [["teleop", "Teleop"], ["autonomous", "Auto"], ["test", "Test"]];
+
+export class StationBar extends Live {
+  parts = ["station", "status", "shown", "hello", "connection", "settings", "clients"];
+
+  render() {
+    const { station } = model.shown;
+    const present = model.station;
+    const ready = ["disabled", "enabled"].includes(present.kind) && !model.readonly;
+    const left = model.past ? "" : matchLeft(present);
+    return html`<header class="station">
+      <div class="brand" title=${model.hello.project.root}><img src="/static/icon.svg" alt="" /><span>${model.hello.project.name}</span></div>
+      <div class="segments" role="radiogroup" aria-label="Mode">
+        ${MODES.map(([mode, text]) => html`<button key=${mode} role="radio" aria-checked=${present.chosen_mode === mode}
+          class=${classes({ chosen: present.chosen_mode === mode })} disabled=${model.readonly}
+          onClick=${() => command("choose_mode", { mode })}>${text}</button>`)}
+      </div>
+      <div class="pair">
+        <button class="go" disabled=${!ready || present.enabled} title="Enable the robot: Ctrl+E, or [ ] \\ together"
+          onClick=${() => command("enable")}>Enable</button>
+        <button class="stop" disabled=${!ready || !present.enabled} title="Disable the robot: Enter"
+          onClick=${() => command("disable")}>Disable</button>
+      </div>
+      <button class="practice" disabled=${!ready} title="Practice match: autonomous, a pause and teleop"
+        onClick=${() => command("practice")}><${Icon} name="flag" /><span>Practice</span></button>
+      <div class=${`state ${station.kind}`} role="status" aria-live="polite">
+        <i class="lamp"></i><b>${shortText(station.text)}</b>
+        ${model.past && html`<em>past</em>`}
+        ${left && html`<span class="countdown">${left}</span>`}
+      </div>
+      <div class="spacer"></div>
+      ${model.readonly && html`<span class="chip" title="This address only shows the simulation">Read only</span>`}
+      ${model.clients > 1 && html`<span class="chip" title="Windows that show this simulation">${model.clients} windows</span>`}
+      <${LayoutMenu} />
+      <${PanelsMenu} />
+      <button class="quiet" onClick=${switchTheme} title=${isDark() ? "Light colours" : "Dark colours"}
+        aria-label=${isDark() ? "Light colours" : "Dark colours"}><${Icon} name=${isDark() ? "sun" : "moon"} /></button>
+      <button class="estop" disabled=${!ready} title="Emergency stop: the space bar. Only a restart enables the robot again."
+        onClick=${() => command("e_stop")}>E-STOP</button>
+    </header>`;
+  }
+}
+
+// The server's text without the seconds, which have a place of their own.
+function shortText(text) {
+  return (text ?? "").replace(/, -?\d+ s$/, "");
+}
+
+function matchLeft(station) {
+  if (station.practice_since === null || station.practice_since === undefined) return "";
+  const seconds = Math.max(Math.ceil(station.match_left), 0);
+  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
+}
+
+function switchTheme() {
+  settings.set("theme", isDark() ? "light" : "dark");
+  applyTheme();
+  model.announce("shown");
+}
+
+function LayoutMenu() {
+  const chosen = settings.get("layout");
+  const items = Object.entries(PRESETS).map(([name, preset]) => ({
+    text: preset.title,
+    checked: name === chosen,
+    act: () => settings.set("layout", name),
+  }));
+  items.push({ separator: true }, { text: "Reset this layout", act: () => settings.resetTree() });
+  return html`<${Menu} label=${PRESETS[chosen]?.title ?? "Layout"} title="Layout" items=${items} />`;
+}
+
+function PanelsMenu() {
+  const open = new Set(panelsOf(settings.tree));
+  const ids = Object.keys(PANELS).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
+  const items = ids.map((id) => ({ text: panelTitle(id), checked: open.has(id), act: () => toggle(id) }));
+  return html`<${Menu} label="Panels" title="Open and close panels" items=${items} />`;
+}
+
+function plotIds(open) {
+  const numbers = [...open].filter((id) => id.startsWith("plot:")).map((id) => Number(id.slice(5)));
+  const most = Math.max(0, ...numbers);
+  return Array.from({ length: most + 1 }, (_, index) => `plot:${index + 1}`);
+}
+
+function toggle(id) {
+  const { tree } = settings;
+  settings.tree = placeOf(tree, id) ? close(tree, id) : openPanel(tree, id);
+}
+
+function openPanel(tree, id) {
+  return put(tree, largestTabs(tree), id, "center");
+}
+
+// Bring a panel to the front, and open it if it is closed.
+export function showPanel(id) {
+  const { tree } = settings;
+  const place = placeOf(tree, id);
+  settings.tree = place ? activate(tree, place, id) : openPanel(tree, id);
+}

@@ -1,0 +1,135 @@
+// Robot time, along the bottom: pause, step, speed, the timeline, and the way back from the past.
+import { command } from "./connection.js";
+import { compared } from "./compare.js";
+import { askText } from "./dialog.js";
+import { clock, speedText } from "./format.js";
+import { Menu } from "./menu.js";
+import { model } from "./model.js";
+import { driveOn, live, look, lookBy } from "./past.js";
+import { Timeline } from "./timeline.js";
+import { Icon, Live, html } from "./view.js";
+
+// The speed slider: each doubling takes the same distance, and beyond the fastest comes "as fast as possible".
+const UNLIMITED = 0.94;
+
+export class TimeBar extends Live {
+  parts = ["t", "status", "shown", "hello", "branches", "compared", "compared-series"];
+
+  render() {
+    const { status, past, readonly } = model;
+    const running = status.wants_to_run;
+    return html`<footer class=${past ? "timebar past" : "timebar"}>
+      <div class="transport">
+        <button class="quiet" title="Look at the packet before" aria-label="Look at the packet before" onClick=${() => lookBy(-0.02)}><${Icon} name="stepBack" /></button>
+        <button class="play" disabled=${readonly} title=${running ? "Pause: F5" : "Run: F5"} aria-label=${running ? "Pause" : "Run"}
+          onClick=${() => command("toggle")}><${Icon} name=${running ? "pause" : "play"} /></button>
+        <button class="quiet" title=${past ? "Look at the packet after" : "Step by one packet: F6"} aria-label="Step"
+          disabled=${readonly && !past} onClick=${() => (past ? lookBy(0.02) : command("step", { packets: 1 }))}><${Icon} name="step" /></button>
+        <time class="clock" title="Robot time">${clock(past ? past.t : model.t)}</time>
+        ${past
+          ? html`<span class="past-actions">
+              <button class="primary" disabled=${readonly} onClick=${driveOn} title="Go back to this moment. What came later is kept as a branch.">Drive on from here</button>
+              <button class="live" onClick=${live}><i class="lamp"></i>Live</button></span>`
+          : html`<span class="live-now"><i class="lamp"></i>Live</span>`}
+        <label class="speed" title="Robot seconds per second">Speed
+          <input type="range" min="0" max="1" step="0.005" value=${sliderOf(status.speed ?? 1)} disabled=${readonly}
+            aria-label="Speed" aria-valuetext=${speedText(status.speed ?? 1)} onInput=${(event) => setSpeed(event.target)} />
+          <b>${speedText(status.speed ?? 1)}</b></label>
+        ${status.speed !== 1 && html`<button class="quiet" disabled=${readonly} onClick=${() => command("speed", { factor: 1 })}>Real time</button>`}
+        <div class="spacer"></div>
+        <${Figures} />
+        <${BranchesMenu} />
+        <button class="quiet" disabled=${readonly} title="Set a mark at this moment" onClick=${mark}><${Icon} name="flag" /><span>Mark</span></button>
+        <${RunMenu} />
+      </div>
+      <${Timeline} />
+    </footer>`;
+  }
+}
+
+async function mark() {
+  const t = model.past?.t ?? model.t;
+  const text = await askText(`A mark at ${clock(t)}`, "");
+  if (text) command("mark", { t, text });
+}
+
+function Figures() {
+  const { status } = model;
+  const milliseconds = (seconds) => `${((seconds ?? 0) * 1000).toFixed(1)} ms`;
+  const reached = status.state === "running" ? `${(status.reached ?? 0).toFixed(status.speed === 0 ? 0 : 2)}×` : "–";
+  return html`<dl class="figures">
+    <div title="The speed that this computer reaches"><dt>Reached</dt><dd>${reached}</dd></div>
+    <div title=${`The time that this computer takes for a packet; the worst of the last second: ${milliseconds(status.worst_packet_seconds)}`}>
+      <dt>Packet</dt><dd>${milliseconds(status.packet_seconds)}</dd></div>
+    <div class=${status.overruns ? "warn" : ""} title=${`Turns of the robot's loop that took longer than its period; the longest: ${milliseconds(status.worst_loop_seconds)}`}>
+      <dt>Overruns</dt><dd>${status.overruns ?? 0}</dd></div>
+    ${status.network_address && html`<div title="The NetworkTables server, for dashboards"><dt>NT</dt><dd>${status.network_address}</dd></div>`}
+  </dl>`;
+}
+
+function BranchesMenu() {
+  if (!model.branches.length) return null;
+  const items = model.branches.map((branch) => ({
+    text: branch.name,
+    note: `${clock(branch.from)} – ${clock(branch.to)}`,
+    checked: model.compared === branch.id,
+    act: () => model.set("compared", model.compared === branch.id ? null : branch.id),
+  }));
+  const chosen = model.branches.find((branch) => branch.id === model.compared);
+  if (chosen) {
+    items.push({ separator: true }, { text: `Name “${chosen.name}”…`, act: () => nameBranch(chosen), disabled: model.readonly });
+  }
+  const { difference } = compared;
+  return html`${chosen && difference !== undefined && html`<button class="quiet" disabled=${difference === null} onClick=${() => look(difference)}
+      title="The first moment at which the branch differs from this run">${difference === null ? "No difference" : `Differs at ${clock(difference)}`}</button>`}
+    <${Menu} label=${`Branches ${model.branches.length}`} icon="branch" title="Compare with an earlier run" items=${items} />`;
+}
+
+async function nameBranch(branch) {
+  const name = await askText("The name of the branch", branch.name);
+  if (name) command("name_branch", { branch: branch.id, text: name });
+}
+
+function RunMenu() {
+  const act = (name) => () => {
+    live();
+    command(name);
+  };
+  const items = [
+    { text: "Restart the robot", note: "F9", act: act("restart"), disabled: model.readonly },
+    { text: "Load the code again", act: act("reload"), disabled: model.readonly },
+    { text: model.station.attached === false ? "Connect the driver station" : "Disconnect the driver station", note: "F8",
+      act: () => command("attach", { attached: model.station.attached === false }), disabled: model.readonly },
+    { separator: true },
+    { text: "Save the recording…", act: save, disabled: model.readonly },
+    { text: "End the simulation", act: () => command("quit"), disabled: model.readonly },
+  ];
+  return html`<${Menu} label="Run" title="Restart, save, end" items=${items} />`;
+}
+
+async function save() {
+  const file = await askText("Save the recording in the project's directory as", "drive.jsonl");
+  if (!file) return;
+  const answer = await command("save", { file });
+  if (answer?.file) model.set("problem", `Saved ${answer.file}`);
+}
+
+export function sliderOf(speed) {
+  if (speed === 0) return 1;
+  const { slowest, fastest } = model.hello.options.speeds;
+  const limited = Math.min(Math.max(speed, slowest), fastest);
+  return (UNLIMITED * Math.log(limited / slowest)) / Math.log(fastest / slowest);
+}
+
+export function speedOf(position) {
+  const { slowest, fastest } = model.hello.options.speeds;
+  if (position >= (1 + UNLIMITED) / 2) return 0;
+  const exact = slowest * (fastest / slowest) ** (Math.min(position, UNLIMITED) / UNLIMITED);
+  if (exact > 0.93 && exact < 1.07) return 1;
+  return Number(exact.toFixed(exact < 1 ? 2 : 1));
+}
+
+function setSpeed(slider) {
+  const factor = speedOf(Number(slider.value));
+  if (factor !== model.status.speed) command("speed", { factor });
+}

@@ -1,0 +1,199 @@
+// The timeline: modes as colours, marks, and the moment that the panels show.
+import { font, sizeCanvas } from "./canvas.js";
+import { clock } from "./format.js";
+import { model } from "./model.js";
+import { length, live, look, lookBy } from "./past.js";
+import { watch, unwatch } from "./series.js";
+import { color } from "./settings.js";
+import { Live, createRef, html } from "./view.js";
+
+const MODE_COLORS = { autonomous: "mode-auto", teleop: "mode-teleop", test: "mode-test" };
+const MARK_COLORS = { failure: "red", error: "red", warning: "amber", overrun: "amber", press: "accent", own: "own", run: "muted" };
+const NEAR = 5; // pixels between the pointer and a mark
+const MOST_NAMED = 5; // marks beside the pointer
+const HEIGHT = 46;
+const EDGE = 8; // pixels at both ends
+const SHORTEST = 10; // seconds on the timeline at least
+
+export class Timeline extends Live {
+  parts = ["t", "status", "shown", "series", "marks", "settings", "window", "branches", "compared"];
+  canvas = createRef();
+  state = { hover: null };
+
+  componentDidMount() {
+    super.componentDidMount();
+    this.modes = watch("sim.mode");
+    this.draw();
+  }
+
+  componentWillUnmount() {
+    super.componentWillUnmount();
+    unwatch("sim.mode");
+  }
+
+  componentDidUpdate() {
+    this.draw();
+  }
+
+  render(_, { hover }) {
+    const t = model.past?.t ?? model.t;
+    return html`<div class="timeline" role="slider" tabindex="0" aria-label="Timeline" aria-valuemin="0"
+        aria-valuemax=${length().toFixed(2)} aria-valuenow=${t.toFixed(2)} aria-valuetext=${model.past ? clock(t) : `live, ${clock(t)}`}
+        onPointerDown=${this.begin} onPointerMove=${this.move} onPointerUp=${this.end} onPointerLeave=${this.leave} onKeyDown=${this.key}>
+      <canvas ref=${this.canvas}></canvas>
+      ${hover && html`<div class="timeline-tip" style=${{ left: `${hover.left}px` }}>
+        <b>${clock(hover.t)}</b>${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
+    </div>`;
+  }
+
+  marksNear(t) {
+    const reach = (NEAR / this.width) * this.whole;
+    return model.marks.filter((mark) => Math.abs(mark.t - t) <= reach).slice(-MOST_NAMED);
+  }
+
+  // -- drawing
+
+  get whole() {
+    return Math.max(length(), SHORTEST);
+  }
+
+  x(t) {
+    return EDGE + (t / this.whole) * (this.width - 2 * EDGE);
+  }
+
+  draw() {
+    const canvas = this.canvas.current;
+    if (!canvas || !this.modes) return;
+    const context = sizeCanvas(canvas, canvas.parentElement.clientWidth, HEIGHT);
+    this.width = canvas.parentElement.clientWidth;
+    this.drawModes(context);
+    this.drawMarks(context);
+    this.drawTicks(context);
+    this.drawHead(context);
+  }
+
+  drawModes(context) {
+    const top = 6;
+    const height = 16;
+    context.fillStyle = color("track");
+    context.beginPath();
+    context.roundRect(EDGE - 4, top, this.width - 2 * EDGE + 8, height, 5);
+    context.fill();
+    context.save();
+    context.clip();
+    context.fillStyle = color("mode-disabled");
+    context.fillRect(0, top, this.x(length()) + (length() >= this.whole ? EDGE : 0), height);
+    const { t, v } = this.modes;
+    for (let index = 0; index < t.length; index++) {
+      const name = MODE_COLORS[v[index]];
+      if (!name) continue;
+      const from = this.x(t[index]);
+      const to = this.x(index + 1 < t.length ? t[index + 1] : length());
+      context.fillStyle = color(name);
+      context.fillRect(from, top, Math.max(to - from, 1), height);
+    }
+    for (const branch of model.branches) {
+      if (branch.id !== model.compared) continue;
+      context.fillStyle = color("own");
+      context.fillRect(this.x(branch.from), top, Math.max(this.x(branch.to) - this.x(branch.from), 2), 3);
+    }
+    context.restore();
+  }
+
+  drawMarks(context) {
+    let lastX = {};
+    for (const mark of model.marks) {
+      const name = MARK_COLORS[mark.kind];
+      if (!name) continue;
+      const x = Math.round(this.x(mark.t));
+      if (lastX[mark.kind] === x) continue; // many marks on one pixel
+      lastX[mark.kind] = x;
+      context.fillStyle = color(name);
+      const small = mark.kind === "press" || mark.kind === "run";
+      context.fillRect(x - 1, small ? 18 : 4, 2, small ? 6 : 20);
+      if (mark.kind === "own" || mark.kind === "failure") {
+        context.beginPath();
+        context.moveTo(x - 4, 0);
+        context.lineTo(x + 4, 0);
+        context.lineTo(x, 6);
+        context.fill();
+      }
+    }
+  }
+
+  drawTicks(context) {
+    const steps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600];
+    const step = steps.find((each) => this.x(each) >= 64) ?? 7200;
+    context.fillStyle = color("muted");
+    context.font = font(10.5);
+    context.textBaseline = "alphabetic";
+    context.textAlign = "center";
+    for (let t = 0; t <= this.whole; t += step) {
+      const x = this.x(t);
+      context.globalAlpha = 0.5;
+      context.fillRect(Math.round(x), 24, 1, 4);
+      context.globalAlpha = 1;
+      context.textAlign = x < 20 ? "left" : x > this.width - 20 ? "right" : "center";
+      context.fillText(`${Math.floor(t / 60)}:${String(t % 60).padStart(2, "0")}`, x, 40);
+    }
+  }
+
+  drawHead(context) {
+    const x = this.x(model.past?.t ?? model.t);
+    context.fillStyle = color(model.past ? "past" : "text");
+    context.fillRect(Math.round(x) - 1, 2, 2, 26);
+    context.beginPath();
+    context.arc(x, 14, 6, 0, 2 * Math.PI);
+    context.fill();
+    context.strokeStyle = color("surface");
+    context.lineWidth = 2;
+    context.stroke();
+  }
+
+  // -- the pointer and the keys
+
+  timeAt(event) {
+    const box = this.canvas.current.getBoundingClientRect();
+    const share = (event.clientX - box.left - EDGE) / (box.width - 2 * EDGE);
+    return Math.min(Math.max(share * this.whole, 0), length());
+  }
+
+  begin = (event) => {
+    if (event.button !== 0) return;
+    event.currentTarget.setPointerCapture(event.pointerId);
+    this.dragging = true;
+    look(this.timeAt(event));
+  };
+
+  move = (event) => {
+    const t = this.timeAt(event);
+    if (this.dragging) look(t);
+    const box = this.canvas.current.getBoundingClientRect();
+    const left = Math.min(Math.max(event.clientX - box.left, 60), box.width - 60);
+    this.setState({ hover: { t, left } });
+  };
+
+  end = (event) => {
+    this.dragging = false;
+    event.currentTarget.blur();
+  };
+
+  leave = () => this.setState({ hover: null });
+
+  key = (event) => {
+    const far = event.shiftKey ? 50 : 1;
+    const acts = {
+      ArrowLeft: () => lookBy(-0.02 * far),
+      ArrowRight: () => lookBy(0.02 * far),
+      PageDown: () => lookBy(-1),
+      PageUp: () => lookBy(1),
+      Home: () => look(0),
+      End: live,
+      Escape: live,
+    };
+    if (!acts[event.key]) return;
+    event.preventDefault();
+    event.stopPropagation();
+    acts[event.key]();
+  };
+}

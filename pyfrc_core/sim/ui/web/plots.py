@@ -1,0 +1,93 @@
+"""Curves of values over time, with about as many points as a plot has pixels."""
+
+from __future__ import annotations
+
+import math
+import re
+from array import array
+from typing import Any
+
+from .columns import MISSING
+from .history import History
+
+_ELEMENT = re.compile(r"(?P<whole>.+)\[(?P<index>\d+)\]")
+#: The most points of a curve, whatever is asked for.
+MOST_POINTS = 20_000
+
+
+def element_of(path: str) -> tuple[str, int | None]:
+    """Return the path of a list, and the index in it, of a path such as ``joysticks[0].axes[1]``."""
+    match = _ELEMENT.fullmatch(path)
+    return (path, None) if match is None else (match["whole"], int(match["index"]))
+
+
+def resolve(history: History, path: str) -> tuple[str, int | None]:
+    """Return the path that the history has, and the index of an element of its value, or None."""
+    whole, index = element_of(path)
+    return (path, None) if index is None or path in history.now or whole not in history.now else (whole, index)
+
+
+def picked(value: Any, index: int | None) -> Any:
+    """Return an element of a value; `MISSING` if it has none there."""
+    if index is None or value is MISSING:
+        return value
+    return value[index] if isinstance(value, tuple) and index < len(value) else MISSING
+
+
+def series(history: History, path: str, begin: float, end: float, points: int) -> dict[str, Any]:
+    """Return the curve of a value: times, values, and the kind of its values.
+
+    A value holds until the next time. If there are more changes than points, the lowest and the highest of each
+    interval are kept.
+    """
+    path, index = resolve(history, path)
+    points = min(max(points, 2), MOST_POINTS)
+    times, values, plain = array("d"), array("d"), True
+    others: list[Any] = []
+    first = picked(history.value_at(path, begin), index)
+    for piece in history.pieces(path, begin, end):
+        column = piece.column
+        times.extend(piece.change_times())
+        numbers = column.numbers(piece.begin, piece.end) if index is None and plain else None
+        if numbers is None:
+            if plain:
+                plain, others = False, list(values)
+            others += [picked(column.value(number), index) for number in range(piece.begin, piece.end)]
+        else:
+            values.extend(numbers)
+    found = list(values) if plain else others
+    all_times = list(times)
+    if first is not MISSING:
+        all_times.insert(0, begin)
+        found.insert(0, first)
+    kind = "number" if plain and found and type(found[0]) in (float, int) else _kind(found)
+    if kind == "number" and len(found) > points:
+        all_times, found = _decimated(all_times, found, points)
+    elif len(found) > 2 * MOST_POINTS:
+        every = math.ceil(len(found) / MOST_POINTS)
+        all_times, found = all_times[::every], found[::every]
+    return {"kind": kind, "t": all_times, "v": [None if value is MISSING else value for value in found]}
+
+
+def _kind(values: list[Any]) -> str:
+    kinds = {type(value) for value in values if value is not MISSING}
+    if kinds <= {float, int}:
+        return "number" if MISSING not in values else "other"
+    return "boolean" if kinds == {bool} else "text" if kinds == {str} else "other"
+
+
+def _decimated(times: list[float], values: list[float], points: int) -> tuple[list[float], list[float]]:
+    """Keep the first, the lowest and the highest of each of half as many intervals, and the last."""
+    intervals = points // 2
+    step = len(values) / intervals
+    kept = [0]
+    after = 1
+    for number in range(1, intervals + 1):
+        begin, after = after, int(number * step)
+        part = values[begin:after]
+        if part:
+            low, high = begin + part.index(min(part)), begin + part.index(max(part))
+            kept += (low,) if low == high else (low, high) if low < high else (high, low)
+    if kept[-1] != len(values) - 1:
+        kept.append(len(values) - 1)
+    return [times[each] for each in kept], [values[each] for each in kept]

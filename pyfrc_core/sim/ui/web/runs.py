@@ -1,0 +1,257 @@
+"""The runs of a session with all their values: the present one, and those that were left by going back in time."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from ...engine.changes import Change, RunBegan
+from ...engine.network_paths import MODE, POSE, TYPE, VALUE
+from .chunks import ChunkFile
+from .columns import MISSING
+from .comparison import FirstDifference
+from .history import MOST_BYTES, MOST_STORED_BYTES, History
+from .plots import MOST_POINTS, picked, resolve, series
+
+Source = Literal["hal", "network"]
+
+#: Times that are equal but for rounding.
+_ROUNDING = 1e-6
+#: The most former runs that are kept.
+_MOST_BRANCHES = 12
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A former run.
+
+    :param number: the number of the run that replaced it
+    :param begin: where the present run left it, in seconds of robot time; `end` is where it ended
+    :param histories: its values
+    """
+
+    number: int
+    name: str
+    begin: float
+    end: float
+    histories: dict[Source, History] = field(default_factory=dict)
+
+    def plain(self) -> dict[str, object]:
+        """Return it for a page."""
+        return {"id": self.number, "name": self.name, "from": self.begin, "to": self.end}
+
+
+class Runs:
+    """May be used from any thread.
+
+    :param most_bytes: about how much memory the values may take
+    :param most_stored: about how much space they may take in a temporary file besides
+    """
+
+    def __init__(self, most_bytes: int = MOST_BYTES, most_stored: int = MOST_STORED_BYTES) -> None:
+        self._lock = threading.Lock()
+        self._most_bytes, self._most_stored = most_bytes, most_stored
+        #: Where the oldest values are, and those that are older still.
+        self._file: ChunkFile | None = None
+        self._former_file: ChunkFile | None = None
+        self._histories: dict[Source, History] = {"hal": History(), "network": History()}
+        #: The number of the run that each of the histories has.
+        self._numbers: dict[Source, int] = {"hal": 0, "network": 0}
+        self._packets = 0
+        self.branches: tuple[Branch, ...] = ()
+        #: The run that was left last.
+        self._leaving: Branch | None = None
+
+    # -- what is added --------------------------------------------------------------------------------------------
+
+    def take(
+        self, source: Source, events: Iterable[RunBegan | Change], look: Callable[[RunBegan | Change], object]
+    ) -> None:
+        """Add what a cursor has read.
+
+        :param look: called with each event, after it was added
+        """
+        for event in events:
+            with self._lock:
+                if isinstance(event, RunBegan):
+                    self._begin(source, event)
+                else:
+                    self._histories[source].add(event.time, event.values, event.gone)
+                    self._packets += 1
+                    if self._packets % 512 == 0:
+                        self._limit()
+            look(event)
+
+    def _begin(self, source: Source, began: RunBegan) -> None:
+        former = self._histories[source]
+        self._keep(source, former, began)
+        if not began.values:  # from the start: its changes have everything
+            self._histories[source] = History()
+        else:
+            history = former.until(began.time + _ROUNDING)
+            now = history.now
+            changed = {path: value for path, value in began.values.items() if now.get(path, MISSING) != value}
+            history.add(max(began.time, history.end), changed, [path for path in now if path not in began.values])
+            self._histories[source] = history
+        self._numbers[source] = began.number
+
+    def _keep(self, source: Source, former: History, began: RunBegan) -> None:
+        """Keep the values of the run before, when those of both sources are there and the run went on further."""
+        leaving = self._leaving
+        if leaving is None or leaving.number != began.number:
+            name = f"before {began.time:.2f} s" if began.time else "before the restart"
+            leaving = Branch(began.number, name, began.time, 0.0)
+        histories = {**leaving.histories, source: former}
+        self._leaving = leaving = replace(leaving, end=max(leaving.end, former.end), histories=histories)
+        if len(histories) == len(self._histories) and leaving.end > leaving.begin + _ROUNDING:
+            self.branches = (*self.branches, leaving)[-_MOST_BRANCHES:]
+
+    def _limit(self) -> None:
+        """Keep the values within the memory and the space that they may take."""
+        while self.size > self._most_bytes:
+            if self._store_oldest():
+                continue
+            if self.branches:
+                self.branches, self._leaving = self.branches[1:], None
+                continue
+            larger = max(self._histories.values(), key=lambda history: history.size)
+            if not larger.forget_oldest():
+                break
+        if self._file is not None and self._file.size > self._most_stored // 2:
+            self._next_file()
+
+    def _next_file(self) -> None:
+        """Forget what is in the former one of two files, and begin another."""
+        if self._former_file is not None:
+            self.branches, self._leaving = (), None
+            for history in self._histories.values():
+                history.forget_file(self._former_file)
+        self._former_file, self._file = self._file, None
+
+    def _store_oldest(self) -> bool:
+        """Move the oldest values to a file, and return whether there were any that can be moved."""
+        kept = [history for branch in self.branches for history in branch.histories.values()]
+        try:
+            if self._file is None:
+                self._file = ChunkFile()
+            file = self._file
+            return any(history.store_oldest(file) for history in (*kept, *self._histories.values()))
+        except OSError:  # the disk is full
+            return False
+
+    @property
+    def size(self) -> int:
+        """About how many bytes all values take; runs share the values of their common past, which count for each."""
+        kept = [history for branch in self.branches for history in branch.histories.values()]
+        return sum(history.size for history in (*self._histories.values(), *kept))
+
+    def name(self, number: int, name: str) -> bool:
+        """Name a former run, and return whether there is one with this number."""
+        with self._lock:
+            named = tuple(replace(each, name=name) if each.number == number else each for each in self.branches)
+            found = named != self.branches or any(each.number == number for each in self.branches)
+            self.branches = named
+        return found
+
+    # -- what is asked for ----------------------------------------------------------------------------------------
+
+    def values_at(self, time: float, branch: int | None = None) -> dict[str, Any] | None:
+        """Return all values at a moment; None if there is no such branch."""
+        with self._lock:
+            found: dict[str, Any] = {}
+            for source in ("hal", "network"):
+                history = self._history(source, branch)
+                if history is None:
+                    return None
+                found |= history.values_at(time + _ROUNDING)
+        return found
+
+    def plots(
+        self, paths: Iterable[str], begin: float, end: float, points: int, branch: int | None
+    ) -> dict[str, Any] | None:
+        """Return the curves of some values; None if there is no such branch."""
+        found = {}
+        for path in paths:
+            with self._lock:  # for each path: a collector must not wait for all of them
+                history = self._history(source_of(path), branch)
+                if history is None:
+                    return None
+                found[path] = series(history, path, begin, end + _ROUNDING, points)
+        return found
+
+    def first_difference(self, number: int, paths: Iterable[str] | None) -> FirstDifference | None:
+        """Return where a former run and the present one first differ; None if there is no such branch.
+
+        :param paths: the values to compare; None: all
+        """
+        with self._lock:
+            branch = next((each for each in self.branches if each.number == number), None)
+            if branch is None:
+                return None
+            end = max(history.end for history in self._histories.values())
+            compared: list[tuple[History, History, str]] = []
+            found = FirstDifference(branch.begin, min(end, branch.end) + _ROUNDING)
+            for source, history in self._histories.items():
+                former = branch.histories[source]
+                known = history.now.keys() | former.now.keys() if paths is None else paths
+                chosen = sorted(path for path in known if source_of(path) == source and not path.startswith(TYPE))
+                compared += ((history, former, path) for path in chosen)
+        for history, former, path in compared:
+            with self._lock:  # for each value: a collector must not wait for all of them
+                found.compare(history, former, [path])
+        return found
+
+    def samples(self, paths: Iterable[str], after: Position) -> tuple[dict[str, list[Any]], Position]:
+        """Return every change of some values since a position, as times and values in turn, and the next position."""
+        found: dict[str, list[Any]] = {}
+        with self._lock:
+            positions = self._position()
+            for path in paths:
+                source = source_of(path)
+                history = self._histories[source]
+                begin = after.packets[source] if after.numbers == positions.numbers else positions.packets[source]
+                whole, index = resolve(history, path)
+                flat: list[Any] = []
+                for time, value in history.since(begin, whole):
+                    if (one := picked(value, index)) is not MISSING:
+                        flat += (time, one)
+                if flat:
+                    found[path] = flat[-2 * MOST_POINTS :]
+        return found, positions
+
+    def position(self) -> Position:
+        """Return the present end of the values, for `samples`."""
+        with self._lock:
+            return self._position()
+
+    def network_values(self) -> dict[str, Any]:
+        """Return a copy of all present values of NetworkTables."""
+        with self._lock:
+            return dict(self._histories["network"].now)
+
+    def _position(self) -> Position:
+        packets: dict[Source, int] = {source: history.packets for source, history in self._histories.items()}
+        return Position(dict(self._numbers), packets)
+
+    def _history(self, source: Source, branch: int | None) -> History | None:
+        if branch is None:
+            return self._histories[source]
+        for each in self.branches:
+            if each.number == branch:
+                return each.histories[source]
+        return None
+
+
+@dataclass(frozen=True)
+class Position:
+    """A place among the changes: the numbers of the runs, and of the packets in them."""
+
+    numbers: dict[Source, int]
+    packets: dict[Source, int]
+
+
+def source_of(path: str) -> Source:
+    """Return which history has a path."""
+    return "network" if path.startswith((VALUE, TYPE, MODE, POSE)) else "hal"

@@ -1,0 +1,147 @@
+"""The server on its own thread, and the addresses where it is found."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import threading
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import uvicorn
+
+from ....errors import UsageError
+from .access import Access, Share
+
+if TYPE_CHECKING:
+    from .app import WebApp
+
+#: The largest message that a page may send, in bytes.
+_MOST_MESSAGE = 1 << 20
+#: How long pages are given to close their connections, in seconds.
+_CLOSING_SECONDS = 1.0
+
+
+@dataclass(frozen=True)
+class WebOptions:
+    """How to serve.
+
+    :param share: what clients on the network may do; None: they are not served
+    :param port: the port; 0: any that is free
+    :param opens_browser: whether to open the page in a browser
+    """
+
+    share: Share | None = None
+    port: int = 0
+    opens_browser: bool = True
+
+
+class Server:
+    """Listens from its construction on.
+
+    :raises UsageError: when the port cannot be had
+    """
+
+    def __init__(self, options: WebOptions, access: Access) -> None:
+        self._access = access
+        address = "127.0.0.1" if options.share is None else "0.0.0.0"
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            self._socket.bind((address, options.port))
+            self._socket.listen(64)  # a browser that comes before the loop runs is not refused
+        except OSError as wrong:
+            self._socket.close()
+            raise UsageError(
+                f"the page cannot be served at port {options.port}: {wrong.strerror}", remedy="Choose another --port."
+            ) from None
+        self.port: int = self._socket.getsockname()[1]
+        self._server: uvicorn.Server | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._app: WebApp | None = None
+        self._thread: threading.Thread | None = None
+
+    @property
+    def address(self) -> str:
+        """The page's address on this computer, with the key that drives."""
+        return f"http://127.0.0.1:{self.port}/?token={self._access.drive}"
+
+    @property
+    def viewing_address(self) -> str:
+        """The address of a page that only shows the simulation."""
+        return f"http://127.0.0.1:{self.port}/?token={self._access.view}"
+
+    def network_address(self, drive: bool = False) -> str:
+        """Return the page's address for other computers."""
+        token = self._access.drive if drive else self._access.view
+        return f"http://{_own_address()}:{self.port}/?token={token}"
+
+    def start(self, app: WebApp) -> None:
+        """Begin to serve."""
+        config = uvicorn.Config(
+            app,
+            http="h11",
+            ws="websockets-sansio",
+            lifespan="off",
+            log_config=None,
+            log_level="critical",  # the terminal is the robot's
+            access_log=False,
+            proxy_headers=False,  # any client can send them
+            server_header=False,
+            ws_max_size=_MOST_MESSAGE,
+            ws_per_message_deflate=False,  # takes longer than sending it on the same computer
+            timeout_graceful_shutdown=1,
+        )
+        self._app, self._server = app, uvicorn.Server(config)
+        self._thread = threading.Thread(target=self._serve, name="pyfrc sim: web server", daemon=True)
+        self._thread.start()
+
+    def _serve(self) -> None:
+        assert self._server is not None
+        server = self._server
+
+        async def serve() -> None:
+            self._loop = asyncio.get_running_loop()
+            await server.serve(sockets=[self._socket])
+
+        asyncio.run(serve())
+
+    def wake(self) -> None:
+        """Have every page sent what is new. May be called from any thread."""
+        loop, app = self._loop, self._app
+        if loop is not None and app is not None and not loop.is_closed():
+            try:
+                loop.call_soon_threadsafe(app.wake)
+            except RuntimeError:  # it was closed meanwhile
+                return
+
+    def close(self) -> None:
+        """Stop serving; pages are shown that the simulation was closed."""
+        if self._server is None or self._thread is None:
+            self._socket.close()
+            return
+        loop, app = self._loop, self._app
+        if loop is not None and app is not None and not loop.is_closed():
+            closing = asyncio.run_coroutine_threadsafe(app.close_pages(), loop)
+            try:
+                closing.result(_CLOSING_SECONDS)
+            except Exception:  # a page that does not read: it sees that the connection is gone
+                closing.cancel()
+        self._server.should_exit = True
+        self._thread.join(2 * _CLOSING_SECONDS)
+        if self._thread.is_alive():
+            self._server.force_exit = True
+            self._thread.join(_CLOSING_SECONDS)
+        if app is not None:
+            app.close()
+        self._socket.close()
+
+
+def _own_address() -> str:
+    """Return this computer's address on the network."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(("10.255.255.255", 1))  # sends nothing
+            return str(probe.getsockname()[0])
+        except OSError:
+            return socket.gethostname()

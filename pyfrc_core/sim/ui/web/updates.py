@@ -1,0 +1,242 @@
+"""The messages that bring a page up to date: only what has changed since the last one that it was sent.
+
+Each page has a builder of its own. A page that reads slowly gets fewer and larger updates, and no queue grows.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict
+from typing import Any
+
+from ...engine.network_paths import TYPE, VALUE
+from ...engine.scene import Line, Point, Text
+from ...engine.snapshot import Snapshot, Status
+from ..models.devices import SETTABLE, Panel
+from ..models.wording import STATIONS, mode_text, station_name
+from .collector import Collector, State
+from .columns import MISSING
+from .console import plain_lines
+from .plain_field import plain_field
+from .runs import Position
+
+_PLACE = re.compile(r"(?P<file>[^\s:]+\.py):(?P<line>\d+)")
+
+
+class UpdateBuilder:
+    """What one page has been sent.
+
+    :param image: the address of the field's picture; empty: none
+    """
+
+    def __init__(self, collector: Collector, image: str) -> None:
+        self._collector, self._image = collector, image
+        self._state: State | None = None
+        self._parts: dict[str, Any] = {}
+        self._status: dict[str, Any] = {}
+        self._station: dict[str, Any] = {}
+        self._hal: Mapping[str, Any] = {}
+        self._network: Mapping[str, Any] = {}
+        self._trail: tuple[Point, ...] = ()
+        self._lines = self._marks = 0
+        self._run = (0, 0.0)
+        #: The paths whose every change is sent, and the place up to which they were.
+        self._subscribed: tuple[str, ...] = ()
+        self._position: Position | None = None
+
+    def subscribe(self, paths: Iterable[str]) -> None:
+        """Send every change of these values from now on; of values that are sent already, without a hole."""
+        if not self._subscribed or self._position is None:
+            self._position = self._collector.runs.position()
+        self._subscribed = tuple(paths)
+
+    def update(self, clients: int) -> dict[str, Any]:
+        """Return what has changed, empty when nothing has."""
+        state = self._collector.state
+        found: dict[str, Any] = {}
+        if state.run != self._run:
+            self._run, self._marks = state.run, 0
+            found["run"] = {"number": state.run[0], "t": state.run[1]}
+        self._differences(found, "status", self._status, _status(state.status, state.wants_to_run))
+        self._differences(found, "station", self._station, _station(state.snapshot, state.status))
+        if (snapshot := state.snapshot) is not None and (self._state is None or self._state.snapshot is not snapshot):
+            self._add_snapshot(found, snapshot)
+        if state.network is not self._network:
+            self._add_network(found, state.network)
+        before = self._state
+        if before is None or state.panels is not before.panels:
+            found["panels"] = [_panel(panel) for panel in state.panels]
+        if before is None or state.field != before.field:
+            found["field"] = plain_field(state.field, self._image)
+        if before is None or state.branches is not before.branches:
+            found["branches"] = [branch.plain() for branch in state.branches]
+        if before is None or state.status.former_trail is not before.status.former_trail:
+            found["former_trail"] = _rounded(state.status.former_trail)
+        self._part(found, "clients", clients)
+        self._add_lines(found)
+        self._add_samples(found)
+        self._state = state
+        return found
+
+    def _differences(self, found: dict[str, Any], key: str, before: dict[str, Any], now: dict[str, Any]) -> None:
+        changed = {name: value for name, value in now.items() if before.get(name, MISSING) != value}
+        if changed:
+            before.update(changed)
+            found[key] = changed
+
+    def _part(self, found: dict[str, Any], key: str, value: Any) -> None:
+        if self._parts.get(key, MISSING) != value:
+            self._parts[key] = value
+            found[key] = value
+
+    def _add_snapshot(self, found: dict[str, Any], snapshot: Snapshot) -> None:
+        scene = snapshot.scene
+        self._part(found, "t", round(snapshot.time, 6))
+        robot = scene.robot
+        self._part(found, "robot", None if robot is None else [robot.x, robot.y, robot.angle])
+        before, self._hal = self._hal, snapshot.values
+        self._add_values(found, before, snapshot.values)
+        if scene.trail is not self._trail:
+            start, self._trail = len(self._trail) if _continues(self._trail, scene.trail) else 0, scene.trail
+            if start < len(scene.trail) or start == 0:
+                found["trail"] = {"from": start, "points": _rounded(scene.trail[start:])}
+        former = None if self._state is None else self._state.snapshot
+        if former is None or scene.drawings is not former.scene.drawings:
+            found["drawings"] = [_drawing(each) for each in scene.drawings]
+        if former is None or scene.targets is not former.scene.targets:
+            found["targets"] = [{"x": each.x, "y": each.y, "in_view": each.in_view} for each in scene.targets]
+        if former is None or snapshot.choosers is not former.choosers:
+            found["choosers"] = [
+                {"name": each.name, "options": each.options, "default": each.default, "active": each.active}
+                for each in snapshot.choosers
+            ]
+
+    @staticmethod
+    def _add_values(found: dict[str, Any], before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
+        changed = {}
+        for path, value in now.items():
+            known = before.get(path, MISSING)
+            # Only values that have changed are new objects.
+            if known is not value and (known != value or type(known) is not type(value)):
+                changed[path] = value
+        if changed:
+            found.setdefault("values", {}).update(changed)
+        if len(before) + len(changed) != len(now) and (gone := [path for path in before if path not in now]):
+            found.setdefault("gone", []).extend(gone)
+
+    def _add_network(self, found: dict[str, Any], network: Mapping[str, Any]) -> None:
+        before, self._network = self._network, network
+        changed: dict[str, Any] = {}
+        self._add_values(changed, before, network)
+        values = changed.get("values", {})
+        types = {VALUE + path[len(TYPE) :]: value for path, value in values.items() if path.startswith(TYPE)}
+        if types:
+            found["types"] = types
+        if values := {path: value for path, value in values.items() if not path.startswith(TYPE)}:
+            found.setdefault("values", {}).update(values)
+        if gone := [path for path in changed.get("gone", ()) if not path.startswith(TYPE)]:
+            found.setdefault("gone", []).extend(gone)
+
+    def _add_lines(self, found: dict[str, Any]) -> None:
+        console, marks = self._collector.console, self._collector.marks
+        if lines := console.since(self._lines):
+            found["console"] = plain_lines(lines)
+            if dropped := lines[0].n - self._lines - 1:
+                found["console_dropped"] = dropped
+            self._lines = lines[-1].n
+        if new := marks.since(self._marks):
+            found["marks"] = [mark.plain() for mark in new]
+            self._marks = new[-1].n
+        elif "run" in found:
+            found["marks"] = []
+
+    def _add_samples(self, found: dict[str, Any]) -> None:
+        if self._subscribed and self._position is not None:
+            samples, self._position = self._collector.runs.samples(self._subscribed, self._position)
+            if samples:
+                found["samples"] = samples
+
+
+def _continues(before: tuple[Point, ...], now: tuple[Point, ...]) -> bool:
+    """Return whether a trail has only grown. It has the same points as before, not equal ones."""
+    return bool(before) and len(now) >= len(before) and now[0] is before[0] and now[len(before) - 1] is before[-1]
+
+
+def _rounded(points: Iterable[Point]) -> list[tuple[float, float]]:
+    return [(round(x, 3), round(y, 3)) for x, y in points]
+
+
+def _status(status: Status, wants_to_run: bool) -> dict[str, Any]:
+    failure = status.failure
+    place = None if failure is None else _PLACE.search(failure.headline)
+    return {
+        "state": status.state,
+        "speed": status.speed,
+        "reached": round(status.reached, 3),
+        "average": round(status.average, 3),
+        "packet_seconds": round(status.packet_seconds, 5),
+        "worst_packet_seconds": round(status.worst_packet_seconds, 5),
+        "late_packets": status.late_packets,
+        "overruns": status.overruns,
+        "worst_loop_seconds": round(status.worst_loop_seconds, 5),
+        "length": round(status.length, 6),
+        "note": status.note,
+        "responding": status.responding,
+        "starts": status.starts,
+        "network_address": status.network_address,
+        "wants_to_run": wants_to_run,
+        "failure": None
+        if failure is None
+        else {
+            "headline": failure.headline,
+            "details": failure.details,
+            "t": failure.time,
+            "file": "" if place is None else place["file"],
+            "line": 0 if place is None else int(place["line"]),
+        },
+    }
+
+
+def _station(snapshot: Snapshot | None, status: Status) -> dict[str, Any]:
+    text, kind = mode_text(snapshot, status)
+    found: dict[str, Any] = {"text": text, "kind": kind}
+    if snapshot is not None:
+        found |= {
+            "mode": snapshot.mode,
+            "chosen_mode": snapshot.chosen_mode,
+            "enabled": snapshot.enabled,
+            "emergency_stopped": snapshot.emergency_stopped,
+            "attached": snapshot.station_attached,
+            "practice_since": snapshot.practice_since,
+            "match_left": round(snapshot.match_left, 2),
+            "alliance": STATIONS.get(station_name(snapshot.values.get("alliance_station")), ""),
+            "game_message": str(snapshot.values.get("event.game_specific_message") or ""),
+        }
+    return found
+
+
+def _panel(panel: Panel) -> dict[str, Any]:
+    rows = [
+        {
+            "kind": row.kind,
+            "paths": row.paths,
+            "label": row.label,
+            "low": row.low,
+            "high": row.high,
+            "decimals": row.decimals,
+            "unit": row.unit,
+            "tooltip": row.tooltip,
+            "settable": row.kind in SETTABLE,
+        }
+        for row in panel.rows
+    ]
+    return {"title": panel.title, "rows": rows}
+
+
+def _drawing(drawing: Line | Text) -> dict[str, Any]:
+    style = asdict(drawing.style)
+    if isinstance(drawing, Line):
+        return {"kind": "line", "points": drawing.points, "color": drawing.color, "arrow": drawing.arrow, **style}
+    texts = {"text": drawing.text, "x": drawing.x, "y": drawing.y, "color": drawing.color, "size": drawing.size}
+    return {"kind": "text", **texts, **style}

@@ -1,0 +1,146 @@
+"""`pyfrc sim --ui web` as a user runs it: what it prints, what it opens, how it ends; with robots that fail."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from urllib.parse import urlsplit
+
+import pytest
+from conftest import RobotProject
+from sim_robots import FILES, PATIENCE
+from web_pages import Page, served
+from websockets.sync.client import connect
+
+ADDRESS = re.compile(r"The simulator is at (http://127\.0\.0\.1:\d+/\?token=\S+)")
+
+
+class Running:
+    """A `pyfrc sim --ui web` that goes on."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        self.read = ""
+        self.address = self.until(ADDRESS)[1]
+
+    def until(self, pattern: re.Pattern[str]) -> re.Match[str]:
+        """Read what it prints until a line has this."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self.read += line
+            if (match := pattern.search(line)) is not None:
+                return match
+        raise AssertionError(f"{pattern.pattern!r} was not printed:\n{self.read}")
+
+    @contextmanager
+    def page(self) -> Iterator[Page]:
+        parts = urlsplit(self.address)
+        with connect(f"ws://{parts.netloc}/ws?{parts.query}", max_size=None, origin=f"http://{parts.netloc}") as opened:
+            yield Page(opened)
+
+    def ended(self) -> int:
+        """Wait for the end, and return the exit code."""
+        self.read += self.process.communicate(timeout=PATIENCE)[0]
+        return self.process.returncode
+
+
+@contextmanager
+def simulating(made: RobotProject, *arguments: str, environment: Mapping[str, str] | None = None) -> Iterator[Running]:
+    given = {**os.environ, "DISPLAY": "", "WAYLAND_DISPLAY": "", "PYTHONUNBUFFERED": "1", **(environment or {})}
+    command = [sys.executable, "-m", "pyfrc", "sim", "--ui", "web", "--nt-port", "0", *arguments]
+    with subprocess.Popen(
+        command, cwd=made.path, env=given, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    ) as process:
+        try:
+            yield Running(process)
+        finally:
+            process.kill()
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_it_prints_its_address_and_ends_by_a_signal(make_project, name: str) -> None:
+    with simulating(make_project(FILES)) as running:
+        with running.page() as page:
+            page.until(lambda: page.status["state"] == "running")
+            page.command("enable")
+            page.until(lambda: page.station.get("enabled"))
+            running.process.send_signal(getattr(signal, name))
+            assert running.ended() == 0
+        assert "the robot is there" in running.read
+        assert "Traceback" not in running.read
+        with pytest.raises(OSError), socket.create_connection(("127.0.0.1", urlsplit(running.address).port), 2):  # noqa: PT011
+            pass
+
+
+def test_it_ends_by_the_page_and_writes_its_files(make_project) -> None:
+    made = make_project(FILES)
+    with simulating(made, "--record", "drive.jsonl") as running:
+        with running.page() as page:
+            page.until(lambda: page.parts.get("t", 0) > 0.1)
+            page.command("quit")
+            assert running.ended() == 0
+        assert "wrote drive.jsonl" in running.read
+    assert (made.path / "drive.jsonl").is_file()
+
+
+def test_it_opens_the_page_in_a_browser_where_there_is_one(make_project) -> None:
+    made = make_project({**FILES, "browser.py": "import sys; open('opened.txt', 'w').write(sys.argv[1])"})
+    browser = f"{sys.executable} {made.path / 'browser.py'} %s"
+    with simulating(made, environment={"DISPLAY": ":0", "BROWSER": browser}) as running:
+        end = time.monotonic() + PATIENCE
+        opened = made.path / "opened.txt"
+        while not (opened.is_file() and opened.read_text()) and time.monotonic() < end:
+            time.sleep(0.05)
+        assert opened.read_text() == running.address
+
+
+def test_new_code_comes_with_a_saved_file(make_project) -> None:
+    made = make_project(FILES)
+    with simulating(made, "--watch") as running, running.page() as page:
+        page.command("enable")
+        page.command("axis", stick=0, axis=1, value=-1.0)
+        page.until(lambda: page.values.get("pwm[0].value") == 1)
+        robot = made.path / "robot.py"
+        robot.write_text(robot.read_text().replace("SPEED = 1.0", "SPEED = 0.5"))
+        page.until(lambda: page.values.get("pwm[0].value") == pytest.approx(0.5, abs=0.01))
+        page.until(lambda: any(line["text"] == "saved: robot.py" for line in page.console))
+        assert page.status["starts"] == 2
+        page.until(lambda: page.parts["branches"] or page.parts["run"]["number"] == 2)
+        page.command("quit")
+        assert running.ended() == 0
+
+
+@pytest.mark.parametrize(("button", "reason"), [(6, "stuck|hang"), (7, "exit|ended")])
+def test_a_robot_that_hangs_or_ends_leaves_the_page_alive(make_project, button: int, reason: str) -> None:
+    with served(make_project(FILES)) as server, server.page() as page:
+        page.run_for(0.1)
+        page.command("enable")
+        page.command("button", stick=0, button=button, pressed=True)
+        page.command("step", packets=5)
+        page.until(lambda: page.status["state"] == "failed")
+        assert re.search(reason, page.status["failure"]["headline"])
+        assert page.ask(type="values", t=0.05)["values"]["sim.mode"] == "disabled"
+        page.command("restart")
+        page.until(lambda: page.status["state"] == "paused" and page.status["starts"] == 2)
+
+
+def test_its_options_belong_to_it(make_project) -> None:
+    made = make_project(FILES)
+    for option in (["--share"], ["--port", "7777"]):
+        result = made.run("sim", "--ui", "none", "--seconds", "1", *option)
+        assert result.code == 2
+        assert "Add --ui web" in result.output
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        result = made.run("sim", "--ui", "web", "--port", str(taken.getsockname()[1]))
+        assert result.code == 2
+        assert "Choose another --port" in result.output
+    assert made.run("sim", "--ui", "web", "--mode", "auto").code == 2

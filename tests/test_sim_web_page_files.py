@@ -1,0 +1,49 @@
+"""The files of the page of `pyfrc sim --ui web`: libraries as in their packages, nothing that a browser refuses."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+
+from pyfrc_core.sim.ui.web.app import PAGE
+
+
+def test_libraries_are_files_of_their_packages_with_licences() -> None:
+    packages = json.loads((PAGE / "vendor/vendor.json").read_text("utf-8"))["packages"]
+    listed = {file["file"]: file["sha256"] for package in packages for file in package["files"]}
+    found = {
+        file.relative_to(PAGE / "vendor").as_posix(): hashlib.sha256(file.read_bytes()).hexdigest()
+        for file in (PAGE / "vendor").rglob("*")
+        if file.is_file() and file.name != "vendor.json"
+    }
+    assert found == listed
+    for package in packages:
+        assert package["licence"] in ("MIT", "Apache-2.0", "OFL-1.1"), package
+        assert any(file["in_package"] == "LICENSE" for file in package["files"]), package
+
+
+def test_the_page_needs_no_network_no_build_and_makes_no_html_of_texts() -> None:
+    files = [file for file in PAGE.rglob("*") if file.suffix in (".js", ".css", ".html") and "vendor" not in file.parts]
+    assert len(files) > 20
+    for file in files:
+        text = file.read_text("utf-8")
+        for wrong in (
+            "innerHTML",
+            "outerHTML",
+            "insertAdjacentHTML",
+            "dangerouslySetInnerHTML",
+            "document.write",
+            "eval(",
+        ):
+            assert wrong not in text, (file, wrong)
+        assert not re.search(r"(?:src|href)=[\"'](?:https?:)?//", text), file
+        assert len(text.splitlines()) < 1000, file
+    index = (PAGE / "index.html").read_text("utf-8")
+    assert "<style" not in index
+    assert " style=" not in index
+    assert re.findall(r"<script(.*?)>(.*?)</script>", index) == [(' type="module" src="/static/js/main.js"', "")]
+    # Each module imports files that exist, by relative paths.
+    for file in (PAGE / "js").rglob("*.js"):
+        for name in re.findall(r'^(?:import|export)\b[^"]*?from "([^"]+)"', file.read_text("utf-8"), re.MULTILINE):
+            assert (file.parent / name).is_file(), (file, name)

@@ -1,0 +1,391 @@
+"""The page of `pyfrc sim --ui web` in a real browser: plots, the timeline, failures, the console, layouts, windows."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import pytest
+from browser_pages import ROBOT, Seen, missing_browser, open_browser, page_of, served
+from sim_robots import PATIENCE
+from skips import require
+
+require("the page of pyfrc sim in a browser", missing_browser())
+
+#: How much text stands out from what is behind it, as the Web Content Accessibility Guidelines compute it.
+CONTRASTS = """() => {
+  const probe = document.body.appendChild(document.createElement("i"));
+  const rgb = (name) => {
+    probe.style.color = `var(--${name})`;
+    return getComputedStyle(probe).color.match(/[\\d.]+/g).slice(0, 3).map(Number);
+  };
+  const light = (name) => {
+    const linear = (part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+    const [r, g, b] = rgb(name).map((part) => linear(part / 255));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const contrast = (one, other) => {
+    const [low, high] = [light(one), light(other)].sort((first, second) => first - second);
+    return (high + 0.05) / (low + 0.05);
+  };
+  const pairs = [
+    ["text", "surface"], ["text", "hover"], ["text", "track"],
+    ["muted", "surface"], ["muted", "raised"], ["muted", "track"],
+    ["faint", "surface"], ["faint", "raised"], ["accent-text", "surface"], ["accent-text", "accent-soft"],
+    ["amber", "surface"], ["amber", "amber-soft"],
+  ];
+  const found = pairs.map(([one, other]) => [one, other, contrast(one, other)]).filter(([, , value]) => value < 4.5);
+  probe.remove();
+  return found;
+}"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[object]:
+    with open_browser() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def server(make_shared_project) -> Iterator[object]:
+    with served(make_shared_project(ROBOT), speed=1, paused=False) as server:
+        yield server
+
+
+@pytest.fixture
+def person(browser, server) -> Iterator[Seen]:
+    with page_of(browser, server) as person:
+        yield person
+
+
+def drive(person: Seen, seconds: float = 1.0) -> None:
+    """Drive for some robot time, and pause."""
+    person.button("Enable").click()
+    person.page.keyboard.down("w")
+    person.until(lambda: person.value("pwm[0].value") == 1)
+    since = person.simulation.snapshot.time
+    person.until(lambda: person.simulation.snapshot.time >= since + seconds)
+    person.page.keyboard.up("w")
+    person.until(lambda: person.value("pwm[0].value") == 0)
+    person.page.keyboard.press("F5")
+    person.until(lambda: person.simulation.status.state == "paused")
+
+
+def plotted(person: Seen, panel: str = "plot:1") -> list[str]:
+    return person.page.locator(f"[data-panel='{panel}'] .curve-name").all_inner_texts()
+
+
+def test_values_are_plotted_zoomed_and_saved(person: Seen) -> None:
+    page = person.page
+    person.choose("Layout", "Tuning")
+    person.tab("Devices").click()
+    row = person.row("pwm[0].value")
+    row.hover()
+    row.get_by_label("Plot 0 left motor").click()
+    row = person.row("dio[3].value")
+    row.drag_to(page.locator("[data-panel='plot:1'] .plot-area"))
+    page.locator(".curve-name", has_text="Digital I/O 3").wait_for()
+    assert plotted(person) == ["PWM 0 left motor", "Digital I/O 3"]
+    drive(person)
+    plot = page.locator("[data-panel='plot:1']")
+    plot.locator("canvas.plot-bands").wait_for()
+    person.button("All").first.click()
+    # Where the pointer is, the value of that moment is shown: 1 while the key was held, 0 before.
+    over = plot.locator(".u-over")
+    over.hover(position={"x": 3, "y": 20})
+    value = plot.locator(".legend li", has_text="left motor").locator("b")
+    value.filter(has_text="0").wait_for()
+    person.drag(over, (0.2, 0.5), (0.9, 0.5))
+    person.button("Follow again").wait_for()
+    with page.expect_download() as download:
+        person.button("Save the values as CSV").first.click()
+    lines = download.value.path().read_text("utf-8").splitlines()
+    assert lines[0] == "t,pwm[0].value,dio[3].value"
+    assert any(line.split(",")[1] == "1" for line in lines[1:])
+    person.button("Follow again").click()
+    page.get_by_label("Axis of pwm[0].value").click()
+    page.get_by_label("Axis of pwm[0].value").filter(has_text="R").wait_for()
+    page.get_by_label("Remove dio[3].value").click()
+    page.reload()
+    page.locator(".curve-name", has_text="left motor").wait_for()
+    assert plotted(person) == ["PWM 0 left motor"]
+
+
+#: A series as the page has it, and as the history of the server has it.
+SERIES = """async (path) => {
+  const { watch } = await import("/static/js/series.js");
+  const { ask } = await import("/static/js/connection.js");
+  const answer = await ask("plot", { paths: [path], from: 0, to: 1e6, points: 20000, branch: null });
+  const rounded = ({ t, v }) => t.map((time, index) => `${time.toFixed(2)} ${v[index].toFixed(3)}`);
+  return [rounded(watch(path)), rounded(answer.series[path])];
+}"""
+
+
+def same_series(person: Seen, path: str) -> None:
+    """Wait until the page has what the server has, without holes."""
+    person.page.get_by_role("button", name="Run", exact=True).first.wait_for()
+
+    def differs() -> list[str]:
+        shown, kept = person.page.evaluate(SERIES, path)
+        return sorted(set(shown) ^ set(kept))
+
+    ends = time.monotonic() + PATIENCE
+    while differs() and time.monotonic() < ends:  # the last samples are on their way
+        person.page.evaluate("new Promise(requestAnimationFrame)")
+    assert differs() == []
+
+
+def test_curves_have_no_holes_when_they_are_added_or_a_run_goes_on(person: Seen) -> None:
+    page = person.page
+    add = "path => import('/static/js/plotting.js').then(({ addToPlot }) => addToPlot(path, 'plot:1'))"
+    person.button("Enable").click()
+    page.keyboard.down("w")
+    person.until(lambda: person.value("pwm[0].value") == 1)
+    page.evaluate(add, "sim.pose[0]")
+    since = person.simulation.snapshot.time
+    person.until(lambda: person.simulation.snapshot.time > since + 0.3)
+    page.evaluate(add, "pwm[0].value")
+    person.until(lambda: person.simulation.snapshot.time > since + 0.6)
+    page.keyboard.press("F5")
+    same_series(person, "sim.pose[0]")
+    person.simulation.rewind(since)
+    person.until(lambda: person.simulation.status.state == "paused" and person.simulation.snapshot.time <= since + 0.02)
+    page.keyboard.press("F5")
+    person.until(lambda: person.simulation.snapshot.time > since + 0.4)
+    page.keyboard.press("F5")
+    same_series(person, "sim.pose[0]")
+
+
+def test_looking_back_shows_the_past_everywhere_and_changes_nothing(person: Seen) -> None:
+    page = person.page
+    drive(person)
+    end = person.simulation.snapshot.time
+    x = person.simulation.snapshot.scene.robot.x
+    timeline = page.get_by_role("slider", name="Timeline")
+    timeline.focus()
+    page.keyboard.press("Home")
+    page.locator(".clock", has_text="0:00.00").wait_for()
+    page.locator(".state em", has_text="past").wait_for()
+    page.locator(".state.disabled").wait_for()
+    page.locator(".pose b", has_text="10.00 ft").wait_for()
+    for _ in range(3):
+        page.keyboard.press("ArrowRight")
+    page.locator(".clock", has_text="0:00.06").wait_for()
+    assert person.simulation.snapshot.time == end
+    person.button("Live").click()
+    page.locator(".pose b", has_text=f"{x:.2f} ft").wait_for()
+    page.locator(".state em").wait_for(state="detached")
+
+
+def test_driving_on_from_the_past_keeps_the_rest_as_a_branch(person: Seen) -> None:
+    page = person.page
+    drive(person)
+    end = person.simulation.snapshot.time
+    page.get_by_role("button", name="Mark", exact=True).click()
+    page.get_by_label("A mark at").fill("here it was")
+    page.keyboard.press("Enter")
+    timeline = page.get_by_role("slider", name="Timeline")
+    timeline.focus()
+    page.keyboard.press("Home")
+    page.keyboard.press("PageUp")
+    page.locator(".clock", has_text="0:01.00").wait_for()
+    person.button("Drive on from here").click()
+    person.until(lambda: person.simulation.snapshot.time == pytest.approx(1.0))
+    page.locator(".clock", has_text="0:01.00").wait_for()
+    page.get_by_title("Compare with an earlier run").click()
+    page.get_by_role("menuitemcheckbox").first.click()
+    page.get_by_title("Compare with an earlier run").click()
+    page.locator("[role=menuitemcheckbox][aria-checked=true]").wait_for()
+    page.locator(".menu-list").get_by_text("Name “").click()
+    page.get_by_label("The name of the branch").fill("<b>before</b>")
+    page.keyboard.press("Enter")
+    page.get_by_title("Compare with an earlier run").click()
+    page.locator("[role=menuitemcheckbox]", has_text="<b>before</b>").wait_for()
+    assert end > 1.0
+
+
+def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
+    page = person.page
+    drive(person)
+    timeline = page.get_by_role("slider", name="Timeline")
+    box = timeline.bounding_box()
+    # The timeline has 10 s at least, between two edges of 8 pixels.
+    whole = max(person.simulation.status.length, 10)
+
+    def x(seconds: float) -> float:
+        return 8 + seconds / whole * (box["width"] - 16)
+
+    page.mouse.move(box["x"] + x(0.2), box["y"] + 14)
+    page.mouse.down()
+    page.mouse.move(box["x"] + x(0.5), box["y"] + 14, steps=5)
+    page.mouse.up()
+    page.locator(".clock", has_text="0:00.5").wait_for()
+    page.get_by_role("button", name="Mark", exact=True).click()
+    page.get_by_label("A mark at").fill("<i>here</i>")
+    page.keyboard.press("Enter")
+    timeline.hover(position={"x": x(0.5), "y": 14})
+    page.locator(".timeline-tip", has_text="<i>here</i>").wait_for()
+    page.keyboard.press("Tab")  # the keys reach what the mouse reaches
+    person.choose("Restart, save, end", "Save the recording")
+    page.get_by_label("Save the recording").fill("kept/drive.jsonl")
+    page.keyboard.press("Enter")
+    page.get_by_text("Saved kept/drive.jsonl").wait_for()
+    assert (person.simulation.project.root / "kept/drive.jsonl").is_file()
+    page.get_by_label("Hide this message").click()
+    page.get_by_text("Saved kept/drive.jsonl").wait_for(state="detached")
+
+
+def test_every_value_can_be_searched_and_plotted_by_keys_alone(person: Seen) -> None:
+    page = person.page
+    person.tab("Plot 1").focus()
+    page.keyboard.press("Enter")
+    picker = person.button("Add value")
+    for search in ("joystick 0 axis 1", "robot angle", "mode"):
+        picker.focus()
+        page.keyboard.press("Enter")
+        page.get_by_label("Search all values").fill(search)
+        page.keyboard.press("Enter")
+        page.get_by_label("Search all values").wait_for(state="detached")
+    page.locator(".curve-name", has_text="Mode").wait_for()
+    assert plotted(person) == ["Joystick 0 axis 1", "Robot angle, rad", "Mode"]
+    page.locator("[data-panel='plot:1'] canvas.plot-bands").wait_for()
+    page.get_by_label("Axis of sim.mode").wait_for(state="detached")  # a text has none
+
+
+def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:
+    page = person.page
+    person.button("Enable").click()
+    person.until(lambda: person.simulation.snapshot.enabled and person.simulation.snapshot.time > 2.5)
+    page.keyboard.down("5")
+    alert = page.get_by_role("alert")
+    alert.locator("strong", has_text="ZeroDivisionError").wait_for()
+    page.keyboard.up("5")
+    assert alert.locator("strong").inner_text().startswith("robot.py:")
+    assert alert.locator("a.source").get_attribute("href").startswith("vscode://file/")
+    alert.locator("summary").click()
+    alert.locator("pre", has_text="Traceback").wait_for()
+    failed_at = person.simulation.status.failure.time
+    person.button("Values of that moment").click()
+    page.locator(".state em", has_text="past").wait_for()
+    person.button("Go back 2 s and drive on").click()
+    page.get_by_role("alert").wait_for(state="detached")
+    person.until(lambda: person.simulation.status.state == "running")
+    assert person.simulation.snapshot.time < failed_at + 60
+
+
+def test_a_robot_that_floods_the_console_or_hangs_leaves_the_page_alive(person: Seen) -> None:
+    page = person.page
+    person.button("Enable").click()
+    page.keyboard.down("9")
+    page.locator(".line-text", has_text="flood").first.wait_for()
+    page.get_by_label("Search the output").fill("flood 299")
+    page.locator(".line-text", has_text="flood 299").first.wait_for()
+    page.keyboard.press("Enter")  # in the box: it does not disable the robot
+    assert person.simulation.snapshot.enabled
+    page.keyboard.up("9")
+    page.locator(".field-canvas").click(position={"x": 5, "y": 5})
+    page.keyboard.down("8")
+    person.state("Not responding")
+    page.keyboard.up("8")
+    person.tab("NetworkTables").click()
+    page.get_by_label("Search NetworkTables").wait_for()
+    page.keyboard.press("F9")
+    person.state("Teleoperated disabled")
+
+
+def test_the_console_is_filtered_and_searched(person: Seen) -> None:
+    page = person.page
+    page.locator(".line.warning", has_text="this is a warning").first.wait_for()
+    page.get_by_role("button", name="Warnings").click()
+    page.locator(".line.warning").first.wait_for(state="detached")
+    page.get_by_role("button", name="Warnings").click()
+    page.get_by_label("Search the output").fill("nothing prints this")
+    page.get_by_text("No line matches.").wait_for()
+    page.get_by_label("Search the output").fill("WARNING")
+    page.locator(".line").first.wait_for()
+    assert all("arning" in text for text in page.locator(".line").all_inner_texts())
+
+
+def test_panels_are_moved_sized_closed_and_stay_so(person: Seen) -> None:
+    page = person.page
+    person.tab("Console").hover()
+    person.button("Close Console").click()
+    assert person.tab("Console").count() == 0
+    person.choose("Open and close panels", "Dashboard")
+    person.tab("Dashboard").wait_for()
+    # A tab that is dragged to the edge of another panel gets a place of its own.
+    target = page.locator("[data-panel='devices']")
+    box = target.bounding_box()
+    page.locator(".tab", has_text="Match").drag_to(
+        target, target_position={"x": box["width"] / 2, "y": box["height"] - 12}
+    )
+    below = page.locator("[data-panel='match']")
+    page.wait_for_function(
+        "left => Math.abs(document.querySelector(\"[data-panel='match']\").getBoundingClientRect().left - left) < 3",
+        arg=box["x"],
+    )
+    width = below.bounding_box()["width"]
+    border = page.get_by_role("separator").first
+    border.focus()
+    page.keyboard.press("ArrowDown")
+    vertical = page.locator("[role=separator][aria-orientation=vertical]").first
+    vertical.focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function(
+        "width => document.querySelector(\"[data-panel='match']\").getBoundingClientRect().width > width + 10",
+        arg=width,
+    )
+    page.get_by_title("Dark colours").click()
+    page.reload()
+    below.wait_for()
+    assert below.bounding_box()["width"] > width + 10
+    assert person.tab("Console").count() == 0
+    assert page.locator("html").get_attribute("data-theme") == "dark"
+    person.choose("Layout", "Reset this layout")
+    person.tab("Console").wait_for()
+
+
+def test_a_second_window_sees_the_same_and_a_viewer_cannot_drive(browser, server) -> None:
+    with page_of(browser, server) as person:
+        context = browser.new_context()
+        viewer = Seen(context.new_page(), server).open(server.viewing_address)
+        person.page.get_by_text("2 windows").wait_for()
+        assert viewer.button("Enable").is_disabled()
+        assert viewer.button("E-STOP").is_disabled()
+        viewer.page.keyboard.press("Control+e")
+        viewer.page.keyboard.press(" ")
+        person.button("Enable").click()
+        viewer.state("Teleoperated enabled")
+        person.page.keyboard.press("Enter")
+        viewer.state("Teleoperated disabled")
+        context.close()
+        person.page.get_by_text("2 windows").wait_for(state="detached")
+
+
+def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> None:
+    with served(make_project(ROBOT), speed=1, paused=False) as server, page_of(browser, server) as person:
+        server.front_end.close()
+        person.page.get_by_text("The simulation was closed. This is its last state.").wait_for()
+        person.state("Teleoperated disabled")
+        person.wrong.clear()  # the browser's own words about the lost connection
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
+    with page_of(browser, server, color_scheme=scheme) as person:
+        page = person.page
+        assert page.locator("html").get_attribute("data-theme") == scheme
+        for size in ((1366, 768), (3840, 2160), (820, 1180)):
+            page.set_viewport_size({"width": size[0], "height": size[1]})
+            for layout in ("Driving", "Tuning", "Mechanism", "Presentation"):
+                person.choose("Layout", layout)
+                page.locator(".tabs").first.wait_for()
+                whole = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+                assert whole == list(size), layout
+                outside = page.locator(".station button, .timebar button").evaluate_all(
+                    "all => all.map((each) => [each.textContent, each.getBoundingClientRect()])"
+                    ".filter(([, box]) => box.right > innerWidth + 1 || box.bottom > innerHeight + 1)"
+                    ".map(([text]) => text)"
+                )
+                assert outside == [], (size, layout)
+        assert page.evaluate(CONTRASTS) == []
