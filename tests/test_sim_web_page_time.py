@@ -310,7 +310,7 @@ def test_panels_are_moved_sized_closed_and_stay_so(person: Seen) -> None:
     page = person.page
     person.tab("Console").hover()
     person.button("Close Console").click()
-    assert person.tab("Console").count() == 0
+    person.tab("Console").wait_for(state="detached")
     person.choose("Open and close panels", "Dashboard")
     person.tab("Dashboard").wait_for()
     # A tab that is dragged to the edge of another panel gets a place of its own.

@@ -1,6 +1,7 @@
 // The choices before a match: alliance, game data, start, and the robot's choosers.
 import { command } from "../connection.js";
 import { model } from "../model.js";
+import { TextBox } from "../text_box.js";
 import { Live, html } from "../view.js";
 
 export class MatchPanel extends Live {
@@ -18,7 +19,7 @@ export class MatchPanel extends Live {
           ${Object.entries(options.alliances).map(([name, value]) => html`<option key=${value} value=${value} selected=${value === station.alliance}>${name}</option>`)}
         </select></label>
       <label>Game data
-        <input type="text" list="game-messages" value=${station.game_message ?? ""} disabled=${readonly} spellcheck="false"
+        <${TextBox} list="game-messages" text=${station.game_message ?? ""} disabled=${readonly} spellcheck="false"
           placeholder="none" onKeyDown=${commit} onChange=${(event) => command("game_message", { text: event.target.value })} />
         <datalist id="game-messages">${options.game_messages.map((text) => html`<option key=${text} value=${text}></option>`)}</datalist></label>
       ${starts.length > 0 && html`<label>Start

@@ -3,6 +3,7 @@ import { write } from "../connection.js";
 import { numberText, plain, shortNumber, valueText } from "../format.js";
 import { model } from "../model.js";
 import { addToPlot } from "../plotting.js";
+import { TextBox } from "../text_box.js";
 import { Icon, Live, html } from "../view.js";
 import { Chooser } from "./match.js";
 
@@ -77,7 +78,7 @@ function ValueRow({ path, name, value }) {
       ? html`<label class="switch"><input type="checkbox" role="switch" aria-label=${name} checked=${value} disabled=${model.readonly} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
       : number || typeof value === "string"
         ? html`<span class="number-box">${number && html`<button class="tool always" aria-label=${`Less ${name}`} disabled=${model.readonly} onClick=${() => nudge(-step)}>−</button>`}
-            <input type="text" class=${number ? "number" : ""} aria-label=${name} value=${number ? shortNumber(value) : value} title=${number ? numberText(value, 6) : value} disabled=${model.readonly} onKeyDown=${set} onFocus=${(event) => event.target.select()} />
+            <${TextBox} class=${number ? "number" : ""} aria-label=${name} text=${number ? shortNumber(value) : value} title=${number ? numberText(value, 6) : value} disabled=${model.readonly} onKeyDown=${set} onFocus=${(event) => event.target.select()} />
             ${number && html`<button class="tool always" aria-label=${`More ${name}`} disabled=${model.readonly} onClick=${() => nudge(step)}>+</button>`}</span>`
         : html`<span class="faint">${valueText(value)}</span>`}
     <span class="row-tools"><button class="tool" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span></div>`;
