@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from sim_robots import PATIENCE
+from sim_robots import FILES, PATIENCE
 from skips import missing_programs
 from web_pages import Served, served
 
@@ -103,20 +103,7 @@ ROBOT = {
                 self.left.set(0)
                 self.right.set(0)
     """,
-    "physics.py": """
-        from pyfrc.physics import drivetrains
-
-
-        class PhysicsEngine:
-            def __init__(self, physics_controller):
-                self.physics_controller = physics_controller
-                self.drivetrain = drivetrains.TwoMotorDrivetrain(x_wheelbase=2, speed=5)
-
-            def update_sim(self, hal_data, now, tm_diff):
-                left, right = hal_data["pwm"][0]["value"], hal_data["pwm"][1]["value"]
-                speed, rotation = self.drivetrain.get_vector(-left, -right)
-                self.physics_controller.drive(speed, rotation, tm_diff)
-    """,
+    "physics.py": FILES["physics.py"],
     "sim/config.json": """
         {"pyfrc": {"robot": {"starting_x": 10, "starting_y": 12, "starting_angle": 0,
                              "start_positions": [{"name": "left", "x": 20, "y": 6, "angle": 90},
