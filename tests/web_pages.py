@@ -129,6 +129,11 @@ class Page:
                 return found
             self._take(found)
 
+    def until_error(self) -> None:
+        """Take updates until an error comes, which belongs to no question."""
+        while (message := self._receive())["type"] != "error":
+            self._take(message)
+
     def command(self, name: str, **arguments: Any) -> dict[str, Any]:
         """Carry out a command, which is possible."""
         answer = self.ask(type="command", name=name, **arguments)
