@@ -120,7 +120,8 @@ class _WarmProcess:
     def __init__(self, pid: int, end: socket.socket) -> None:
         self.pid = pid
         self._end = end
-        weakref.finalize(self, end.close)
+        # Not at exit: a thread may still wait for the end of the process.
+        weakref.finalize(self, end.close).atexit = False
 
     def poll(self) -> int | None:
         try:
