@@ -183,6 +183,12 @@ class Seen:
         box.fill(text)
         box.press("Enter")
 
+    def shows(self, box: Locator, text: str) -> None:
+        """Wait until a box or a slider has this value."""
+        from playwright.sync_api import expect
+
+        expect(box).to_have_value(text, timeout=PATIENCE * 1000)
+
     def state(self, text: str) -> None:
         """Wait until the driver station shows this."""
         self.page.locator(".state b", has_text=text).wait_for()

@@ -312,8 +312,8 @@ def test_a_mistake_of_pyfrcs_own_is_printed_and_ends_one_connection(make_project
     with served(make_project(FILES)) as server, server.page() as page:
         with monkeypatch.context() as patched:
             patched.setattr("pyfrc_core.sim.ui.web.updates.UpdateBuilder.update", broken)
-            page.command("enable")
-            with pytest.raises(ConnectionClosed) as closed:
+            with pytest.raises(ConnectionClosed) as closed:  # before or after the command's answer
+                page.command("enable")
                 page.until(lambda: False)
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == 1011

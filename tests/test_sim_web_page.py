@@ -156,6 +156,7 @@ def test_devices_are_found_set_and_pinned(person: Seen) -> None:
     person.set_number(row.locator("input.number"), "2,5")
     person.until(lambda: person.value("analog_in[2].voltage") == 2.5)
     slider = row.locator("input[type=range]")
+    person.shows(slider, "2.5")
     slider.focus()
     slider.press("Home")
     person.until(lambda: person.value("analog_in[2].voltage") == 0)
