@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from sim_robots import FILES
-from web_pages import served
+from web_pages import Page, served
 from websockets.exceptions import ConnectionClosed
 
 DASHBOARD = {
@@ -309,12 +309,15 @@ def test_a_mistake_of_pyfrcs_own_is_printed_and_ends_one_connection(make_project
     def broken(self: object, clients: int) -> dict[str, object]:
         raise ZeroDivisionError("a mistake")
 
+    def enable_and_wait(page: Page) -> None:
+        page.command("enable")  # its answer may come before the end
+        page.until(lambda: False)
+
     with served(make_project(FILES)) as server, server.page() as page:
         with monkeypatch.context() as patched:
             patched.setattr("pyfrc_core.sim.ui.web.updates.UpdateBuilder.update", broken)
-            with pytest.raises(ConnectionClosed) as closed:  # before or after the command's answer
-                page.command("enable")
-                page.until(lambda: False)
+            with pytest.raises(ConnectionClosed) as closed:
+                enable_and_wait(page)
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == 1011
         with server.page() as again:
