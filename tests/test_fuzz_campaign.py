@@ -60,11 +60,13 @@ def kept(project: Any) -> dict[str, bytes]:
 
 def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(make_project) -> None:
     project = copy_of("buggy/chord", make_project, seconds=4.0)
-    result = project.run("fuzz", "--seed", "1", "--runs", "8")
+    result = project.run("fuzz", "--seed", "1", "--runs", "32")
     assert result.code == 1, result.output
     place = project.place("robot.py", "# the bug")
     assert f"{place}: IndexError: tuple index out of range\n" in result.stdout
-    assert re.search(r"^8 matches, 0\.\d\d h of robot time, 100% of the robot's lines, 1 failure$", result.stdout, re.M)
+    assert re.search(
+        r"^32 matches, 0\.\d\d h of robot time, 100% of the robot's lines, 1 failure$", result.stdout, re.M
+    )
     file = "tests/fuzz/indexerror-robot-pull.jsonl"
     assert f"pyfrc replay {file}\n" in result.stdout
     script = load_script(project.path / file)
