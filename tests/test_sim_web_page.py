@@ -247,6 +247,7 @@ def test_joysticks_by_mouse(person: Seen) -> None:
     page.locator(".stick-button.pressed", has_text="Trigger").wait_for()
     page.mouse.up()
     person.until(lambda: person.value("joysticks[0].buttons")[1] is False)
+    page.locator(".stick-button.pressed", has_text="Trigger").wait_for(state="detached")
     button.click(button="right")
     person.until(lambda: person.value("joysticks[0].buttons")[1] is True)
     page.get_by_label("POV 90°").hover()

@@ -104,6 +104,7 @@ class Button extends Component {
 
   press(pressed) {
     const { stick, button } = this.props;
+    this.pressed = pressed; // until the robot's next update: a click that follows at once must not undo another one
     command("button", { stick, button, pressed });
   }
 
