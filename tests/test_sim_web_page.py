@@ -92,7 +92,7 @@ def test_a_practice_match_and_the_choices_before_it(person: Seen) -> None:
     person.until(lambda: person.simulation.snapshot.choosers[0].active == "Forward")
     person.button("Practice").click()
     person.state("Autonomous enabled")
-    page.locator(".countdown", has_text="0:1").wait_for()
+    page.locator(".countdown", has_text=":").wait_for()
     person.until(lambda: person.value("pwm[0].value") == 1)
     person.button("Disable").click()
     page.locator(".countdown").wait_for(state="detached")
@@ -136,6 +136,7 @@ def test_the_robot_is_dragged_turned_and_moved_by_keys(person: Seen) -> None:
 
     person.drag(field, share(10, 12), share(30, 10))
     person.until(lambda: robot().x == pytest.approx(30, abs=0.5) and robot().y == pytest.approx(10, abs=0.5))
+    person.page.locator(".pose b", has_text=f"{robot().x:.2f} ft").wait_for()  # it is drawn there, too
     person.drag(field, share(robot().x, robot().y), share(robot().x - 8, robot().y), button="right")
     person.until(lambda: abs(robot().angle) == pytest.approx(3.14, abs=0.2))
     x = robot().x
