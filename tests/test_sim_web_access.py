@@ -104,7 +104,7 @@ def test_a_page_with_the_viewing_address_sees_and_cannot_drive(make_project) -> 
         ):
             assert viewer.ask(**message)["type"] == "error"
         driver.run_for(0.2)
-        viewer.until(lambda: viewer.parts["t"] == driver.parts["t"])
+        viewer.until(lambda: viewer.time == driver.time)
         assert viewer.values == driver.values
         assert not viewer.station["enabled"]
         assert viewer.ask(type="values", t=0.1)["values"]["sim.mode"] == "disabled"

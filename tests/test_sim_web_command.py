@@ -83,8 +83,8 @@ def test_it_ends_by_the_page_and_writes_its_files(make_project) -> None:
     made = make_project(FILES)
     with simulating(made, "--record", "drive.jsonl") as running:
         with running.page() as page:
-            page.until(lambda: page.parts.get("t", 0) > 0.1)
-            page.command("quit")
+            page.until(lambda: page.time > 0.1)
+            page.quit()
             assert running.ended() == 0
         assert "wrote drive.jsonl" in running.read
     assert (made.path / "drive.jsonl").is_file()
@@ -113,7 +113,7 @@ def test_new_code_comes_with_a_saved_file(make_project) -> None:
         page.until(lambda: any(line["text"] == "saved: robot.py" for line in page.console))
         assert page.status["starts"] == 2
         page.until(lambda: page.parts["branches"] or page.parts["run"]["number"] == 2)
-        page.command("quit")
+        page.quit()
         assert running.ended() == 0
 
 

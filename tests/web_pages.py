@@ -82,15 +82,18 @@ class Page:
         self.types: dict[str, str] = {}
         #: What is replaced as a whole.
         self.parts: dict[str, Any] = {}
-        self.updates = 0
         self._number = 0
         self._take(self.hello)
+
+    @property
+    def time(self) -> float:
+        """The robot time that the page shows, in seconds; 0 until the first packet."""
+        return float(self.parts.get("t", 0.0))
 
     def _receive(self) -> dict[str, Any]:
         return json.loads(self.socket.recv(timeout=PATIENCE))  # type: ignore[no-any-return]
 
     def _take(self, message: dict[str, Any]) -> None:
-        self.updates += 1
         if "run" in message:
             self.marks, self.samples = [], {}
         self.status |= message.get("status", {})
@@ -140,12 +143,18 @@ class Page:
         assert answer["type"] == "answer", answer
         return answer
 
+    def quit(self) -> None:
+        """End the simulation, and wait until the server says so: the answer may come too late for this page."""
+        self.socket.send(json.dumps({"type": "command", "name": "quit"}))
+        while self._receive()["type"] != "closed":
+            pass
+
     def run_for(self, seconds: float) -> None:
         """Let robot time pass, and wait until it has."""
         self.until(lambda: self.status["state"] == "paused")
-        end = self.parts.get("t", 0.0) + seconds - 0.001
+        end = self.time + seconds - 0.001
         self.command("step", packets=round(seconds / 0.02))
-        self.until(lambda: self.status["state"] in ("paused", "failed") and self.parts.get("t", 0.0) >= end)
+        self.until(lambda: self.status["state"] in ("paused", "failed") and self.time >= end)
 
 
 @contextmanager

@@ -36,6 +36,8 @@ _TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css
 _NO_KEY = "This address lacks its key. Open the address that pyfrc sim has printed.\n"
 #: The codes that close a connection: it sent something other than text; pyfrc has a mistake.
 _UNSUPPORTED, _ERROR = 1003, 1011
+#: How long a page that does not read delays the end, in seconds.
+_CLOSING_SECONDS = 2.0
 #: What sending and receiving raise when a page has gone; RuntimeError: it was closed meanwhile.
 _GONE = (WebSocketDisconnect, RuntimeError, OSError)
 
@@ -86,9 +88,8 @@ class WebApp:
 
     async def close_pages(self) -> None:
         """Say to every page that the simulation was closed."""
-        for client in list(self._clients.values()):
-            with suppress(Exception):
-                await asyncio.wait_for(client.close(), 0.5)
+        closings = [asyncio.wait_for(client.close(), _CLOSING_SECONDS) for client in self._clients.values()]
+        await asyncio.gather(*closings, return_exceptions=True)
 
     async def _index(self, request: Request) -> Response:
         if self._access.role_of(request.scope) is None:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 #: The largest message that a page may send, in bytes.
 _MOST_MESSAGE = 1 << 20
-#: How long pages are given to close their connections, in seconds.
-_CLOSING_SECONDS = 1.0
+#: How long each step of the end may take, in seconds; longer than the app waits for a page.
+_CLOSING_SECONDS = 3.0
 
 
 @dataclass(frozen=True)
@@ -125,10 +125,10 @@ class Server:
             closing = asyncio.run_coroutine_threadsafe(app.close_pages(), loop)
             try:
                 closing.result(_CLOSING_SECONDS)
-            except Exception:  # a page that does not read: it sees that the connection is gone
+            except Exception:  # the server is too busy: the pages see that the connection is gone
                 closing.cancel()
         self._server.should_exit = True
-        self._thread.join(2 * _CLOSING_SECONDS)
+        self._thread.join(_CLOSING_SECONDS)
         if self._thread.is_alive():
             self._server.force_exit = True
             self._thread.join(_CLOSING_SECONDS)
