@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from sim_robots import FILES, PATIENCE
 from skips import missing_programs
 from web_pages import Served, served
@@ -204,6 +205,27 @@ class Seen:
         self.page.mouse.up(**options)
 
 
+@pytest.fixture(scope="module", name="browser")
+def shared_browser() -> Iterator[Browser]:
+    """One browser for the tests of a module."""
+    with open_browser() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module", name="server")
+def shared_server(make_shared_project: Any) -> Iterator[Served]:
+    """A simulation of `ROBOT` in real time, for the tests of a module."""
+    with served(make_shared_project(ROBOT), speed=1, paused=False) as server:
+        yield server
+
+
+@pytest.fixture(name="person")
+def person_at_page(browser: Browser, server: Served) -> Iterator[Seen]:
+    """Somebody new at the page."""
+    with page_of(browser, server) as person:
+        yield person
+
+
 @contextmanager
 def page_of(browser: Browser, server: Served, address: str = "", script: str = "", **options: Any) -> Iterator[Seen]:
     """Open the page as a new person, for whom nothing was arranged, on a robot that has just started."""
@@ -226,6 +248,3 @@ def page_of(browser: Browser, server: Served, address: str = "", script: str = "
         assert not seen.wrong, seen.wrong
     finally:
         context.close()
-
-
-__all__ = ["CHOOSER", "HOSTILE", "ROBOT", "Seen", "missing_browser", "open_browser", "page_of", "served"]

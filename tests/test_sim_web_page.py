@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pytest
-from browser_pages import CHOOSER, HOSTILE, ROBOT, Seen, missing_browser, open_browser, page_of, served
+from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
+    CHOOSER,
+    HOSTILE,
+    Seen,
+    missing_browser,
+    page_of,
+    person_at_page,
+    shared_browser,
+    shared_server,
+)
 from skips import require
 
 require("the page of pyfrc sim in a browser", missing_browser())
@@ -22,24 +29,6 @@ PADS = """
       }];
     };
 """
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[object]:
-    with open_browser() as browser:
-        yield browser
-
-
-@pytest.fixture(scope="module")
-def server(make_shared_project) -> Iterator[object]:
-    with served(make_shared_project(ROBOT), speed=1, paused=False) as server:
-        yield server
-
-
-@pytest.fixture
-def person(browser, server) -> Iterator[Seen]:
-    with page_of(browser, server) as person:
-        yield person
 
 
 def test_driving_by_buttons_and_keys(person: Seen) -> None:

@@ -74,6 +74,7 @@ class ProjectOnWorker(WorkerPlugin):
         packed: PackedProject = pickle.loads(self._packed)
         self._project = packed.unpack(Path(self._directory.name, "project"))
         self._sent_from = packed.project.root
+        self._versions = versions()
 
     def teardown(self, worker: Worker) -> None:
         """End the processes and remove the directory."""
@@ -88,8 +89,8 @@ class ProjectOnWorker(WorkerPlugin):
 
         :raises EOFError: when the process that played it has ended
         """
-        if versions() != self._expected:
-            return pickle.dumps(PyfrcError(f"a worker has {versions()}, this computer has {self._expected}"))
+        if self._versions != self._expected:
+            return pickle.dumps(PyfrcError(f"a worker has {self._versions}, this computer has {self._expected}"))
         process = self._take()
         try:
             result: bytes = process.request(task)

@@ -268,12 +268,11 @@ def _robot(
     hang_seconds: float | None = None,
 ) -> Iterator[tuple[RobotRun, MisbehaviorNotes]]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
-    imported_devices(project)  # before robot time begins
-    run = RobotRun()
+    run = RobotRun(has_devices=imported_devices(project))  # imports the robot before robot time begins
     settings = project.settings.fuzz
     hang_detector = HangDetector(run, project.files, hang_seconds or settings.hang_seconds, log)
     with hang_detector.watching():
-        run.open(imported_devices(project))
+        run.open()
         CrashMoment(log, run)
         LoopLimit(run, project.files, project.settings)
         notes = MisbehaviorNotes(run.clock, project.files, ends_with)

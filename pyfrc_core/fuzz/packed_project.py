@@ -8,7 +8,7 @@ from hashlib import sha256
 from pathlib import Path, PurePosixPath
 
 from ..errors import PyfrcError
-from ..passes.contents import read_contents
+from ..passes.contents import project_files
 from ..project import Project
 
 
@@ -46,14 +46,9 @@ class PackedProject:
 
 def pack(project: Project) -> PackedProject:
     """Read the files of a project that its matches may need: logs, hidden files and environments are left out."""
-    contents = read_contents(project)
-    names = {*contents.sources, *contents.others, project.main_file.name}
-    if project.pyproject.is_file():
-        names.add(Path(os.path.relpath(project.pyproject, project.root)).as_posix())
     files = {}
-    for name in sorted(names):
-        file = project.root / name
+    for file in {*project_files(project), project.main_file}:
         if file.is_file() and os.access(file, os.R_OK):
             content = file.read_bytes()
-            files[name] = content, sha256(content).hexdigest()
-    return PackedProject(replace(project), files)
+            files[Path(os.path.relpath(file, project.root)).as_posix()] = content, sha256(content).hexdigest()
+    return PackedProject(replace(project), dict(sorted(files.items())))

@@ -59,8 +59,8 @@ class Sampler:
         """Sample each robot's run, until the table is undone."""
         real_open, real_close = RobotRun.open, RobotRun.close
 
-        def open_run(run: RobotRun, has_devices: bool | None = None) -> None:
-            real_open(run, has_devices)
+        def open_run(run: RobotRun) -> None:
+            real_open(run)
             self.start()
 
         def close_run(run: RobotRun) -> None:

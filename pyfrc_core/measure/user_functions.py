@@ -70,9 +70,9 @@ class UserFunctions:
             table.patch(RobotThreads, name, self._stopwatch.waiting(getattr(RobotThreads, name)))
         real_open = RobotRun.open
 
-        def open_run(run: RobotRun, has_devices: bool | None = None) -> None:
+        def open_run(run: RobotRun) -> None:
             self._time_callbacks_of_commands(table)
-            real_open(run, has_devices)
+            real_open(run)
 
         table.patch(RobotRun, "open", open_run)
 

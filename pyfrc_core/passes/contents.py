@@ -6,7 +6,7 @@ import os
 import platform
 import sys
 import sysconfig
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -45,13 +45,17 @@ def read_contents(project: Project, written: Iterable[Path] = ()) -> Contents:
     """
     left_out = {path.absolute() for path in written}
     contents = Contents({}, {})
-    for file in _files_of(project, left_out):
+    for file in project_files(project, left_out):
         kind = contents.sources if file.suffix == ".py" else contents.others
         kind[Path(os.path.relpath(file, project.root)).as_posix()] = hash_of_file(file)
     return contents
 
 
-def _files_of(project: Project, left_out: set[Path]) -> Iterator[Path]:
+def project_files(project: Project, left_out: Collection[Path] = ()) -> Iterator[Path]:
+    """Yield the project's files. Hidden files, environments and what runs write are left out.
+
+    :param left_out: absolute directories that are left out, too
+    """
     beside = project.test_directories[1]
     yield from _files_below(project.root, left_out)
     if not beside.is_relative_to(project.root) and beside.is_dir():
@@ -60,7 +64,7 @@ def _files_of(project: Project, left_out: set[Path]) -> Iterator[Path]:
         yield project.pyproject
 
 
-def _files_below(directory: Path, left_out: set[Path]) -> Iterator[Path]:
+def _files_below(directory: Path, left_out: Collection[Path]) -> Iterator[Path]:
     for place, directories, files in os.walk(directory):
         directories[:] = sorted(
             name

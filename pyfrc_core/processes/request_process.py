@@ -27,16 +27,10 @@ class RequestProcess:
 
     def __init__(self, handle: Handler, environment: Mapping[str, str]) -> None:
         # It ends with its standard input: the thread that starts it may end before this process.
-        job = spawn.Start(partial(_serve, handle), ends_with_owner=False).job()
-        self._process = subprocess.Popen(
-            [sys.executable, *spawn.ARGUMENTS],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            cwd=spawn.DIRECTORY,
-            env={**os.environ, **environment},
+        how = spawn.Start(
+            partial(_serve, handle), stdout=subprocess.PIPE, environment=environment, ends_with_owner=False
         )
-        self._send(job)
+        self._process = spawn.open_interpreter(how)
 
     @property
     def pid(self) -> int:
@@ -47,8 +41,11 @@ class RequestProcess:
 
         :raises EOFError: when the process has ended
         """
-        self._send(encode(content))
+        assert self._process.stdin is not None
         assert self._process.stdout is not None
+        with suppress(OSError):  # it has ended, which reading its result shows
+            self._process.stdin.write(encode(content))
+            self._process.stdin.flush()
         return read_frame(self._process.stdout)
 
     def kill(self) -> None:
@@ -58,12 +55,6 @@ class RequestProcess:
         assert self._process.stdin is not None
         with suppress(OSError):  # what was not sent
             self._process.stdin.close()
-
-    def _send(self, data: bytes) -> None:
-        assert self._process.stdin is not None
-        with suppress(OSError):  # it has ended, which reading its result shows
-            self._process.stdin.write(data)
-            self._process.stdin.flush()
 
 
 def _serve(handle: Handler) -> None:

@@ -81,6 +81,15 @@ def start(how: Start) -> Interpreter:
 
     Always called as an attribute of this module, so that tests can replace it by a function that starts faster.
     """
+    process = open_interpreter(how)
+    assert process.stdin is not None
+    with suppress(OSError):  # it has ended already
+        process.stdin.close()
+    return process
+
+
+def open_interpreter(how: Start) -> subprocess.Popen[bytes]:
+    """Start a new interpreter whose standard input stays open: what follows the job is for what it calls."""
     process = subprocess.Popen(
         [sys.executable, *ARGUMENTS],
         stdin=subprocess.PIPE,
@@ -91,8 +100,9 @@ def start(how: Start) -> Interpreter:
         start_new_session=how.own_session and os.name == "posix",
     )
     assert process.stdin is not None
-    with suppress(OSError), process.stdin as stdin:  # an error: it has ended already
-        stdin.write(how.job())
+    with suppress(OSError):  # it has ended already
+        process.stdin.write(how.job())
+        process.stdin.flush()
     return process
 
 

@@ -91,9 +91,11 @@ class RobotRun:
     The thread that creates this drives the clock. The HAL is one per process, so only one run at a time can be.
 
     :param logs: where the data logs that robot code starts are written; None: they are not kept
+    :param has_devices: whether devices exist in the HAL, if the caller knows: the search takes a millisecond
     """
 
-    def __init__(self, logs: LogPlace | None = None) -> None:
+    def __init__(self, logs: LogPlace | None = None, has_devices: bool | None = None) -> None:
+        self._has_devices = has_devices
         self.clock = Clock()
         #: What robot code starts of data logs.
         self.data_logs = DataLogs(self.clock, logs)
@@ -127,18 +129,14 @@ class RobotRun:
         self._started = self._ended = False
         self._closing = contextlib.ExitStack()
 
-    def open(self, has_devices: bool | None = None) -> None:
-        """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet.
-
-        :param has_devices: whether devices exist in the HAL, if the caller knows: the search takes a millisecond
-        """
+    def open(self) -> None:
+        """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
         deferred_imports.import_all()
         restart_numbers()
         self._closing.enter_context(active_run.set_to(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
         ntcore.NetworkTableInstance.getDefault().startLocal()
-        if has_devices is None:
-            has_devices = devices_exist()
+        has_devices = devices_exist() if self._has_devices is None else self._has_devices
         if not has_devices:  # of an earlier run in this process, only its inputs are left
             timing.forget_inputs()
         self.connection.boot()

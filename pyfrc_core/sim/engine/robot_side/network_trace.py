@@ -13,8 +13,7 @@ from typing import Any
 import ntcore
 
 from ....hal import modes
-from ....runtime.scripts.network_entries import NETWORK
-from ..network_paths import MODE, POSE, TYPE
+from ..network_paths import MODE, POSE, TYPE, VALUE
 from ..scene import Pose
 from .structs import StructReader
 
@@ -48,12 +47,12 @@ class NetworkTrace:
             data = event.data
             if isinstance(data, ntcore.ValueEventData):
                 name, type_name = data.topic.getName(), data.topic.getTypeString()
-                gone.pop(NETWORK + name, None)
-                changed[NETWORK + name] = self._plain(name, type_name, data.value)
+                gone.pop(VALUE + name, None)
+                changed[VALUE + name] = self._plain(name, type_name, data.value)
                 changed[TYPE + name] = type_name
             elif isinstance(data, ntcore.TopicInfo):
-                gone[NETWORK + data.name] = None
-                changed.pop(NETWORK + data.name, None)
+                gone[VALUE + data.name] = None
+                changed.pop(VALUE + data.name, None)
         values = self.values
         changed = {path: value for path, value in changed.items() if path not in values or values[path] != value}
         lost = [path for path in gone if values.pop(path, None) is not None]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import zip_longest
 from typing import Any
 
@@ -26,17 +26,16 @@ class FirstDifference:
         self.time: float | None = None
         self.paths: list[str] = []
 
-    def compare(self, one: History, other: History, paths: Iterable[str]) -> None:
-        """Look for an earlier difference in these values."""
-        for path in paths:
-            time = self._difference(one, other, path)
-            if time is None:
-                continue
-            if self.time is None or time < self.time:
-                self.time, self.paths = time, []
-                self._end = time  # later ones no longer matter
-            if len(self.paths) < _MOST_NAMED:
-                self.paths.append(path)
+    def compare(self, one: History, other: History, path: str) -> None:
+        """Look for an earlier difference in this value."""
+        time = self._difference(one, other, path)
+        if time is None:
+            return
+        if self.time is None or time < self.time:
+            self.time, self.paths = time, []
+            self._end = time  # later ones no longer matter
+        if len(self.paths) < _MOST_NAMED:
+            self.paths.append(path)
 
     def _difference(self, one: History, other: History, path: str) -> float | None:
         changes = zip_longest(

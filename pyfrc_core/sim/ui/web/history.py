@@ -130,7 +130,7 @@ class History:
 
     def values_at(self, time: float) -> dict[str, Any]:
         """Return all values at a moment; those at the first known moment if it is earlier."""
-        number = max(bisect_right(self._chunks, time, key=lambda chunk: chunk.times[0] if chunk.times else time) - 1, 0)
+        number = max(self._chunk_at(time), 0)
         if number >= len(self._chunks):
             return {}
         chunk = self._chunks[number]
@@ -142,13 +142,17 @@ class History:
 
     def value_at(self, path: str, time: float) -> Any:
         """Return one value at a moment; `MISSING` if there was none."""
-        number = bisect_right(self._chunks, time, key=lambda chunk: chunk.times[0] if chunk.times else time) - 1
+        number = self._chunk_at(time)
         if number < 0:
             return MISSING
         chunk = self._chunks[number]
         base = chunk.base.get(path, MISSING)
         column = chunk.columns.get(path)
         return base if column is None else column.value_at(chunk.packet_at(time), base)
+
+    def _chunk_at(self, time: float) -> int:
+        """Return the number of the last chunk that begins until a moment; -1 before the first."""
+        return bisect_right(self._chunks, time, key=lambda chunk: chunk.times[0] if chunk.times else time) - 1
 
     def pieces(self, path: str, begin: float, end: float) -> Iterator[Piece]:
         """Yield the changes of a value after one moment, until another one."""

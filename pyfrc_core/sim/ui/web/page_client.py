@@ -8,6 +8,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
+from ...engine.network_paths import TYPE
 from .access import Role
 from .commands import CommandError, Commands
 from .json_text import json_text
@@ -129,7 +130,7 @@ class PageClient:
         values = self._collector.runs.values_at(time, _branch(message))
         if values is None:
             raise _no_branch()
-        return {"t": time, "values": {path: value for path, value in values.items() if not path.startswith("type:")}}
+        return {"t": time, "values": {path: value for path, value in values.items() if not path.startswith(TYPE)}}
 
     def _first_difference(self, message: dict[str, Any]) -> dict[str, Any]:
         paths, branch = None if message.get("paths") is None else _paths(message), _branch(message)

@@ -150,10 +150,9 @@ class Runs:
     def name(self, number: int, name: str) -> bool:
         """Name a former run, and return whether there is one with this number."""
         with self._lock:
-            named = tuple(replace(each, name=name) if each.number == number else each for each in self.branches)
-            found = named != self.branches or any(each.number == number for each in self.branches)
-            self.branches = named
-        return found
+            found = self._branch(number)
+            self.branches = tuple(replace(each, name=name) if each is found else each for each in self.branches)
+        return found is not None
 
     # -- what is asked for ----------------------------------------------------------------------------------------
 
@@ -187,7 +186,7 @@ class Runs:
         :param paths: the values to compare; None: all
         """
         with self._lock:
-            branch = next((each for each in self.branches if each.number == number), None)
+            branch = self._branch(number)
             if branch is None:
                 return None
             end = max(history.end for history in self._histories.values())
@@ -200,7 +199,7 @@ class Runs:
                 compared += ((history, former, path) for path in chosen)
         for history, former, path in compared:
             with self._lock:  # for each value: a collector must not wait for all of them
-                found.compare(history, former, [path])
+                found.compare(history, former, path)
         return found
 
     def samples(self, paths: Iterable[str], after: Position) -> tuple[dict[str, list[Any]], Position]:
@@ -238,10 +237,11 @@ class Runs:
     def _history(self, source: Source, branch: int | None) -> History | None:
         if branch is None:
             return self._histories[source]
-        for each in self.branches:
-            if each.number == branch:
-                return each.histories[source]
-        return None
+        found = self._branch(branch)
+        return None if found is None else found.histories[source]
+
+    def _branch(self, number: int) -> Branch | None:
+        return next((each for each in self.branches if each.number == number), None)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 // The branch that the person compares with: a ghost on the field, dashed curves in the plots.
 import { ask } from "./connection.js";
 import { model } from "./model.js";
-import { indexAfter } from "./series.js";
+import { valueAt } from "./series.js";
 
 const POINTS = 4000;
 
@@ -15,8 +15,7 @@ class Compared {
     if (this.id === null) return null;
     const branch = model.branches.find((each) => each.id === this.id);
     if (!branch || t > branch.to + 1e-6) return null;
-    const index = indexAfter(this.pose.t, t + 1e-6) - 1;
-    return index < 0 ? null : this.pose.v[index];
+    return valueAt(this.pose, t) ?? null;
   }
 
   async choose(id) {
@@ -31,7 +30,7 @@ class Compared {
       const first = await ask("first_difference", { branch: id, paths: null });
       if (this.id === id) this.difference = first.t;
     } catch {
-      // It may be gone, or this server may not compare yet: then there is nothing to show.
+      // It may be gone: then there is nothing to show.
     }
     model.announce("compared-series", "robot");
   }

@@ -1,6 +1,6 @@
 // The WebSocket to `pyfrc sim`. It connects again by itself; each connection begins with the whole state.
 
-export const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
+const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
 
 const WAITS = [200, 400, 800, 1500]; // milliseconds between attempts to connect
 

@@ -24,6 +24,12 @@ export function numberText(value, decimals = 2) {
   return Number(text) === 0 && text.startsWith("-") ? text.slice(1) : text;
 }
 
+// The number that a person has typed, with a comma or a point; undefined: it is none.
+export function typedNumber(text) {
+  const value = Number(text.replace(",", "."));
+  return text.trim() && Number.isFinite(value) ? value : undefined;
+}
+
 // A number with as many decimals as it has, but not more than `most`.
 export function shortNumber(value, most = 4) {
   if (!Number.isFinite(value)) return String(value);

@@ -25,7 +25,7 @@ class Model {
   dropped = 0;
   marks = [];
   branches = [];
-  run = { number: 1, t: 0, reason: "start" };
+  run = { number: 1, t: 0 };
   clients = 1;
   problem = "";
   past = null; // { t, values } while the panels show a moment of the past

@@ -21,6 +21,10 @@ export function lookBy(seconds) {
   look((wanted ?? model.past?.t ?? model.t) + seconds);
 }
 
+export function lookByPackets(count) {
+  lookBy(count * PACKET);
+}
+
 async function fetchWanted() {
   asking = true;
   while (wanted !== null) {

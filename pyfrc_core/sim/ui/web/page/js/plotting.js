@@ -4,8 +4,8 @@ import { panelsOf } from "./layout/presets.js";
 import { showPanel } from "./station.js";
 
 const PATH_TYPE = "application/x-pyfrc-path";
-export const MOST_CURVES = 12;
-export const CURVE_COLORS = 8; // --curve-0 to --curve-7 in theme.css
+const MOST_CURVES = 12;
+const CURVE_COLORS = 8; // --curve-0 to --curve-7 in theme.css
 
 // Begin to drag a value.
 export function carryPath(event, path) {

@@ -5,7 +5,7 @@ import { askText } from "./dialog.js";
 import { clock, speedText } from "./format.js";
 import { Menu } from "./menu.js";
 import { model } from "./model.js";
-import { driveOn, live, look, lookBy } from "./past.js";
+import { driveOn, live, look, lookByPackets } from "./past.js";
 import { Timeline } from "./timeline.js";
 import { Icon, Live, html } from "./view.js";
 
@@ -20,11 +20,11 @@ export class TimeBar extends Live {
     const running = status.wants_to_run;
     return html`<footer class=${past ? "timebar past" : "timebar"}>
       <div class="transport">
-        <button class="quiet" title="Look at the packet before" aria-label="Look at the packet before" onClick=${() => lookBy(-0.02)}><${Icon} name="stepBack" /></button>
+        <button class="quiet" title="Look at the packet before" aria-label="Look at the packet before" onClick=${() => lookByPackets(-1)}><${Icon} name="stepBack" /></button>
         <button class="play" disabled=${readonly} title=${running ? "Pause: F5" : "Run: F5"} aria-label=${running ? "Pause" : "Run"}
           onClick=${() => command("toggle")}><${Icon} name=${running ? "pause" : "play"} /></button>
         <button class="quiet" title=${past ? "Look at the packet after" : "Step by one packet: F6"} aria-label="Step"
-          disabled=${readonly && !past} onClick=${() => (past ? lookBy(0.02) : command("step", { packets: 1 }))}><${Icon} name="step" /></button>
+          disabled=${readonly && !past} onClick=${() => (past ? lookByPackets(1) : command("step", { packets: 1 }))}><${Icon} name="step" /></button>
         <time class="clock" title="Robot time">${clock(past ? past.t : model.t)}</time>
         ${past
           ? html`<span class="past-actions">
@@ -114,14 +114,14 @@ async function save() {
   if (answer?.file) model.set("problem", `Saved ${answer.file}`);
 }
 
-export function sliderOf(speed) {
+function sliderOf(speed) {
   if (speed === 0) return 1;
   const { slowest, fastest } = model.hello.options.speeds;
   const limited = Math.min(Math.max(speed, slowest), fastest);
   return (UNLIMITED * Math.log(limited / slowest)) / Math.log(fastest / slowest);
 }
 
-export function speedOf(position) {
+function speedOf(position) {
   const { slowest, fastest } = model.hello.options.speeds;
   if (position >= (1 + UNLIMITED) / 2) return 0;
   const exact = slowest * (fastest / slowest) ** (Math.min(position, UNLIMITED) / UNLIMITED);

@@ -2,7 +2,7 @@
 import { font, sizeCanvas } from "./canvas.js";
 import { clock } from "./format.js";
 import { model } from "./model.js";
-import { length, live, look, lookBy } from "./past.js";
+import { length, live, look, lookBy, lookByPackets } from "./past.js";
 import { watch, unwatch } from "./series.js";
 import { color } from "./settings.js";
 import { Live, createRef, html } from "./view.js";
@@ -183,8 +183,8 @@ export class Timeline extends Live {
   key = (event) => {
     const far = event.shiftKey ? 50 : 1;
     const acts = {
-      ArrowLeft: () => lookBy(-0.02 * far),
-      ArrowRight: () => lookBy(0.02 * far),
+      ArrowLeft: () => lookByPackets(-far),
+      ArrowRight: () => lookByPackets(far),
       PageDown: () => lookBy(-1),
       PageUp: () => lookBy(1),
       Home: () => look(0),

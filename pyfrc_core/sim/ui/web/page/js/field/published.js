@@ -7,12 +7,12 @@ const FEWEST = 7; // poses of a trajectory
 const STEP = 2.5; // feet between its poses, at most
 
 // A pose of WPILib, in metres from the field's lower left corner, as x, y in feet and an angle in radians, clockwise.
-export function fromMetres(x, y, radians, field) {
+function fromMetres(x, y, radians, field) {
   return [x / FOOT, field.height - y / FOOT, -radians];
 }
 
 // The poses of a value: numbers in threes as Field2d has them, or Pose2d structs.
-export function posesOf(value, field) {
+function posesOf(value, field) {
   const list = Array.isArray(value) ? value : value === undefined || value === null ? [] : [value];
   if (list.length && list.every((each) => each?.$ === "struct" && each.type === "Pose2d" && each.value)) {
     return list.map(({ value: pose }) => fromMetres(pose.translation.x, pose.translation.y, angleOf(pose.rotation), field));

@@ -29,7 +29,7 @@ let sent = {};
 export function keyName(event) {
   if (BY_CODE[event.code]) return BY_CODE[event.code];
   if (/^(Digit|Numpad)\d$/.test(event.code)) return event.code.slice(-1);
-  return event.key.length === 1 ? event.key.toLowerCase() : event.key.toLowerCase();
+  return event.key.toLowerCase();
 }
 
 // The bindings that are in force: those of the chosen layout, and the person's own.

@@ -1,7 +1,7 @@
 // Changes of a layout's tree. Each function returns a new tree, and leaves the given one as it was.
 
 // Change the node at a place: a list of child numbers from the root.
-export function replaceAt(tree, place, change) {
+function replaceAt(tree, place, change) {
   if (!place.length) return change(tree);
   const [first, ...rest] = place;
   const children = tree.children.map((child, index) => (index === first ? replaceAt(child, rest, change) : child));
@@ -9,7 +9,7 @@ export function replaceAt(tree, place, change) {
 }
 
 // Remove empty tabs, and rows and columns of one child.
-export function tidy(tree) {
+function tidy(tree) {
   if (tree.kind === "tabs") return tree.panels.length ? tree : null;
   const kept = tree.children
     .map((child, index) => ({ child: tidy(child), size: tree.sizes[index] ?? 1 }))
@@ -66,7 +66,7 @@ export function resize(tree, place, index, share) {
 }
 
 // The place of the first tabs, where a new panel opens if nothing better is known.
-export function firstTabs(tree) {
+function firstTabs(tree) {
   return tree.kind === "tabs" ? [] : [0, ...firstTabs(tree.children[0])];
 }
 

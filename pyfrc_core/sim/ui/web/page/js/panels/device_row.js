@@ -1,6 +1,6 @@
 // One row of the devices: its label, its value drawn by kind, and for inputs the control that sets it.
 import { write } from "../connection.js";
-import { numberText, plain, valueText } from "../format.js";
+import { numberText, plain, typedNumber, valueText } from "../format.js";
 import { model } from "../model.js";
 import { addToPlot, carryPath } from "../plotting.js";
 import { Component, Icon, classes, createRef, html } from "../view.js";
@@ -159,7 +159,7 @@ class Switch extends Painted {
 
   render({ row, label }) {
     return html`<label class="switch"><input type="checkbox" role="switch" ref=${this.element} aria-label=${label} disabled=${model.readonly}
-      onChange=${(event) => write({ [row.targets?.[0] ?? row.paths[0]]: event.target.checked })} /><i></i></label>`;
+      onChange=${(event) => write({ [row.paths[0]]: event.target.checked })} /><i></i></label>`;
   }
 }
 
@@ -175,22 +175,21 @@ class NumberBox extends Painted {
       disabled=${model.readonly} onFocus=${(event) => event.target.select()} onKeyDown=${this.key} onBlur=${this.leave} /><span class="unit">${row.unit}</span></span>`;
   }
 
-  key = (event) => {
-    event.stopPropagation();
-    if (event.key === "Enter") {
-      setNumber(this.props.row, event.target.value);
-      event.target.blur();
-    } else if (event.key === "Escape") event.target.blur();
-  };
+  key = (event) => typeNumber(event, this.props.row);
 
   leave = (event) => {
     event.target.value = this.text(plain(model.shown.values.get(this.props.row.paths[0])));
   };
 }
 
-function setNumber(row, text) {
-  const value = Number(text.replace(",", "."));
-  if (text.trim() && Number.isFinite(value)) write({ [row.targets?.[0] ?? row.paths[0]]: value });
+// Keys in a box for a number: Enter sets it, Escape leaves it as it was.
+function typeNumber(event, row) {
+  event.stopPropagation();
+  if (event.key === "Enter") {
+    const value = typedNumber(event.target.value);
+    if (value !== undefined) write({ [row.paths[0]]: value });
+    event.target.blur();
+  } else if (event.key === "Escape") event.target.blur();
 }
 
 class Slider extends Painted {
@@ -213,16 +212,10 @@ class Slider extends Painted {
 
   slide = (event) => {
     const { row } = this.props;
-    write({ [row.targets?.[0] ?? row.paths[0]]: Number(Number(event.target.value).toFixed(row.decimals)) });
+    write({ [row.paths[0]]: Number(Number(event.target.value).toFixed(row.decimals)) });
   };
 
-  key = (event) => {
-    event.stopPropagation();
-    if (event.key === "Enter") {
-      setNumber(this.props.row, event.target.value);
-      event.target.blur();
-    } else if (event.key === "Escape") event.target.blur();
-  };
+  key = (event) => typeNumber(event, this.props.row);
 }
 
 const KINDS = {

@@ -48,7 +48,7 @@ function matches(row, title, words) {
   return words.every((word) => text.includes(word));
 }
 
-export function rowKey(row) {
+function rowKey(row) {
   return row.paths[0] ?? `heading ${row.label}`;
 }
 

@@ -1,6 +1,6 @@
 // NetworkTables as a tree. Numbers, texts, switches and lists can be edited; any value can be plotted.
 import { write } from "../connection.js";
-import { plain, shortNumber, valueText } from "../format.js";
+import { plain, shortNumber, typedNumber, valueText } from "../format.js";
 import { model } from "../model.js";
 import { addToPlot, carryPath } from "../plotting.js";
 import { Component, Icon, Live, classes, createRef, html } from "../view.js";
@@ -147,11 +147,10 @@ function editText(value) {
 }
 
 // What a typed text means for a value of this kind; undefined: it is wrong.
-export function parseAs(before, text) {
+function parseAs(before, text) {
   if (typeof before === "string") return text;
   if (typeof before === "number") {
-    const value = Number(text.replace(",", "."));
-    return text.trim() && Number.isFinite(value) ? value : undefined;
+    return typedNumber(text);
   }
   try {
     const list = JSON.parse(text);
