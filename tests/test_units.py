@@ -213,3 +213,8 @@ def test_pint_is_imported_when_units_are_used() -> None:
     code = "import sys; from pyfrc.physics.units import units; print('pint' in sys.modules)"
     assert python(code) == "False\n"
     assert python(f"{code}; units.feet; print('pint' in sys.modules)") == "False\nTrue\n"
+
+
+def test_dask_is_not_imported_with_pint_and_can_be_afterwards() -> None:
+    code = "import sys; from pyfrc.physics.units import units; units.feet; print('dask' in sys.modules)"
+    assert python(f"{code}; import dask; print(dask.__name__)") == "False\ndask\n"

@@ -10,9 +10,10 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
+    from types import ModuleType
     from typing import TypeAlias
 
     UnitRegistry: TypeAlias = "pint.UnitRegistry[Any]"
@@ -30,7 +31,18 @@ def _collector_paused() -> Iterator[None]:
             gc.enable()
 
 
-with _collector_paused():
+@contextmanager
+def _without_dask() -> Iterator[None]:
+    """Have imports behave as if dask were not installed: pint would import it for arrays that no robot has."""
+    imported = sys.modules.setdefault("dask", cast("ModuleType", None))
+    try:
+        yield
+    finally:
+        if imported is None:
+            del sys.modules["dask"]
+
+
+with _collector_paused(), _without_dask():
     import pint
     import platformdirs
 
