@@ -33,6 +33,7 @@ ROBOT = {
     "robot.py": f"""
         import ntcore
         import wpilib
+        from wpimath.controller import PIDController
         from wpimath.geometry import Pose2d, Rotation2d
         from wpimath.kinematics import SwerveModuleState
 
@@ -60,6 +61,7 @@ ROBOT = {
                 wpilib.SmartDashboard.putData("Arm", self.mechanism)
                 self.field = wpilib.Field2d()
                 wpilib.SmartDashboard.putData("Plan", self.field)
+                wpilib.SmartDashboard.putData("Turn", PIDController(2, 0, 0))
                 path = [Pose2d(2 + n / 2, 4 + n / 8, Rotation2d(0.2)) for n in range(12)]
                 self.field.getObject("path").setPoses(path)
                 self.field.getObject("tags").setPoses([Pose2d(5 * (n % 2), n, Rotation2d()) for n in range(8)])

@@ -68,6 +68,18 @@ def test_driving_by_buttons_and_keys(person: Seen) -> None:
     person.state("disabled")
 
 
+def test_keys_remind_that_the_robot_is_disabled(person: Seen) -> None:
+    page = person.page
+    page.keyboard.press("w")
+    page.get_by_text("Enable the robot first: Ctrl+E").wait_for()
+    page.keyboard.press("Control+e")
+    person.state("Teleoperated enabled")
+    page.get_by_text("Enable the robot first").wait_for(state="detached")
+    page.keyboard.press("Enter")
+    person.state("Teleoperated disabled")
+    page.get_by_text("Enable the robot first").wait_for(state="detached")
+
+
 def test_a_practice_match_and_the_choices_before_it(person: Seen) -> None:
     page = person.page
     page.get_by_label("Alliance").select_option("Blue 2")
@@ -180,6 +192,20 @@ def test_networktables_are_edited_live(person: Seen) -> None:
     page.wait_for_function("() => document.querySelector(\"[data-path='nt:/SmartDashboard/flag'] input\").checked")
     page.get_by_label("Search NetworkTables").fill("pivot angle")
     page.locator("[data-path='nt:/SmartDashboard/Arm/pivot/arm/angle']").wait_for()
+
+
+def test_gains_are_changed_on_the_dashboard(person: Seen) -> None:
+    page = person.page
+    person.choose("Layout", "Tuning")
+    box = page.locator(".card", has_text="PIDController").get_by_label("p", exact=True)
+    person.shows(box, "2")
+    person.set_number(box, "")  # no number: nothing is written
+    person.set_number(box, "three")
+    person.set_number(box, "3,5")
+    target = "nt:/SmartDashboard/Turn/p"
+    person.until(lambda: any(target in step.writes for step in person.simulation.script().steps))
+    written = [step.writes[target] for step in person.simulation.script().steps if target in step.writes]
+    assert written == [3.5]
 
 
 def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> None:

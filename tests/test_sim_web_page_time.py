@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 
 import pytest
@@ -255,6 +256,8 @@ def test_a_crash_shows_the_line_and_the_way_back(person: Seen) -> None:
     alert.locator("summary").click()
     alert.locator("pre", has_text="Traceback").wait_for()
     failed_at = person.simulation.status.failure.time
+    page.locator(".live-now", has_text="Ended").wait_for()
+    person.button("Load the code again").wait_for()
     person.button("Values of that moment").click()
     page.locator(".state em", has_text="past").wait_for()
     person.button("Go back 2 s and drive on").click()
@@ -356,8 +359,48 @@ def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> 
     with served(make_project(ROBOT), speed=1, paused=False) as server, page_of(browser, server) as person:
         server.front_end.close()
         person.page.get_by_text("The simulation was closed. This is its last state.").wait_for()
+        person.page.locator(".live-now", has_text="No connection").wait_for()
+        assert person.button("Enable").is_disabled()
         person.state("Teleoperated disabled")
         person.wrong.clear()  # the browser's own words about the lost connection
+
+
+def test_a_robot_that_fails_at_once_offers_no_earlier_moment(browser, make_project) -> None:
+    made = make_project(ROBOT)
+    with served(made, speed=1, paused=False) as server, page_of(browser, server) as person:
+        robot = made.path / "robot.py"
+        robot.write_text(robot.read_text().replace("def robotInit(self):", "def robotInit(self)"))
+        person.choose("Restart, save, end", "Load the code again")
+        alert = person.page.get_by_role("alert")
+        alert.locator("strong", has_text="SyntaxError").wait_for()
+        offered = alert.get_by_role("button").all_inner_texts()
+        assert offered == ["Values of that moment", "Load the code again", "Restart"]
+        robot.write_text(robot.read_text().replace("def robotInit(self)", "def robotInit(self):"))
+        person.button("Load the code again").click()
+        alert.wait_for(state="detached")
+        person.state("Teleoperated disabled")
+
+
+def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
+    with page_of(browser, server) as person:
+        page = person.page
+        page.evaluate("window.notReloaded = true")
+        loop = server.front_end.server._loop
+        awake = threading.Event()
+        loop.call_soon_threadsafe(awake.wait)  # nothing is sent, and no connection is closed
+        try:
+            page.get_by_text("The connection to pyfrc sim was lost, reconnecting").wait_for()
+            assert person.button("E-STOP").is_disabled()
+            server.simulation.enable()
+        finally:
+            awake.set()
+        page.get_by_text("reconnecting").wait_for(state="detached")
+        person.state("Teleoperated enabled")
+        page.locator(".live-now", has_text="Live").wait_for()
+        page.keyboard.press("Enter")
+        person.state("Teleoperated disabled")
+        assert page.evaluate("window.notReloaded")
+        person.wrong.clear()  # the browser's own words about attempts that came to nothing
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -4,8 +4,15 @@ const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
 
 const WAITS = [200, 400, 800, 1500]; // milliseconds between attempts to connect
 
+// A computer that has slept, a network that is gone or a server that hangs closes no connection: the page notices the
+// silence. It counts its own ticks, which stop while the page itself sleeps.
+const TICK = 1000; // milliseconds
+const ASK_AFTER = 2; // ticks of silence, after which the page asks whether the server is there
+const LOST_AFTER = 6; // ticks of silence, after which it connects again
+
 let socket = null;
 let attempts = 0;
+let silence = 0;
 let finished = false;
 let nextId = 1;
 const requests = new Map(); // id: { resolve, reject }
@@ -17,25 +24,44 @@ export function connect(message, state) {
   onMessage = message;
   onState = state;
   open();
+  setInterval(tick, TICK);
+}
+
+function tick() {
+  if (finished || socket === null) return;
+  silence += 1;
+  if (silence === ASK_AFTER) send({ type: "ping", id: nextId++ });
+  if (silence < LOST_AFTER) return;
+  const silent = socket;
+  silent.onmessage = silent.onopen = silent.onclose = null;
+  silent.close();
+  lost();
 }
 
 function open() {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   socket = new WebSocket(`${scheme}://${location.host}/ws?token=${encodeURIComponent(TOKEN)}`);
-  socket.onmessage = (event) => receive(JSON.parse(event.data));
+  silence = 0;
+  socket.onmessage = (event) => {
+    silence = 0;
+    receive(JSON.parse(event.data));
+  };
   socket.onopen = () => {
     attempts = 0;
     onState("open");
   };
-  socket.onclose = (event) => {
-    for (const request of requests.values()) request.reject(new Error("the connection was lost"));
-    requests.clear();
-    if (finished) return;
-    if (attempts) checkAddress();
-    onState("lost");
-    setTimeout(open, WAITS[Math.min(attempts, WAITS.length - 1)]);
-    attempts += 1;
-  };
+  socket.onclose = lost;
+}
+
+function lost() {
+  socket = null;
+  for (const request of requests.values()) request.reject(new Error("the connection was lost"));
+  requests.clear();
+  if (finished) return;
+  if (attempts) checkAddress();
+  onState("lost");
+  setTimeout(open, WAITS[Math.min(attempts, WAITS.length - 1)]);
+  attempts += 1;
 }
 
 // Another `pyfrc sim` at the same port does not know the key of this address.

@@ -7,6 +7,8 @@ import { SourceLink } from "./source.js";
 import { Icon, Live, html } from "./view.js";
 
 const BACK = 2; // seconds
+// The code cannot be loaded: it fails again at any moment.
+const UNREADABLE = /\b(SyntaxError|IndentationError|TabError)\b/;
 
 export class FailureBar extends Live {
   parts = ["status", "shown"];
@@ -14,16 +16,20 @@ export class FailureBar extends Live {
   render() {
     const failure = model.status.state === "failed" ? model.status.failure : null;
     if (!failure) return null;
+    const goesBack = failure.t > 0 && !UNREADABLE.test(failure.headline);
+    const { watch } = model.hello.options;
     return html`<section class="failure" role="alert" aria-label="The robot program has failed">
       <div class="failure-head">
         <${Icon} name="warning" />
         <div class="failure-text">
           <strong>${failure.headline}</strong>
-          <span>The robot program ended at ${clock(failure.t)}. ${failure.file && html`<${SourceLink} file=${failure.file} line=${failure.line} />`}</span>
+          <span>The robot program ended at ${clock(failure.t)}. ${failure.file && html`<${SourceLink} file=${failure.file} line=${failure.line} />`}
+            ${watch && " Save the corrected file, and the simulation goes on."}</span>
         </div>
         <div class="failure-actions">
-          <button class="primary" onClick=${() => goBack(failure.t)} disabled=${model.readonly}>Go back 2 s and drive on</button>
-          <button onClick=${() => look(failure.t)}>Values of that moment</button>
+          ${goesBack && html`<button class="primary" onClick=${() => goBack(failure.t)} disabled=${model.readonly}>Go back 2 s and drive on</button>`}
+          ${failure.t > 0 && html`<button onClick=${() => look(failure.t)}>Values of that moment</button>`}
+          ${!watch && html`<button onClick=${reload} disabled=${model.readonly} title="After you have corrected it: run it with the same inputs until this moment">Load the code again</button>`}
           <button onClick=${restart} disabled=${model.readonly}><${Icon} name="restart" />Restart</button>
         </div>
       </div>
@@ -35,6 +41,11 @@ export class FailureBar extends Live {
 function goBack(t) {
   live();
   command("rewind", { t: Math.max(t - BACK, 0) });
+}
+
+function reload() {
+  live();
+  command("reload");
 }
 
 function restart() {

@@ -8,6 +8,11 @@ export function clock(seconds) {
   return `${minutes}:${rest.toFixed(2).padStart(5, "0")}`;
 }
 
+// A moment on an axis: as `clock`, with no more decimals than it needs.
+export function clockTick(seconds) {
+  return clock(seconds).replace(/\.?0+$/, "");
+}
+
 // Numbers that JSON cannot write come as {"$": "NaN"}.
 export function plain(value) {
   if (value !== null && typeof value === "object" && "$" in value) {

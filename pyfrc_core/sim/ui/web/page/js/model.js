@@ -28,6 +28,7 @@ class Model {
   run = { number: 1, t: 0 };
   clients = 1;
   problem = "";
+  hint = ""; // what a person who drives a disabled robot should do
   past = null; // { t, values } while the panels show a moment of the past
 
   #listeners = new Set();

@@ -3,9 +3,9 @@ import { model } from "./model.js";
 import { Icon, Live, html } from "./view.js";
 
 const LOST = {
-  lost: "The connection to pyfrc sim was lost. The page shows the last state, and tries again.",
+  lost: "The connection to pyfrc sim was lost, reconnecting… The page shows the last state.",
   refused: "This address is not valid any more. Open the one that pyfrc sim prints.",
-  closed: "The simulation was closed. This is its last state.",
+  closed: "The simulation was closed. This is its last state. Start pyfrc sim again, and open the address that it prints.",
 };
 
 export class Notice extends Live {

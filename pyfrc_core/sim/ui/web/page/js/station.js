@@ -11,18 +11,19 @@ import { Icon, Live, classes, html } from "./view.js";
 const MODES = [["teleop", "Teleop"], ["autonomous", "Auto"], ["test", "Test"]];
 
 export class StationBar extends Live {
-  parts = ["station", "status", "shown", "hello", "connection", "settings", "clients"];
+  parts = ["station", "status", "shown", "hello", "connection", "settings", "clients", "hint"];
 
   render() {
     const { station } = model.shown;
     const present = model.station;
-    const ready = ["disabled", "enabled"].includes(present.kind) && !model.readonly;
+    const connected = model.connection === "open";
+    const ready = connected && ["disabled", "enabled"].includes(present.kind) && !model.readonly;
     const left = model.past ? "" : matchLeft(present);
     return html`<header class="station">
       <div class="brand" title=${model.hello.project.root}><img src="/static/icon.svg" alt="" /><span>${model.hello.project.name}</span></div>
       <div class="segments" role="radiogroup" aria-label="Mode">
         ${MODES.map(([mode, text]) => html`<button key=${mode} role="radio" aria-checked=${present.chosen_mode === mode}
-          class=${classes({ chosen: present.chosen_mode === mode })} disabled=${model.readonly}
+          class=${classes({ chosen: present.chosen_mode === mode })} disabled=${model.readonly || !connected}
           onClick=${() => command("choose_mode", { mode })}>${text}</button>`)}
       </div>
       <div class="pair">
@@ -38,6 +39,7 @@ export class StationBar extends Live {
         ${model.past && html`<em>past</em>`}
         ${left && html`<span class="countdown">${left}</span>`}
       </div>
+      ${model.hint && ready && !present.enabled && html`<span class="hint" role="status">${model.hint}</span>`}
       <div class="spacer"></div>
       ${model.readonly && html`<span class="chip" title="This address only shows the simulation">Read only</span>`}
       ${model.clients > 1 && html`<span class="chip" title="Windows that show this simulation">${model.clients} windows</span>`}

@@ -13,7 +13,7 @@ import { Icon, Live, html } from "./view.js";
 const UNLIMITED = 0.94;
 
 export class TimeBar extends Live {
-  parts = ["t", "status", "shown", "hello", "branches", "compared", "compared-series"];
+  parts = ["t", "status", "shown", "hello", "branches", "compared", "compared-series", "connection"];
 
   render() {
     const { status, past, readonly } = model;
@@ -30,7 +30,7 @@ export class TimeBar extends Live {
           ? html`<span class="past-actions">
               <button class="primary" disabled=${readonly} onClick=${driveOn} title="Go back to this moment. What came later is kept as a branch.">Drive on from here</button>
               <button class="live" onClick=${live}><i class="lamp"></i>Live</button></span>`
-          : html`<span class="live-now"><i class="lamp"></i>Live</span>`}
+          : html`<${Present} />`}
         <label class="speed" title="Robot seconds per second">Speed
           <input type="range" min="0" max="1" step="0.005" value=${sliderOf(status.speed ?? 1)} disabled=${readonly}
             aria-label="Speed" aria-valuetext=${speedText(status.speed ?? 1)} onInput=${(event) => setSpeed(event.target)} />
@@ -45,6 +45,12 @@ export class TimeBar extends Live {
       <${Timeline} />
     </footer>`;
   }
+}
+
+// Whether what is shown is what the robot does now.
+function Present() {
+  const text = model.connection !== "open" ? "No connection" : model.status.state === "failed" ? "Ended" : "Live";
+  return html`<span class=${text === "Live" ? "live-now" : "live-now over"}><i class="lamp"></i>${text}</span>`;
 }
 
 async function mark() {

@@ -83,6 +83,13 @@ function move() {
   }
   sent = wanted;
   if (Object.keys(changed).length) write(changed);
+  remind(Object.values(changed).some(Boolean));
+}
+
+// A robot that is disabled does not move: say so to a person who drives it.
+function remind(drives) {
+  const hint = model.station.kind !== "disabled" ? "" : drives ? "Enable the robot first: Ctrl+E" : model.hint;
+  if (hint !== model.hint) model.set("hint", hint);
 }
 
 function isTyping(target) {
@@ -137,5 +144,8 @@ export function startKeys() {
   addEventListener("keydown", down);
   addEventListener("keyup", up);
   addEventListener("blur", releaseAll);
+  model.listen((changed) => {
+    if (model.hint && changed.has("station") && model.station.enabled) model.set("hint", "");
+  });
   document.addEventListener("focusin", (event) => isTyping(event.target) && releaseAll());
 }

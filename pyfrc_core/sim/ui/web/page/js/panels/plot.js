@@ -3,7 +3,7 @@ import uPlot from "../../vendor/uplot/uPlot.esm.js";
 import { font } from "../canvas.js";
 import { compared } from "../compare.js";
 import { ask } from "../connection.js";
-import { valueText } from "../format.js";
+import { clockTick, valueText } from "../format.js";
 import { model } from "../model.js";
 import { nameOf } from "../names.js";
 import { length, look } from "../past.js";
@@ -176,9 +176,9 @@ export class PlotPanel extends Live {
           spanGaps: false,
         }))],
         axes: [
-          { ...axis, size: 26, space: 60, values: (_, ticks) => ticks.map((tick) => `${Number(tick.toFixed(3))} s`) },
-          { ...axis, scale: "left", show: hasLeft || !hasRight, size: 56, space: 24, values: tickTexts },
-          { ...axis, scale: "right", side: 1, show: hasRight, size: 56, space: 24, values: tickTexts, grid: { show: !hasLeft, stroke: color("grid"), width: 1 } },
+          { ...axis, size: 26, space: 60, values: (_, ticks) => ticks.map(clockTick) },
+          { ...axis, scale: "left", show: hasLeft || !hasRight, size: 56, space: tickSpace, values: tickTexts },
+          { ...axis, scale: "right", side: 1, show: hasRight, size: 56, space: tickSpace, values: tickTexts, grid: { show: !hasLeft, stroke: color("grid"), width: 1 } },
         ],
         hooks: {
           setSelect: [(plot) => this.select(plot)],
@@ -295,6 +295,11 @@ export class PlotPanel extends Live {
 
 function tickTexts(_, ticks) {
   return ticks.map((tick) => (tick === null ? "" : String(Number(tick.toPrecision(6)))));
+}
+
+// How far apart numbers are on a vertical axis, in pixels: closer in a low plot, which has few of them.
+function tickSpace(plot, axis, low, high, height) {
+  return Math.min(24, Math.max(12, height / 3));
 }
 
 // A little free space above and below; a constant has some, too.

@@ -1,6 +1,6 @@
 // What robot code has put on the dashboard: choosers, PID controllers, commands, alerts and single values, as cards.
 import { write } from "../connection.js";
-import { numberText, plain, shortNumber, valueText } from "../format.js";
+import { numberText, plain, shortNumber, typedNumber, valueText } from "../format.js";
 import { model } from "../model.js";
 import { addToPlot } from "../plotting.js";
 import { TextBox } from "../text_box.js";
@@ -67,8 +67,8 @@ function ValueRow({ path, name, value }) {
   const set = (event) => {
     event.stopPropagation();
     if (event.key !== "Enter") return;
-    const typed = number ? Number(event.target.value.replace(",", ".")) : event.target.value;
-    if (!number || Number.isFinite(typed)) write({ [path]: typed });
+    const typed = number ? typedNumber(event.target.value) : event.target.value;
+    if (typed !== undefined) write({ [path]: typed });
     event.target.blur();
   };
   const nudge = (by) => write({ [path]: Number((value + by).toPrecision(10)) });
