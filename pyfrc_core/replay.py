@@ -6,7 +6,7 @@ import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
@@ -24,6 +24,7 @@ from .runtime.loading import load_robot
 from .runtime.loop_limit import LoopLimit
 from .runtime.patches import patches
 from .runtime.robot import RobotRun
+from .runtime.scripts.boots import boots_of
 from .runtime.scripts.files import traced
 from .runtime.scripts.inputs_file import load_inputs
 from .runtime.scripts.player import Player
@@ -64,6 +65,8 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     from .fuzz.oracle import oracle_if_fuzzed
 
     script = load_inputs(file)
+    if len(boots_of(script)) > 1:
+        return _replay_boots(project, script, until, trace)
     if script.story and (ended := _process_failure(project, script)) is not None:
         return ReplayResult(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
     patches.install(project.files)
@@ -96,6 +99,19 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     whole = until_us is None or until_us >= script.end_us
     equal = script.trace == recorder.digest() if script.trace and whole else None
     return ReplayResult(seconds, failures[0] if failures else None, recorder.digest(), equal, difference, real_time)
+
+
+def _replay_boots(project: Project, script: InputScript, until: float | None, trace: Path | None) -> ReplayResult:
+    """Replay a script in which the robot program is started again; its traces are not compared."""
+    from .fuzz.replay_in_subprocess import replay_in_subprocess
+
+    end_us = script.end_us if until is None else min(script.end_us, to_us(until))
+    failure = None
+    try:
+        replay_in_subprocess(project, replace(script, end_us=end_us), trace)
+    except RobotCodeError as error:
+        failure = error
+    return ReplayResult(end_us / 1_000_000, failure, "", None, None)
 
 
 @contextmanager

@@ -49,7 +49,9 @@ FUZZ_TEST = """
     import pytest
     from pyfrc_core.fuzz.gamepads import find_gamepads
     from pyfrc_core.fuzz.inputs import find_controls, find_sensors
+    from pyfrc_core.config.settings import MatchSettings
     from pyfrc_core.fuzz.input_generator import InputGenerator
+    from pyfrc_core.fuzz.match_plan import plan_match, without_restarts
     from pyfrc_core.fuzz.values import can_be
     from pyfrc_core.runtime.scripts.script import InputScript, Step
     from pyfrc_core.runtime.scripts.targets import Targets
@@ -57,9 +59,9 @@ FUZZ_TEST = """
     @pytest.mark.parametrize("seed", range(SEEDS))
     def test_fuzz_matches(seed, control, fake_time, hal_data, robot):
         run = fake_time.run
-        generator = InputGenerator(
-            random.Random(seed), run, seconds=20, physics_inputs=frozenset(PHYSICS), game_messages=("LRL", "RLR")
-        )
+        rng = random.Random(seed)
+        plan = without_restarts(plan_match(rng, 20, MatchSettings(), ("LRL", "RLR")))
+        generator = InputGenerator(rng, run, plan=plan, seconds=20, physics_inputs=frozenset(PHYSICS))
         targets, written, steps = Targets(hal_data), [], []
 
         def on_step(now):

@@ -9,7 +9,7 @@ from itertools import groupby
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript
-from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING
+from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING, RESTART
 from .failure import FuzzFailure
 from .values import NOT_PRESSED, Value
 
@@ -61,6 +61,8 @@ def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
         now = {target: value for target, value in step.writes.items() if target != MODE}
         gone = {found[1] for target, value in now.items() if (found := _PLUGGED.fullmatch(target)) and not value}
         held = {target: value for target, value in held.items() if _stick(target) not in gone}
+        if RESTART in now:
+            held = {}
         what = ", ".join(_described(target, value) for target, value in now.items())
         if what and (still := _still_held(held, now)):
             what += f" while {still}"
@@ -113,6 +115,8 @@ def _stick(target: str) -> str | None:
 
 
 def _described(target: str, value: Value) -> str:
+    if target == RESTART:
+        return "the robot program starts again"
     control = _CONTROL.fullmatch(target)
     if control is not None:
         stick, sort, number = control.groups()

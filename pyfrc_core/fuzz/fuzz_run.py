@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import IO
 
 from ..errors import PyfrcError
 from ..runtime.clock import PACKET_US
 from ..runtime.robot import RobotRun
+from ..runtime.scripts.boots import PersistentEntry, what_stays, without_entries
 from ..runtime.scripts.script import InputScript, Step
-from ..runtime.scripts.targets import Targets
+from ..runtime.scripts.targets import RESTART, Targets
 from .input_generator import InputGenerator
 from .values import Value
 
@@ -31,6 +32,8 @@ class FuzzRun:
         self._journal = journal
         #: Whether inputs may be left out that this robot does not have: a recorded match may be another robot's.
         self.may_lack_targets = False
+        #: Whether the robot program is started again now: the run ends.
+        self.restarts = False
         self._targets = Targets(run.hal_data, run.connection.packet)
         generator.write_at_once = self._apply
 
@@ -40,13 +43,25 @@ class FuzzRun:
         if writes:
             self._apply(writes)
 
+    def resume(self, steps: Iterable[Step], entries: Iterable[PersistentEntry]) -> None:
+        """Go on after these steps of the boots before; call it once before the robot starts.
+
+        :param entries: the persistent entries of NetworkTables that those have left
+        """
+        self.steps = list(steps)
+        now_us = self._run.clock.now_us
+        stays = what_stays([step for step in self.steps if step.at_us < now_us], now_us)
+        for target, value in (without_entries(stays, entries) | dict(self.steps[-1].writes)).items():
+            if target != RESTART:
+                self._targets.write(target, value, now_us)
+
     def on_packet(self, now: float) -> bool:
         """Write the inputs of the next packet; return whether the match continues."""
         now_us = self._run.clock.now_us
         if now_us >= self._generator.next_us:
             self.write()
         self._targets.count_down(now_us)
-        return not self._generator.over(now_us)
+        return not self.restarts and not self._generator.over(now_us)
 
     def _apply(self, writes: Mapping[str, Value]) -> None:
         now_us = self._run.clock.now_us
@@ -55,6 +70,9 @@ class FuzzRun:
         self.steps.append(Step(now_us, writes))
         if self._journal is not None:
             self._journal.write(pickle.dumps(self.steps[-1]))
+        if writes.get(RESTART):
+            self.restarts = True
+            return
         for target, value in writes.items():
             self._targets.write(target, value, now_us)
 

@@ -8,9 +8,8 @@ from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..compat.wpilib_private import simulation_periodic_of
-from ..config.settings import MatchSettings
 from ..runtime.clock import PACKET_US, to_us
-from ..runtime.scripts.targets import MODE
+from ..runtime.scripts.targets import MODE, RESTART
 from .avoidance import LeftOut, without
 from .base_match import BaseMatch
 from .dashboard_generator import DashboardGenerator, find_dashboard
@@ -18,7 +17,7 @@ from .gamepads import find_gamepads
 from .inputs import Input, SensorFinder, find_controls
 from .joystick_generator import JoystickGenerator
 from .joystick_models import choose_models
-from .match_plan import plan_match
+from .match_plan import MatchEvent
 from .network_reads import NetworkRead, NetworkReads
 from .robot_constants import UNKNOWN, RobotConstants
 from .sensor_generator import SensorGenerator
@@ -29,8 +28,8 @@ if TYPE_CHECKING:
 
 _SECOND_US = 1_000_000
 
-#: Robots create their joysticks when they start: they are not searched for after this time.
-_GAMEPADS_UNTIL_US = 2 * _SECOND_US
+#: Robots create their joysticks when they start: they are not searched for later than this time after that.
+_GAMEPADS_WITHIN_US = 2 * _SECOND_US
 
 #: Interval of the checks whether the robot's simulation drives its sensors.
 _CHECK_EVERY_US = 5 * PACKET_US
@@ -49,11 +48,10 @@ class InputGenerator:
 
     :param rng: the only source of randomness
     :param run: the robot's run, which is only read
+    :param plan: the events of the match, in order
     :param seconds: the length of the match, with all its periods
     :param physics_inputs: targets of sensors that the robot's physics drives, and that are never written; sensors that
         turn out to be driven during the match are excluded from then on
-    :param settings: the maximum length of each period
-    :param game_messages: the messages that the field may send, if they are known
     :param network_reads: the entries of NetworkTables that the robot reads; None if they are not watched
     :param constants: the constants of the robot's code
     :param base: the recorded match with which this one begins
@@ -65,10 +63,9 @@ class InputGenerator:
         rng: random.Random,
         run: RobotRun,
         *,
+        plan: Sequence[MatchEvent],
         seconds: float,
         physics_inputs: frozenset[str] = frozenset(),
-        settings: MatchSettings | None = None,
-        game_messages: Sequence[str] = (),
         network_reads: NetworkReads | None = None,
         constants: RobotConstants = UNKNOWN,
         base: BaseMatch | None = None,
@@ -80,7 +77,7 @@ class InputGenerator:
         self._run = run
         self._hal_data = run.hal_data
         self._end_us = to_us(seconds)
-        self._plan = base.plan() if base else plan_match(rng, seconds, settings or MatchSettings(), game_messages)
+        self._plan = plan
         #: Inputs are generated from this time on.
         self._from_us = base.until_us if base else 0
         self._planned = 0
@@ -100,6 +97,7 @@ class InputGenerator:
         self._enabled_us = 0
         self._attached = True
         self._find_us = self._check_us = PACKET_US
+        self._gamepads_until_us = _GAMEPADS_WITHIN_US
         #: What the match does without from now on.
         self.left_out: LeftOut = frozenset()
         #: `writes` returns nothing before this time.
@@ -122,6 +120,8 @@ class InputGenerator:
         while self._planned < len(self._plan) and self._plan[self._planned].at_us <= now_us:
             self._apply_event(now_us, without(self.left_out, self._plan[self._planned].writes), found)
             self._planned += 1
+        if RESTART in found:  # what else is written would be lost
+            return found
         if now_us == 0:  # the robot has not been started
             for port, model in self._models.items():
                 found |= without(self.left_out, model.writes(port))
@@ -147,6 +147,15 @@ class InputGenerator:
         self.next_us = min(self._find_us, self._check_us, plan, parts_us)
         return found
 
+    def resume(self, now_us: int) -> None:
+        """Go on after this time, at which the robot program is started again: the events until then are over."""
+        while self._planned < len(self._plan) and self._plan[self._planned].at_us <= now_us:
+            event = self._plan[self._planned]
+            self._apply_event(event.at_us, without(self.left_out, event.writes), {})
+            self._planned += 1
+        self._find_us = self._check_us = now_us + PACKET_US
+        self._gamepads_until_us = now_us + _GAMEPADS_WITHIN_US
+
     def _apply_event(self, now_us: int, event: Mapping[str, Value], found: dict[str, Value]) -> None:
         found |= event
         for target, value in event.items():
@@ -170,7 +179,7 @@ class InputGenerator:
     def _find_inputs(self, now_us: int) -> None:
         """Search again: robots may create devices and dashboard entries at any time."""
         self._find_us += _SECOND_US
-        if now_us <= _GAMEPADS_UNTIL_US and not self._sticks.unplugged:  # unplugged joysticks have no controls
+        if now_us <= self._gamepads_until_us and not self._sticks.unplugged:  # unplugged joysticks have no controls
             gamepads = find_gamepads(self._run.robot)
             controls = list(find_controls(self._hal_data, gamepads))
             self._sticks.set_controls(controls, gamepads)

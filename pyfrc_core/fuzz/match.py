@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,18 +24,21 @@ from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.patches import patches
 from ..runtime.robot import RobotRun
+from ..runtime.scripts.boots import boots_of, restore_entries, without_entries
 from ..runtime.scripts.files import traced
 from ..runtime.scripts.player import Player
 from ..runtime.scripts.script import InputScript, ScriptError
+from ..runtime.scripts.targets import RESTART
 from ..runtime.seeds import seed_generators
 from .asked_controls import watch_controls
+from .boots import NextBoot, play_boots
 from .failure import FuzzFailure, failure_of
 from .fuzz_run import FuzzRun
 from .goals import Goal
 from .input_generator import InputGenerator
 from .inputs import Input
 from .lines import RobotLines
-from .match_plan import length_of
+from .match_plan import MatchEvent, length_of, plan_match
 from .misbehavior_notes import MisbehaviorNotes, NotedFailure
 from .network_reads import watch_network_reads
 from .oracle import attach_oracle
@@ -73,7 +77,8 @@ class ReplayTask:
     :param use_oracle: whether misbehavior without an exception is a failure
     :param ends_with: misbehavior that ends the run; other misbehavior is noted
     :param hang_seconds: processor seconds without progress that count as a hang; None: those of the project's settings
-    :param trace: where to write a trace
+    :param trace: where to write a trace; with restarts of the robot program, that of the last boot
+    :param ignores_missing: whether writes to devices that the robot does not have end the run without a failure
     """
 
     script: InputScript
@@ -81,6 +86,7 @@ class ReplayTask:
     ends_with: FuzzFailure | None = None
     hang_seconds: float | None = None
     trace: Path | None = None
+    ignores_missing: bool = True
 
 
 Task = FuzzTask | ReplayTask
@@ -97,6 +103,7 @@ class MatchResult:
     :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
     :param noted: the failures after which the match went on
     :param went_on: whether the match went on after this failure
+    :param next_boot: what the next boot of the robot program needs; None if the match is over
     """
 
     failure: FuzzFailure | None
@@ -106,6 +113,7 @@ class MatchResult:
     real_time: tuple[str, ...] = ()
     noted: tuple[NotedFailure, ...] = ()
     went_on: bool = False
+    next_boot: NextBoot | None = None
 
     def each_failure(self) -> Iterator[MatchResult]:
         """Return a result for each failure, in order, with the inputs until it."""
@@ -123,8 +131,14 @@ def play(project: Project, task: Task, log: CrashLog) -> MatchResult:
     :param log: where to write a crash report when the robot's code cannot be stopped
     """
     if isinstance(task, ReplayTask):
-        return _replay(project, task, log)
-    return _fuzz(project, task, log)
+        if len(boots_of(task.script)) > 1:
+            replayed: MatchResult = play_boots(project, partial(_replay, task=task))
+            return replayed
+        return _replay(project, log, None, task)
+    if _restarts(project, task.schedule):
+        played: MatchResult = play_boots(project, partial(_fuzz, task=task))
+        return played
+    return _fuzz(project, log, None, task)
 
 
 @lru_cache(maxsize=1)
@@ -180,31 +194,47 @@ def match_seconds(project: Project, schedule: SeedSchedule) -> float:
     return length_of(schedule.seeds[0][1], project.settings.fuzz.match_seconds, project.settings.match)
 
 
-def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
+def _restarts(project: Project, schedule: SeedSchedule) -> bool:
+    """Return whether the robot program is perhaps started again in this match."""
+    return any(RESTART in event.writes for event in _plan(project, schedule, schedule.rng()))
+
+
+def _plan(project: Project, schedule: SeedSchedule, rng: random.Random) -> list[MatchEvent]:
+    if schedule.base is not None:
+        return schedule.base.plan()
+    seconds = match_seconds(project, schedule)
+    return plan_match(rng, seconds, project.settings.match, project.game_specific_messages)
+
+
+def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: FuzzTask) -> MatchResult:
+    """Play a match, or one boot of it.
+
+    :param before: the result of the boots before
+    """
     lines = robot_lines(project)
     seconds = match_seconds(project, task.schedule)
     ends_us = to_us(seconds)
     if (continued_us := task.schedule.seeds[-1][0]) > 0:  # a match that continues a long one is not as long again
         ends_us = min(ends_us, continued_us + to_us(project.settings.fuzz.match_seconds))
     rng = task.schedule.rng()
-    before_us = 0
+    boot = _boot_after(before)
+    before_us = boot.at_us
     reseed_until_us = task.schedule.seeds[-1][0] + PACKET_US
-    with _robot(project, log, ROBOT_SEED) as (run, notes), ExitStack() as closing:
+    with _robot(project, log, ROBOT_SEED, boot) as (run, notes), ExitStack() as closing:
         generator = InputGenerator(
             rng,
             run,
             seconds=seconds,
-            settings=project.settings.match,
-            game_messages=project.game_specific_messages,
+            plan=_plan(project, task.schedule, rng),
             network_reads=closing.enter_context(watch_network_reads(project.files)),
             constants=robot_constants(project),
             base=task.schedule.base,
             asked_controls=closing.enter_context(watch_controls()).targets,
         )
-        generator.left_out = task.schedule.left_out_at(0)
-        fuzz_run = FuzzRun(run, generator, closing.enter_context(task.journal.open("wb", 0)) if task.journal else None)
+        generator.left_out = task.schedule.left_out_at(boot.at_us)
+        journal = closing.enter_context(task.journal.open("ab", 0)) if task.journal else None
+        fuzz_run = FuzzRun(run, generator, journal)
         fuzz_run.may_lack_targets = task.schedule.base is not None
-
         states = RobotStates(run, project.files, task.known)
 
         def step(now: float) -> None:
@@ -224,7 +254,12 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
         with lines.watched(task.known, task.known_to_all, lambda: run.clock.now_us) as reached:
             try:
                 construct(project, run, load(project))
-                fuzz_run.write()
+                if before is None:
+                    fuzz_run.write()
+                else:
+                    generator.resume(boot.at_us)
+                    rng.setstate(boot.rng_state)
+                    fuzz_run.resume(before.script.steps, boot.entries)
                 run.start()
                 run.run_until(run.clock.limit_us + 1)
             except (TestEnded, TestRanTooLong):
@@ -233,29 +268,68 @@ def _fuzz(project: Project, task: FuzzTask, log: CrashLog) -> MatchResult:
                 failure = failure_of(error, project.files)
         script = fuzz_run.script(project.main_file.name, ROBOT_SEED)
         real_time = run.hal_data["CAN"].real_time_devices()
-        return MatchResult(
-            failure, script, dict(reached) | states.reached, generator.inputs, real_time, tuple(notes.found)
+        restarts = fuzz_run.restarts and failure is None and run.clock.now_us < ends_us
+        next_boot = NextBoot.after(boot.number, run.clock.now_us, rng.getstate()) if restarts else None
+        played = MatchResult(
+            failure,
+            script,
+            dict(reached) | states.reached,
+            generator.inputs,
+            real_time,
+            tuple(notes.found),
+            next_boot=next_boot,
         )
+        return _joined(before, played)
 
 
-def _replay(project: Project, task: ReplayTask, log: CrashLog) -> MatchResult:
-    script = task.script
-    robot = _robot(project, log, script.seed, task.use_oracle, task.ends_with, task.hang_seconds)
-    with robot as (run, notes), traced(run, task.trace) if task.trace else nullcontext():
-        failure = None
+def _boot_after(before: MatchResult | None) -> NextBoot:
+    return before.next_boot if before is not None and before.next_boot is not None else NextBoot(0, 0, ())
+
+
+def _joined(before: MatchResult | None, played: MatchResult) -> MatchResult:
+    """Return the result of a boot with the results of those before."""
+    if before is None:
+        return played
+    return replace(
+        played,
+        reached=played.reached | before.reached,
+        inputs=before.inputs | played.inputs,
+        real_time=before.real_time or played.real_time,
+        noted=(*before.noted, *played.noted),
+    )
+
+
+def _replay(project: Project, log: CrashLog, before: MatchResult | None, task: ReplayTask) -> MatchResult:
+    """Replay a script, or the part of it that belongs to one boot.
+
+    :param before: the result of the boots before
+    """
+    boot = _boot_after(before)
+    boots = boots_of(task.script)
+    script, is_last = boots[boot.number], boot.number == len(boots) - 1
+    if boot.number:
+        sent_again = replace(script.steps[0], writes=without_entries(script.steps[0].writes, boot.entries))
+        script = replace(script, steps=(sent_again, *script.steps[1:]))
+    robot = _robot(project, log, script.seed, boot, task.use_oracle, task.ends_with, task.hang_seconds)
+    trace = task.trace if is_last else None
+    with robot as (run, notes), traced(run, trace) if trace else nullcontext():
+        failure, may_go_on = None, not is_last
         try:
             construct(project, run, load(project))
             Player(script, run).play()
         except ScriptError:  # a target does not exist, since the robot has not created it in this run
-            pass
+            if not task.ignores_missing:
+                raise
+            may_go_on = False
         except (TestEnded, TestRanTooLong):
             pass
         except BaseException as error:  # robot code may call exit(), too
             failure = failure_of(error, project.files)
         end_us = run.clock.now_us + PACKET_US
-        steps = tuple(step for step in script.steps if step.at_us < end_us)
+        steps = tuple(step for step in task.script.steps if step.at_us < end_us)
         played = InputScript(steps, end_us, robot=script.robot, seed=script.seed)
-        return MatchResult(failure, played, noted=tuple(notes.found))
+        next_boot = NextBoot.after(boot.number, script.end_us) if may_go_on and failure is None else None
+        return _joined(before, MatchResult(failure, played, noted=tuple(notes.found), next_boot=next_boot))
 
 
 @contextmanager
@@ -263,12 +337,14 @@ def _robot(
     project: Project,
     log: CrashLog,
     seed: int,
+    boot: NextBoot,
     use_oracle: bool = True,
     ends_with: FuzzFailure | None = None,
     hang_seconds: float | None = None,
 ) -> Iterator[tuple[RobotRun, MisbehaviorNotes]]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
-    run = RobotRun(has_devices=imported_devices(project))  # imports the robot before robot time begins
+    # Imports the robot before robot time begins.
+    run = RobotRun(has_devices=imported_devices(project), start_us=boot.at_us)
     settings = project.settings.fuzz
     hang_detector = HangDetector(run, project.files, hang_seconds or settings.hang_seconds, log)
     with hang_detector.watching():
@@ -286,4 +362,5 @@ def _robot(
 
             watch_invariants(run, project.files, invariants_of(project), on_broken)
             seed_generators(seed)
+            restore_entries(boot.entries)
             yield run, notes

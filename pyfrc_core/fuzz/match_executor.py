@@ -29,6 +29,7 @@ from ..runtime.clock import to_us
 from ..runtime.fork_obstacles import reasons_not_to_fork
 from ..runtime.scripts.script import InputScript
 from .asked_controls import prepare_control_watch
+from .boots import MEANWHILE
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .fuzz_run import read_journal
 from .goals import Line
@@ -50,8 +51,6 @@ Answer = TypeVar("Answer")
 
 # Interval of the checks for an interrupt, in seconds.
 _INTERRUPT_CHECK_SECONDS = 0.1
-
-_MEANWHILE = "in the middle of the match"
 
 
 class MatchExecutor(ABC):
@@ -196,7 +195,7 @@ class SpawnedMatchExecutor(PooledMatchExecutor):
         return ThreadPoolExecutor(self.jobs)
 
     def _call(self, task: Task) -> Callable[[], MatchResult]:
-        return partial(run_in_subprocess, partial(_play, task=task), self.project, _MEANWHILE)
+        return partial(run_in_subprocess, partial(_play, task=task), self.project, MEANWHILE)
 
     def _match_result(self, task: Task, future: Future[MatchResult]) -> MatchResult:
         try:
@@ -283,7 +282,7 @@ class ForkedMatchExecutor(MatchExecutor):
         self._running.remove(work)
         with self._journal(task), closing(work):
             try:
-                return work.result(self.project.files, _MEANWHILE)
+                return work.result(self.project.files, MEANWHILE)
             except RobotCodeError as ended:
                 return self._died(task, str(ended))
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ..config.settings import MatchSettings
 from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
-from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING, plugged
+from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING, RESTART, plugged
 from .field_data import NOT_COUNTED, FieldData
 from .values import Value
 
@@ -58,17 +58,29 @@ def plan_match(
     planner = _Planner(rng, settings, tuple(messages))
     now = 0.0
     planner.before()
-    for period in _periods(rng, seconds, settings):
+    periods, restarts = _periods(rng, seconds, settings)
+    for period in periods:
         planner.period(now, period)
         now += period.seconds
+    if restarts:
+        planner.restart(rng.uniform(0.15, 0.85) * seconds)
     if rng.random() < 0.03:
         planner.stop_for_good(rng.uniform(0.9, 1) * seconds)
     return sorted(planner.events, key=lambda event: event.at_us)
 
 
-def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> list[_Period]:
-    """Return the periods of a match; in some cases those of a pit test, of a match that is restarted or the second one
-    of a robot program, or of a program that starts in the middle of a match.
+def without_restarts(events: Sequence[MatchEvent]) -> list[MatchEvent]:
+    """Return the events for a robot whose program cannot be started again."""
+    for event in events:
+        event.writes.pop(RESTART, None)
+    return list(events)
+
+
+def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> tuple[list[_Period], bool]:
+    """Return the periods of a match, and whether the robot program is started again in it.
+
+    In some cases, the periods are those of a pit test, of a match that is restarted or the second one of a robot
+    program, or of a program that starts in the middle of a match.
     """
     before = min(settings.before, 0.05 * seconds)
     autonomous = min(settings.autonomous, 0.3 * seconds)
@@ -76,7 +88,7 @@ def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> lis
     teleop = seconds - before - autonomous - pause
     ready = _Period("disabled autonomous" if rng.random() < 0.7 else "disabled", before)
     periods = [ready, _Period("autonomous", autonomous), _Period("disabled", pause)]
-    how = rng.random()
+    how, restarts = rng.random(), False
     if how < 0.08:  # no autonomous
         periods = [_Period("disabled", before)]
     elif how < 0.14:  # the pit crew tries test mode
@@ -85,19 +97,21 @@ def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> lis
         periods = [ready, _Period("autonomous", rng.uniform(0.1, 0.9) * autonomous), *periods]
     elif how < 0.27:  # the drivers practise before
         periods = [_Period("disabled", before), _Period("teleop", 0.3 * teleop), *periods]
+    elif how < 0.305:  # the robot program is started again, after a crash or a brown-out
+        restarts = True
     elif how < 0.34:  # no pause
         periods[-1] = _Period("disabled", PACKET_US / 1_000_000)
     elif how < 0.44:  # autonomous at its real length
         autonomous = max(autonomous, min(settings.autonomous, 0.6 * seconds))
         periods[1] = _Period("autonomous", autonomous, undisturbed=rng.random() < 0.7)
-    elif how < 0.51:  # the robot program is restarted in teleoperated, after a crash or a brown-out
+    elif how < 0.51:  # the robot program is first started in teleoperated
         periods = []
     elif how < 0.54:  # in autonomous
         periods = [_Period("autonomous", rng.uniform(0.2, 0.9) * autonomous), _Period("disabled", pause)]
     elif how < 0.61:  # a second match without a restart of the robot program
         first = [ready, _Period("autonomous", 0.5 * autonomous), _Period("disabled", pause)]
         periods = [*first, _Period("teleop", rng.uniform(0.1, 0.4) * teleop), *periods]
-    return [*periods, _Period("teleop", seconds - sum(period.seconds for period in periods))]
+    return [*periods, _Period("teleop", seconds - sum(period.seconds for period in periods))], restarts
 
 
 class _Planner:
@@ -122,6 +136,18 @@ class _Planner:
         for event in self.events[:-1]:
             if event.at_us >= stopped_us:
                 event.writes.pop(MODE, None)
+
+    def restart(self, at: float) -> None:
+        """Add a restart of the robot program; the driver station is connected again after a while."""
+        rng = self._rng
+        if rng.random() < 0.5:  # a brown-out
+            self.add(
+                max(0.0, at - rng.choice((0.02, 0.1, 0.5))), {"power.vin_voltage": round(rng.uniform(4.5, 6.5), 2)}
+            )
+        self.add(at, {RESTART: True})
+        if rng.random() < 0.7:
+            self.add(at, {"control.dsAttached": False})
+            self.add(at + rng.choice((0.02, 0.1, 0.5, 2.0)), {"control.dsAttached": True})
 
     def before(self) -> None:
         """Add the state in which the robot starts."""

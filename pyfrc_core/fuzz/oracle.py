@@ -91,9 +91,9 @@ class _Oracle:
         self.inert_motors = InertMotors(run.hal_data)
         self._left_running = MotorsLeftRunning(self.inert_motors.in_group)
         self._mode = ""
-        self._mode_since_us = 0
+        self._mode_since_us = run.clock.now_us
         #: When the robot was last in the selected mode.
-        self._agreed_us = 0
+        self._agreed_us = run.clock.now_us
         #: A call of the clock that no robot code has made, directly or not.
         self._clock_frame: FrameType | None = None
         #: The line at which robot code was waiting when a packet came during its loop.

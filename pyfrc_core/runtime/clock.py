@@ -34,9 +34,12 @@ Action = Callable[[], None]
 
 
 class Clock:
-    """The robot time of one run, and the actions that are due in it."""
+    """The robot time of one run, and the actions that are due in it.
 
-    def __init__(self) -> None:
+    :param start_us: the time at which it starts, in microseconds: a robot program that is started again goes on there
+    """
+
+    def __init__(self, start_us: int = 0) -> None:
         #: Called before each packet with the robot time in seconds: the place to change inputs.
         self.before_packet: list[Callable[[float], None]] = []
         #: Delivers a packet. A run delivers it over its connection, which may be lost.
@@ -46,19 +49,23 @@ class Clock:
         self.actions = 0
         #: The first number is the time in microseconds. It may be memory that another process reads.
         self.moment: MutableSequence[int] | memoryview = array("q", [0])
-        self.initialize()
+        self.initialize(start_us)
 
-    def initialize(self) -> None:
-        """Stop HAL time at 0 and clear the queue, except for packets (every 20 ms) and the actions of `every`."""
+    def initialize(self, start_us: int = 0) -> None:
+        """Stop HAL time, and clear the queue, except for packets (every 20 ms) and the actions of `every`.
+
+        :param start_us: the time at which the clock starts, in microseconds
+        """
         stop_and_zero()
         self.now_us = 0
+        self._move_to(start_us)
         self.limit_us = to_us(DEFAULT_TIME_LIMIT)
         self._queue: list[tuple[int, int, int, Action]] = []
         self._order = 0
         #: Set when the run is over or has failed. No code can wait any longer then, even if it catches `TestEnded`.
         self.halted = False
-        self._next_packet = PACKET_US
-        self.at(PACKET_US, PACKET, self._packet)
+        self._next_packet = start_us + PACKET_US
+        self.at(self._next_packet, PACKET, self._packet)
         for recurring in self._recurring:
             self._begin(*recurring)
 

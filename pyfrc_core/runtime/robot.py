@@ -92,11 +92,12 @@ class RobotRun:
 
     :param logs: where the data logs that robot code starts are written; None: they are not kept
     :param has_devices: whether devices exist in the HAL, if the caller knows: the search takes a millisecond
+    :param start_us: the robot time at which it begins
     """
 
-    def __init__(self, logs: LogPlace | None = None, has_devices: bool | None = None) -> None:
+    def __init__(self, logs: LogPlace | None = None, has_devices: bool | None = None, start_us: int = 0) -> None:
         self._has_devices = has_devices
-        self.clock = Clock()
+        self.clock = Clock(start_us)
         #: What robot code starts of data logs.
         self.data_logs = DataLogs(self.clock, logs)
         #: What brings packets to the robot.

@@ -14,6 +14,7 @@ from ..invariants.watch import watch_invariants
 from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
 from ..runtime.match import MatchPeriods
+from ..runtime.scripts.boots import boots_of
 from ..runtime.scripts.inputs_file import load_inputs
 from ..runtime.scripts.player import Player
 from ..runtime.seeds import seed_generators
@@ -172,7 +173,8 @@ class TestController:
     def replay(self, path: str | Path) -> None:
         """Run the robot with the inputs of a script, from the robot's start to the script's end.
 
-        With a script of `pyfrc fuzz`, misbehavior that it detects is a failure, too.
+        With a script of `pyfrc fuzz`, misbehavior that it detects is a failure, too. If the script starts the robot
+        program again, all of it runs in other processes: the test's own robot does not run.
 
         :param path: the script, such as one that ``pyfrc test --record`` or ``pyfrc fuzz`` has written
         :raises ScriptError: when the script is not valid, or does not fit this robot; with its line
@@ -181,6 +183,11 @@ class TestController:
         __tracebackhide__ = True
         self._begin("replay")
         script = load_inputs(Path(path))
+        if self.project is not None and len(boots_of(script)) > 1:
+            from ..fuzz.replay_in_subprocess import replay_in_subprocess
+
+            replay_in_subprocess(self.project, script)
+            return
         if script.seed != self.seed:  # otherwise they were seeded before the robot was constructed
             seed_generators(script.seed)
         with ExitStack() as closing:

@@ -15,7 +15,7 @@ from ..fuzz.asked_controls import watch_controls
 from ..fuzz.fuzz_run import FuzzRun
 from ..fuzz.input_generator import InputGenerator
 from ..fuzz.lines import RobotLines
-from ..fuzz.match_plan import seconds_of
+from ..fuzz.match_plan import plan_match, seconds_of, without_restarts
 from ..fuzz.network_reads import watch_network_reads
 from ..fuzz.robot_constants import find_constants
 from ..hal import HalData, modes
@@ -39,12 +39,14 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
     __tracebackhide__ = True
     clock, project, seed = fake_time.run.clock, control.project or find_project(), control.seed
     with watch_network_reads(project.files) as reads, watch_controls() as asked:
+        rng = random.Random(f"fuzz {seed}")  # not the generator that the robot's code uses
+        settings = project.settings.match
+        seconds = seconds_of(settings)
         generator = InputGenerator(
-            random.Random(f"fuzz {seed}"),  # not the generator that the robot's code uses
+            rng,
             fake_time.run,
-            seconds=seconds_of(project.settings.match),
-            settings=project.settings.match,
-            game_messages=project.game_specific_messages,
+            plan=without_restarts(plan_match(rng, seconds, settings, project.game_specific_messages)),
+            seconds=seconds,
             network_reads=reads,
             constants=find_constants(RobotLines(project.files).functions),
             asked_controls=asked.targets,

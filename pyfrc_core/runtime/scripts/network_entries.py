@@ -20,7 +20,7 @@ NETWORK = "nt:"
 _STRUCT = "struct:"
 
 #: How to make a value of each type that a target can name.
-_MAKE: dict[str, Callable[[Any], ntcore.Value]] = {
+MAKE_VALUE: dict[str, Callable[[Any], ntcore.Value]] = {
     "boolean": ntcore.Value.makeBoolean,
     "int": ntcore.Value.makeInteger,
     "float": ntcore.Value.makeFloat,
@@ -77,9 +77,9 @@ def _writer(name: str, type_name: str) -> Callable[[Any], None]:
     entry = network.getEntry(name)
     if not type_name:
         return lambda value: _write_plain(entry, value)
-    if type_name not in _MAKE:
-        raise UsageError(f"NetworkTables has no type {type_name!r}: the types are {', '.join(_MAKE)}, struct:NAME")
-    make = _MAKE[type_name]
+    if type_name not in MAKE_VALUE:
+        raise UsageError(f"NetworkTables has no type {type_name!r}: the types are {', '.join(MAKE_VALUE)}, struct:NAME")
+    make = MAKE_VALUE[type_name]
 
     def write_typed(value: object) -> None:
         try:

@@ -4,6 +4,7 @@
 - ``match_time``: seconds left in the period; they count down from then on (``time.remaining`` stands still)
 - ``joysticks[0].plugged``: false: unplugged, with no axes, buttons and POVs; true: plugged in again, nothing pressed
 - ``packet``: true: a packet is delivered at once, out of turn, as tests can have it
+- ``restart``: true: the robot program ends as without power, and starts again; more in `boots`
 - ``nt:/SmartDashboard/x``: an entry of NetworkTables; a SendableChooser's choice is its entry ``selected``;
   more in `network_entries`
 - anything else: a path in `hal_data`, such as ``joysticks[0].axes[1]`` or ``event.game_specific_message``
@@ -24,7 +25,7 @@ from ...hal.timing import deliver_packet
 from ..clock import to_us
 from .network_entries import NETWORK, NetworkEntries
 
-MODE, MATCH_TIME, PACKET = "mode", "match_time", "packet"
+MODE, MATCH_TIME, PACKET, RESTART = "mode", "match_time", "packet", "restart"
 
 #: The path of the seconds left: written, they stand still.
 REMAINING = "time.remaining"
@@ -93,6 +94,8 @@ class Targets:
         elif target == PACKET:
             self._deliver()
             wpilib.DriverStation.refreshData()
+        elif target == RESTART:
+            raise UsageError("only pyfrc replay and control.replay() can start the robot program again")
         elif target.startswith(NETWORK):
             self._entries.write(target, value)
         elif (stick := _PLUGGED.fullmatch(target)) is not None:
@@ -140,7 +143,7 @@ class Targets:
     @staticmethod
     def _is_path(target: str) -> bool:
         return (
-            target not in (MODE, MATCH_TIME, PACKET)
+            target not in (MODE, MATCH_TIME, PACKET, RESTART)
             and not target.startswith(NETWORK)
             and not _PLUGGED.fullmatch(target)
         )
