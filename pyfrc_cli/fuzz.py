@@ -17,7 +17,7 @@ from .project_options import chosen_project, project_options
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
-    from pyfrc_core.fuzz.campaign import CampaignOptions, CampaignProgress, FuzzFinding
+    from pyfrc_core.fuzz.campaign import Campaign, CampaignOptions, CampaignProgress, FuzzFinding
     from pyfrc_core.project import Project
 
 _DEFAULT_SECONDS = 60.0
@@ -84,6 +84,12 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     metavar="REV",
     help="Give the same inputs to the code of this git commit, and say where outputs first differ.",
 )
+@click.option(
+    "--pages",
+    metavar="DIRECTORY",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Write each failure's run as a page, DIRECTORY/NAME.html, for any browser.",
+)
 def command(
     directory: Path | None,
     main: Path | None,
@@ -99,6 +105,7 @@ def command(
     scheduler: str | None,
     recorded: tuple[Path, ...],
     revision: str | None,
+    pages: Path | None,
 ) -> None:
     """Play many matches with random inputs, and save the shortest script of each failure.
 
@@ -115,6 +122,8 @@ def command(
         raise click.UsageError(f"--scheduler and {'-j' if jobs is not None else '--against'} are mutually exclusive.")
     if resume and recorded:
         raise click.UsageError("--continue and --from are mutually exclusive.")
+    if pages is not None and (merge or revision is not None):
+        raise click.UsageError(f"--pages and {'--merge' if merge else '--against'} are mutually exclusive.")
     if merge and not directories:
         raise click.UsageError("--merge and DIRECTORIES belong together.")
     if directories and not merge:
@@ -142,8 +151,14 @@ def command(
     options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume, scheduler)
     if revision is not None:
         sys.exit(_compare(project, revision, options))
+    if pages is not None:
+        from pyfrc_core.sim.output_files import check_writable
+
+        check_writable("--pages", pages / "any.html")
     campaign = run_campaign(project, options, printer)
     printer.end(campaign.progress)
+    if pages is not None:
+        _write_pages(project, campaign, pages)
     if campaign.real_time:
         hint(explain_real_time(campaign.real_time))
     if campaign.always_fails:
@@ -153,6 +168,15 @@ def command(
     if not campaign.findings:
         hint("Nothing was found.")
     sys.exit(1 if campaign.findings else 2 if campaign.interrupted else 0)
+
+
+def _write_pages(project: Project, campaign: Campaign, pages: Path) -> None:
+    from pyfrc_core.sim.page_file import write_finding_page
+
+    for found in campaign.findings:
+        page = pages / f"{found.entry.file.stem}.html"
+        write_finding_page(project, found, page)
+        hint(f"wrote {page}")
 
 
 def _compare(project: Project, revision: str, options: CampaignOptions) -> int:

@@ -27,6 +27,12 @@ from .verbosity import hint
     type=click.Path(path_type=Path, dir_okay=False),
     help="Draw the robot's path on the field, for example to path.png.",
 )
+@click.option(
+    "--page",
+    metavar="FILE",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Write the run as a page, such as run.html, for any browser.",
+)
 @click.argument("file", type=click.Path(path_type=Path))
 def command(
     directory: Path | None,
@@ -35,6 +41,7 @@ def command(
     until: float | None,
     trace: Path | None,
     picture: Path | None,
+    page: Path | None,
     file: Path,
 ) -> None:
     """Run the robot with the inputs of a script that pyfrc fuzz or pyfrc test --record has written.
@@ -52,7 +59,16 @@ def command(
 
         draw_script(project, file, picture, until)
         hint(f"wrote {picture}")
+    if page is not None:
+        from pyfrc_core.sim.output_files import check_writable
+
+        check_writable("--page", page)
     result = replay(project, file, until=until, trace=trace)
+    if page is not None:
+        from pyfrc_core.sim.page_file import write_replay_page
+
+        write_replay_page(project, file, page, result)
+        hint(f"wrote {page}")
     hint(f"replayed {result.seconds:.2f} s of robot time")
     if result.failure is not None:
         click.secho(f"then {result.failure}", fg="red")

@@ -50,6 +50,9 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 @click.option("--wpilog", type=_FILE, metavar="FILE", help="Write a WPILib data log, for AdvantageScope.")
 @click.option("--picture", type=_FILE, metavar="FILE", help="Draw the driven path on the field, such as path.png.")
 @click.option(
+    "--page", type=_FILE, metavar="FILE", help="Write the whole run as a page, such as run.html, for any browser."
+)
+@click.option(
     "--nt-port",
     type=click.IntRange(0, 65535),
     metavar="PORT",

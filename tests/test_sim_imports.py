@@ -16,8 +16,10 @@ PROGRAM = """
     from pyfrc_core.project import find_project
     from pyfrc_core.sim.simulate import SimRequest, simulate
 
-    code = simulate(find_project(Path.cwd()), SimRequest(ui="none", seconds=0.5, quiet=True), print)
-    import pyfrc_core.sim.ui.web
+    request = SimRequest(ui="none", seconds=0.5, quiet=True, page=Path("run.html"))
+    code = simulate(find_project(Path.cwd()), request, print)
+    print("of the server:", [name for name in ("starlette", "uvicorn", "websockets") if name in sys.modules])
+    import pyfrc_core.sim.ui.web.front_end
     import pyfrc_core.sim.ui.wpilib
     if importlib.util.find_spec("tkinter") is not None:
         import pyfrc_core.sim.ui.tk
@@ -37,4 +39,5 @@ def test_the_front_ends_process_imports_nothing_of_wpilib(make_project) -> None:
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "the robot is there" in done.stdout
+    assert "of the server: []" in done.stdout
     assert "imported: []" in done.stdout

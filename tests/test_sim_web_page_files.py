@@ -6,7 +6,7 @@ import hashlib
 import json
 import re
 
-from pyfrc_core.sim.ui.web.app import PAGE
+from pyfrc_core.sim.ui.web.single_file import PAGE
 
 
 def test_libraries_are_files_of_their_packages_with_licences() -> None:

@@ -16,8 +16,9 @@ from websockets.sync.client import ClientConnection, connect
 
 from pyfrc_core.project import find_project
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.ui.web import WebFrontEnd, WebOptions
 from pyfrc_core.sim.ui.web.access import Share
+from pyfrc_core.sim.ui.web.front_end import WebFrontEnd
+from pyfrc_core.sim.ui.web.server import WebOptions
 
 
 class Served:

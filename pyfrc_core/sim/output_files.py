@@ -1,4 +1,4 @@
-"""The files that a simulation writes: its recording, WPILib's data log, a picture."""
+"""The files that a simulation writes: its recording, WPILib's data log, a picture, a page."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from tempfile import TemporaryFile
 from ..disk_space import check_disk_space
 from ..errors import UsageError
 from .engine.simulation import Simulation
+from .page_file import PageFile
 
 
 class OutputFiles:
@@ -17,15 +18,23 @@ class OutputFiles:
     :raises UsageError: when one of them cannot be written
     """
 
-    def __init__(self, record: Path | None, wpilog: Path | None, picture: Path | None) -> None:
-        self._record, self._wpilog, self._picture = record, wpilog, picture
+    def __init__(
+        self, record: Path | None, wpilog: Path | None, picture: Path | None, page: PageFile | None = None
+    ) -> None:
+        self._record, self._wpilog, self._picture, self._page = record, wpilog, picture, page
         if picture is not None:
             from .ui.picture import check_pictures
 
             check_pictures(picture)
-        for option, file in (("--record", record), ("--wpilog", wpilog), ("--picture", picture)):
+        files = (
+            ("--record", record),
+            ("--wpilog", wpilog),
+            ("--picture", picture),
+            ("--page", None if page is None else page.file),
+        )
+        for option, file in files:
             if file is not None:
-                _check_writable(option, file)
+                check_writable(option, file)
         self._former_log = _stamp(wpilog)
 
     def write(self, simulation: Simulation) -> list[Path]:
@@ -34,9 +43,10 @@ class OutputFiles:
         :returns: every file that was written, including the data log of the robot's process
         :raises UsageError: when the disk was full
         """
+        paged = [self._page.file] if self._page is not None and self._page.write(simulation) else []
         snapshot = simulation.snapshot
         if snapshot is None:
-            return []
+            return paged
         written = [] if self._record is None else simulation.save_all(self._record)
         if self._wpilog is not None and _stamp(self._wpilog) != self._former_log:
             if why := check_disk_space(self._wpilog):
@@ -47,10 +57,14 @@ class OutputFiles:
 
             draw_picture(snapshot.scene, self._picture, simulation.status.former_trail)
             written.append(self._picture)
-        return written
+        return written + paged
 
 
-def _check_writable(option: str, file: Path) -> None:
+def check_writable(option: str, file: Path) -> None:
+    """Check that a file can be written; create its directory.
+
+    :raises UsageError: when it cannot
+    """
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         if file.exists() and not os.access(file, os.W_OK):

@@ -19,6 +19,7 @@ from .engine.options import NT4_PORT, SimOptions
 from .engine.simulation import Simulation
 from .engine.watch import watching
 from .output_files import OutputFiles
+from .page_file import PageFile, place_in
 from .ui.choose import FRONT_ENDS, Wishes, default_name, make_front_end
 from .ui.headless import Headless, HeadlessMode
 
@@ -49,6 +50,7 @@ class SimRequest:
     record: Path | None = None
     wpilog: Path | None = None
     picture: Path | None = None
+    page: Path | None = None
     nt_port: int | None = None
     extensions: tuple[str, ...] = ()
     quiet: bool = False
@@ -81,15 +83,16 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         script=None if request.script is None else load_inputs(request.script),
         start_at=request.start_at,
         run_until=request.seconds,
-        recording=kind.interactive or request.record is not None or request.watch,
+        recording=kind.interactive or request.watch or not (request.record is None and request.page is None),
         nt_port=port or None,
         wpilog=request.wpilog,
         extensions=(*request.extensions, *kind.extensions),
         start_position=request.start_position,
-        network_values=kind.shows_network,
+        network_values=kind.shows_network or request.page is not None,
     )
     simulation = Simulation(project, options)
-    files = OutputFiles(request.record, request.wpilog, request.picture)
+    page = None if request.page is None else PageFile(request.page, _what(project, request))
+    files = OutputFiles(request.record, request.wpilog, request.picture, page)
     with ExitStack() as closing:
         interruption = closing.enter_context(ending_like_ctrl_c())
         if not kind.prints:
@@ -98,6 +101,8 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
             closing.enter_context(calling_at_c_exit(partial(_end_without_display, simulation, files, say)))
         if request.watch:
             closing.enter_context(watching(simulation, front_end.saved))
+        if page is not None:
+            page.follow(simulation, front_end if kind.shows_network else None)
         try:
             code = front_end.run(simulation)
         except KeyboardInterrupt:  # in the terminal: another way to close a window
@@ -122,6 +127,18 @@ def _wishes(request: SimRequest, say: Callable[[str], object]) -> Wishes:
         share=request.share,
         port=request.port or 0,
     )
+
+
+def _what(project: Project, request: SimRequest) -> str:
+    """Return the command for the readers of a page: that part of it which changes what the robot does."""
+    parts = ["pyfrc sim"]
+    if request.mode is not None:
+        parts.append(f"--mode {request.mode}")
+    if request.script is not None:
+        parts.append(f"--script {place_in(project, request.script)}")
+    if request.start_position is not None:
+        parts.append(f"--start {request.start_position}")
+    return " ".join(parts)
 
 
 def _echo(say: Callable[[str], object], text: str) -> None:

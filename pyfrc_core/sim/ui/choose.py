@@ -73,7 +73,8 @@ def _make_tk(wishes: Wishes) -> FrontEnd:
 
 
 def _make_web(wishes: Wishes) -> FrontEnd:
-    from .web import WebFrontEnd, WebOptions
+    from .web.front_end import WebFrontEnd
+    from .web.server import WebOptions
 
     return WebFrontEnd(wishes.say, WebOptions(wishes.share, wishes.port))
 

@@ -7,7 +7,6 @@ import mimetypes
 import traceback
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from starlette.applications import Starlette
@@ -21,14 +20,12 @@ from .access import Access, Guard, Receive, Scope, Send
 from .commands import Commands
 from .greeting import greeting
 from .page_client import PageClient
+from .single_file import PAGE
 from .updates import UpdateBuilder
 
 if TYPE_CHECKING:
     from ...engine.simulation import Simulation
     from .collector import Collector
-
-#: The page's files.
-PAGE = Path(__file__).with_name("page")
 
 #: Types that some systems have wrong, in the Windows registry for example: browsers refuse modules of another type.
 _TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}

@@ -69,6 +69,11 @@ class History:
         return next((chunk.times[-1] for chunk in reversed(self._chunks) if chunk.times), 0.0)
 
     @property
+    def chunks(self) -> tuple[Chunk, ...]:
+        """All packets, in order."""
+        return tuple(self._chunks)
+
+    @property
     def size(self) -> int:
         """About how many bytes it takes."""
         return sum(chunk.size for chunk in self._chunks)
@@ -164,6 +169,10 @@ class History:
                 first, after = column.between(chunk.packet_at(begin) + 1, chunk.packet_at(end))
                 if first < after:
                     yield Piece(chunk.times, column, first, after)
+
+    def changes(self, path: str) -> int:
+        """Return how often a value has changed."""
+        return sum(len(chunk.columns[path]) for chunk in self._chunks if path in chunk.columns)
 
     # -- for readers that follow it -------------------------------------------------------------------------------
 

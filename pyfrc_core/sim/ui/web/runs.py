@@ -13,6 +13,7 @@ from .chunks import ChunkFile
 from .columns import MISSING
 from .comparison import FirstDifference
 from .history import MOST_BYTES, MOST_STORED_BYTES, History
+from .packing import packed
 from .plots import MOST_POINTS, picked, resolve, series
 
 Source = Literal["hal", "network"]
@@ -219,6 +220,19 @@ class Runs:
                 if flat:
                     found[path] = flat[-2 * MOST_POINTS :]
         return found, positions
+
+    def change_counts(self, paths: Iterable[str]) -> dict[str, int]:
+        """Return how often each of some values has changed in the present run."""
+        with self._lock:
+            return {path: self._histories[source_of(path)].changes(path) for path in paths}
+
+    def packed(self, clean: Callable[[str], str]) -> dict[str, Any]:
+        """Return the values of the present run for a page without a server.
+
+        :param clean: changes each text
+        """
+        with self._lock:
+            return {source: packed(history, clean) for source, history in self._histories.items()}
 
     def position(self) -> Position:
         """Return the present end of the values, for `samples`."""

@@ -1,4 +1,6 @@
 // The WebSocket to `pyfrc sim`. It connects again by itself; each connection begins with the whole state.
+// A page with a recorded run in it asks that run instead.
+import { isRecorded, readRun } from "./recorded.js";
 
 const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
 
@@ -10,6 +12,7 @@ const TICK = 1000; // milliseconds
 const ASK_AFTER = 2; // ticks of silence, after which the page asks whether the server is there
 const LOST_AFTER = 6; // ticks of silence, after which it connects again
 
+let run = null; // the recorded run
 let socket = null;
 let attempts = 0;
 let silence = 0;
@@ -23,6 +26,7 @@ let onState = () => {};
 export function connect(message, state) {
   onMessage = message;
   onState = state;
+  if (isRecorded) return openRun();
   open();
   setInterval(tick, TICK);
 }
@@ -36,6 +40,17 @@ function tick() {
   silent.onmessage = silent.onopen = silent.onclose = null;
   silent.close();
   lost();
+}
+
+async function openRun() {
+  try {
+    run = await readRun();
+  } catch (error) {
+    console.error(error);
+    return onState("unreadable");
+  }
+  onState("open");
+  onMessage(run.hello);
 }
 
 function open() {
@@ -97,6 +112,7 @@ function send(message) {
 
 // Ask the server; the promise has its answer.
 export function ask(type, fields = {}) {
+  if (run) return run.answer(type, fields);
   const id = nextId++;
   return new Promise((resolve, reject) => {
     if (!send({ ...fields, type, id })) return reject(new Error("there is no connection to the simulation"));

@@ -3,6 +3,7 @@ import { command } from "./connection.js";
 import { clock } from "./format.js";
 import { model } from "./model.js";
 import { live, look } from "./past.js";
+import { isRecorded } from "./recorded.js";
 import { SourceLink } from "./source.js";
 import { Icon, Live, html } from "./view.js";
 
@@ -17,7 +18,7 @@ export class FailureBar extends Live {
     const failure = model.status.state === "failed" ? model.status.failure : null;
     if (!failure) return null;
     const goesBack = failure.t > 0 && !UNREADABLE.test(failure.headline);
-    const { watch } = model.hello.options;
+    const watch = model.hello.options.watch && !isRecorded;
     return html`<section class="failure" role="alert" aria-label="The robot program has failed">
       <div class="failure-head">
         <${Icon} name="warning" />
@@ -27,10 +28,11 @@ export class FailureBar extends Live {
             ${watch && " Save the corrected file, and the simulation goes on."}</span>
         </div>
         <div class="failure-actions">
-          ${goesBack && html`<button class="primary" onClick=${() => goBack(failure.t)} disabled=${model.readonly}>Go back 2 s and drive on</button>`}
+          ${isRecorded && failure.t > 0 && html`<button onClick=${() => look(failure.t - BACK)}>2 s before</button>`}
+          ${goesBack && !isRecorded && html`<button class="primary" onClick=${() => goBack(failure.t)} disabled=${model.readonly}>Go back 2 s and drive on</button>`}
           ${failure.t > 0 && html`<button onClick=${() => look(failure.t)}>Values of that moment</button>`}
-          ${!watch && html`<button onClick=${reload} disabled=${model.readonly} title="After you have corrected it: run it with the same inputs until this moment">Load the code again</button>`}
-          <button onClick=${restart} disabled=${model.readonly}><${Icon} name="restart" />Restart</button>
+          ${!watch && !isRecorded && html`<button onClick=${reload} disabled=${model.readonly} title="After you have corrected it: run it with the same inputs until this moment">Load the code again</button>`}
+          ${!isRecorded && html`<button onClick=${restart} disabled=${model.readonly}><${Icon} name="restart" />Restart</button>`}
         </div>
       </div>
       ${failure.details && html`<details><summary>Traceback</summary><pre>${failure.details}</pre></details>`}

@@ -6,6 +6,8 @@ import { startKeys } from "./input/keys.js";
 import { Dock } from "./layout/dock.js";
 import { model } from "./model.js";
 import { Notice } from "./notice.js";
+import { isRecorded } from "./recorded.js";
+import { RecordedTimeBar, startPlaybackKeys } from "./recorded_bar.js";
 import { applyTheme, settings } from "./settings.js";
 import { StationBar } from "./station.js";
 import { TimeBar } from "./timebar.js";
@@ -21,7 +23,7 @@ class App extends Live {
       <${Notice} />
       <${FailureBar} />
       <${Dock} />
-      <${TimeBar} />`;
+      <${isRecorded ? RecordedTimeBar : TimeBar} />`;
   }
 }
 
@@ -30,6 +32,7 @@ const WAITING = {
   lost: "There is no answer from pyfrc sim. Trying again…",
   refused: "This address is not valid any more. Open the one that pyfrc sim prints.",
   closed: "The simulation was closed.",
+  unreadable: "This file is not complete, or this browser is too old to read it. A browser of 2023 or later is needed.",
 };
 
 function receive(message) {
@@ -37,7 +40,7 @@ function receive(message) {
   if (message.type === "hello" && !model.hello) {
     settings.load(message.layout);
     applyTheme();
-    document.title = `${message.project.name} – pyfrc sim`;
+    document.title = `${message.project.name} – ${isRecorded ? message.recorded.what : "pyfrc sim"}`;
   }
   model.take(message);
 }
@@ -58,6 +61,9 @@ applyTheme();
 const root = document.getElementById("app");
 root.replaceChildren();
 render(html`<${App} />`, root);
-startKeys();
-startGamepads();
+if (isRecorded) startPlaybackKeys();
+else {
+  startKeys();
+  startGamepads();
+}
 connect(receive, (state) => model.set("connection", state));

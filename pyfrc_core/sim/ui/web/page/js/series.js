@@ -2,6 +2,7 @@
 import { ask } from "./connection.js";
 import { plain } from "./format.js";
 import { model } from "./model.js";
+import { indexAfter } from "./times.js";
 
 const FIRST_POINTS = 4000; // of the history, when a path begins to be watched
 
@@ -94,18 +95,6 @@ model.listen((changed) => {
     load(one);
   }
 });
-
-// The number of times that are not after `t`, which is also the index of the first one after it.
-export function indexAfter(times, t) {
-  let low = 0;
-  let high = times.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (times[middle] <= t) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
 
 // The value in force at `t`; undefined before the first.
 export function valueAt(one, t) {

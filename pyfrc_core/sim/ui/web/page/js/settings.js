@@ -2,6 +2,7 @@
 import { ask } from "./connection.js";
 import { model } from "./model.js";
 import { PRESETS } from "./layout/presets.js";
+import { isRecorded } from "./recorded.js";
 
 const SAVE_AFTER = 400; // milliseconds without another change
 // A page that is reloaded before that finds its arrangement here, in this tab of the browser.
@@ -26,7 +27,7 @@ class Settings {
 
   // Take over what was saved. What this version does not know, or what is broken, is left at its default.
   load(saved) {
-    const unsaved = sessionStorage.getItem(UNSAVED);
+    const unsaved = isRecorded ? null : sessionStorage.getItem(UNSAVED);
     if (unsaved && !model.readonly) {
       this.#take(JSON.parse(unsaved));
       this.save();

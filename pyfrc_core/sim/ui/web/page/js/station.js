@@ -5,9 +5,12 @@ import { activate, close, largestTabs, placeOf, put } from "./layout/tree.js";
 import { Menu } from "./menu.js";
 import { model } from "./model.js";
 import { PANELS, panelTitle } from "./panels/all.js";
+import { isRecorded } from "./recorded.js";
+import { RecordedLabel } from "./recorded_bar.js";
 import { applyTheme, isDark, settings } from "./settings.js";
 import { Icon, Live, classes, html } from "./view.js";
 
+const ICON = document.querySelector("link[rel=icon]").href;
 const MODES = [["teleop", "Teleop"], ["autonomous", "Auto"], ["test", "Test"]];
 
 export class StationBar extends Live {
@@ -15,41 +18,53 @@ export class StationBar extends Live {
 
   render() {
     const { station } = model.shown;
+    const left = model.past || isRecorded ? "" : matchLeft(model.station);
+    return html`<header class="station">
+      <div class="brand" title=${model.hello.project.root || model.hello.project.name}><img src=${ICON} alt="" /><span>${model.hello.project.name}</span></div>
+      ${isRecorded ? html`<${RecordedLabel} />` : this.driving()}
+      <div class=${`state ${station.kind}`} role="status" aria-live="polite">
+        <i class="lamp"></i><b>${shortText(station.text)}</b>
+        ${model.past && !isRecorded && html`<em>past</em>`}
+        ${left && html`<span class="countdown">${left}</span>`}
+      </div>
+      ${model.hint && this.ready && !model.station.enabled && html`<span class="hint" role="status">${model.hint}</span>`}
+      <div class="spacer"></div>
+      ${model.readonly && !isRecorded && html`<span class="chip" title="This address only shows the simulation">Read only</span>`}
+      ${model.clients > 1 && html`<span class="chip" title="Windows that show this simulation">${model.clients} windows</span>`}
+      <${LayoutMenu} />
+      <${PanelsMenu} />
+      <button class="quiet" onClick=${switchTheme} title=${isDark() ? "Light colours" : "Dark colours"}
+        aria-label=${isDark() ? "Light colours" : "Dark colours"}><${Icon} name=${isDark() ? "sun" : "moon"} /></button>
+      ${!isRecorded && this.emergencyStop()}
+    </header>`;
+  }
+
+  get ready() {
+    return model.connection === "open" && ["disabled", "enabled"].includes(model.station.kind) && !model.readonly;
+  }
+
+  driving() {
     const present = model.station;
     const connected = model.connection === "open";
-    const ready = connected && ["disabled", "enabled"].includes(present.kind) && !model.readonly;
-    const left = model.past ? "" : matchLeft(present);
-    return html`<header class="station">
-      <div class="brand" title=${model.hello.project.root}><img src="/static/icon.svg" alt="" /><span>${model.hello.project.name}</span></div>
+    return html`
       <div class="segments" role="radiogroup" aria-label="Mode">
         ${MODES.map(([mode, text]) => html`<button key=${mode} role="radio" aria-checked=${present.chosen_mode === mode}
           class=${classes({ chosen: present.chosen_mode === mode })} disabled=${model.readonly || !connected}
           onClick=${() => command("choose_mode", { mode })}>${text}</button>`)}
       </div>
       <div class="pair">
-        <button class="go" disabled=${!ready || present.enabled} title="Enable the robot: Ctrl+E, or [ ] \\ together"
+        <button class="go" disabled=${!this.ready || present.enabled} title="Enable the robot: Ctrl+E, or [ ] \\ together"
           onClick=${() => command("enable")}>Enable</button>
-        <button class="stop" disabled=${!ready || !present.enabled} title="Disable the robot: Enter"
+        <button class="stop" disabled=${!this.ready || !present.enabled} title="Disable the robot: Enter"
           onClick=${() => command("disable")}>Disable</button>
       </div>
-      <button class="practice" disabled=${!ready} title="Practice match: autonomous, a pause and teleop"
-        onClick=${() => command("practice")}><${Icon} name="flag" /><span>Practice</span></button>
-      <div class=${`state ${station.kind}`} role="status" aria-live="polite">
-        <i class="lamp"></i><b>${shortText(station.text)}</b>
-        ${model.past && html`<em>past</em>`}
-        ${left && html`<span class="countdown">${left}</span>`}
-      </div>
-      ${model.hint && ready && !present.enabled && html`<span class="hint" role="status">${model.hint}</span>`}
-      <div class="spacer"></div>
-      ${model.readonly && html`<span class="chip" title="This address only shows the simulation">Read only</span>`}
-      ${model.clients > 1 && html`<span class="chip" title="Windows that show this simulation">${model.clients} windows</span>`}
-      <${LayoutMenu} />
-      <${PanelsMenu} />
-      <button class="quiet" onClick=${switchTheme} title=${isDark() ? "Light colours" : "Dark colours"}
-        aria-label=${isDark() ? "Light colours" : "Dark colours"}><${Icon} name=${isDark() ? "sun" : "moon"} /></button>
-      <button class="estop" disabled=${!ready} title="Emergency stop: the space bar. Only a restart enables the robot again."
-        onClick=${() => command("e_stop")}>E-STOP</button>
-    </header>`;
+      <button class="practice" disabled=${!this.ready} title="Practice match: autonomous, a pause and teleop"
+        onClick=${() => command("practice")}><${Icon} name="flag" /><span>Practice</span></button>`;
+  }
+
+  emergencyStop() {
+    return html`<button class="estop" disabled=${!this.ready} title="Emergency stop: the space bar. Only a restart enables the robot again."
+        onClick=${() => command("e_stop")}>E-STOP</button>`;
   }
 }
 
@@ -83,7 +98,7 @@ function LayoutMenu() {
 
 function PanelsMenu() {
   const open = new Set(panelsOf(settings.tree));
-  const ids = Object.keys(PANELS).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
+  const ids = Object.keys(PANELS).filter((kind) => !(isRecorded && PANELS[kind].drives)).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
   const items = ids.map((id) => ({ text: panelTitle(id), checked: open.has(id), act: () => toggle(id) }));
   return html`<${Menu} label="Panels" title="Open and close panels" items=${items} />`;
 }

@@ -40,6 +40,15 @@ export const PRESETS = {
       column([60, 40], tabs("plot:1"), tabs("console", "joysticks", "keys")),
     ),
   },
+  review: {
+    title: "Review",
+    tree: row(
+      [22, 46, 32],
+      tabs("devices", "networktables"),
+      column([64, 36], tabs("field", "mechanism"), tabs("console")),
+      column([58, 42], tabs("plot:1", "plot:2"), tabs("joysticks", "match", "widgets")),
+    ),
+  },
   presentation: {
     title: "Presentation",
     tree: row([68, 32], tabs("field"), column([50, 50], tabs("plot:1"), tabs("mechanism", "console"))),

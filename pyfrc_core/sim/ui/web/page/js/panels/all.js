@@ -1,4 +1,4 @@
-// Every panel that can be opened, by the part of its name before a colon.
+// Every panel that can be opened, by the part of its name before a colon. Those that only drive are of no use for a recorded run.
 import { ConsolePanel } from "./console.js";
 import { DevicesPanel } from "./devices.js";
 import { FieldPanel } from "./field.js";
@@ -21,8 +21,8 @@ export const PANELS = {
   console: { title: "Console", component: ConsolePanel },
   match: { title: "Match", component: MatchPanel },
   joysticks: { title: "Joysticks", component: JoysticksPanel },
-  keys: { title: "Keys", component: KeysPanel },
-  touch: { title: "Touch sticks", component: TouchPanel },
+  keys: { title: "Keys", component: KeysPanel, drives: true },
+  touch: { title: "Touch sticks", component: TouchPanel, drives: true },
 };
 
 export function panelTitle(panel) {

@@ -3,6 +3,7 @@ import { command, write } from "../connection.js";
 import { numberText, plain } from "../format.js";
 import { assignedTo, gamepads, labelOf, nameOf } from "../input/gamepads.js";
 import { model } from "../model.js";
+import { isRecorded } from "../recorded.js";
 import { settings } from "../settings.js";
 import { Component, Live, classes, createRef, html } from "../view.js";
 import { StickPad, axisTarget } from "./stick_pad.js";
@@ -26,7 +27,7 @@ export class JoysticksPanel extends Live {
           class=${classes({ chosen: number === stick, has: assignedTo(number) !== null })} onClick=${() => this.setState({ stick: number })}>${number}</button>`)}
       </div>
       <div class="scroll" key=${stick}>
-        <${GamepadChoice} stick=${stick} plugged=${plugged} />
+        ${!isRecorded && html`<${GamepadChoice} stick=${stick} plugged=${plugged} />`}
         <div class="stick-row">
           <${StickPad} stick=${stick} x=${0} y=${1} label="Axes 0 and 1" />
           <${Pov} stick=${stick} />

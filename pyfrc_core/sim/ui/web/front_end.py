@@ -1,0 +1,81 @@
+"""The simulator in a browser: a server of one page, on this computer unless it is shared."""
+
+from __future__ import annotations
+
+import threading
+import webbrowser
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from ....display import has_display
+from .. import FrontEnd
+from .access import Access
+from .app import WebApp
+from .collector import Collector
+from .commands import Commands
+from .server import Server, WebOptions
+
+if TYPE_CHECKING:
+    from ...engine.simulation import Simulation
+
+#: The interval of looks whether the simulation is to end, in seconds: on Windows, Ctrl-C does not end a wait.
+_LOOK_SECONDS = 0.5
+
+
+class WebFrontEnd(FrontEnd):
+    """Serves pages that show a simulation, until Ctrl-C or until a page closes it.
+
+    :param say: prints to the terminal
+    """
+
+    def __init__(self, say: Callable[[str], object], options: WebOptions) -> None:
+        self._say, self._options = say, options
+        self._access = Access(options.share)
+        self._over = threading.Event()
+        self.server: Server | None = None
+        #: What keeps the whole history of the simulation.
+        self.collector: Collector | None = None
+
+    def run(self, simulation: Simulation) -> int:
+        self.server = server = Server(self._options, self._access)
+        self.collector = collector = Collector(simulation, server.wake)
+        commands = Commands(simulation, collector, self.close)
+        try:
+            server.start(WebApp(simulation, collector, commands, self._access))
+            collector.start()
+            self._announce(server)
+            simulation.start()
+            while not self._over.wait(_LOOK_SECONDS):
+                pass
+        finally:
+            collector.close()
+            server.close()
+            simulation.close()
+        return 0
+
+    def close(self) -> None:
+        """End the simulation. May be called from any thread."""
+        self._over.set()
+
+    def saved(self, files: list[str]) -> None:
+        """Show that the robot gets new code."""
+        if (collector := self.collector) is not None:
+            collector.announce(f"saved: {', '.join(files)}")
+
+    def _announce(self, server: Server) -> None:
+        self._say(f"The simulator is at {server.address}\n")
+        self._say(f"To look only: {server.viewing_address}\n")
+        if (share := self._options.share) is not None:
+            can = "can drive the robot" if share == "drive" else "can only look"
+            self._say(
+                f"Shared with the network: who has this address {can}: {server.network_address(share == 'drive')}\n"
+            )
+        if self._options.opens_browser and has_display():
+            threading.Thread(target=self._open, args=(server.address,), name="pyfrc sim: browser", daemon=True).start()
+
+    @staticmethod
+    def _open(address: str) -> None:
+        try:
+            webbrowser.open(address)
+        except webbrowser.Error:  # the address was printed
+            return

@@ -1,0 +1,64 @@
+// The controls of a recorded run: what it is, and its time.
+import { clock, speedText } from "./format.js";
+import { model } from "./model.js";
+import { live, look, lookByPackets } from "./past.js";
+import { playback } from "./playback.js";
+import { Timeline } from "./timeline.js";
+import { Icon, Live, html } from "./view.js";
+
+export function RecordedLabel() {
+  const { recorded, version } = model.hello;
+  const when = new Date(recorded.when).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+  return html`<div class="recorded" title=${`${recorded.what}, ${recorded.when}, pyfrc ${version}`}>
+    <span class="chip">Recorded run</span><code>${recorded.what}</code><span>${when}</span><span>pyfrc ${version}</span></div>`;
+}
+
+export class RecordedTimeBar extends Live {
+  parts = ["status", "shown", "hello", "playback"];
+
+  render() {
+    const { past, status } = model;
+    const { playing, speed, position } = playback;
+    const step = (packets) => () => {
+      playback.pause();
+      lookByPackets(packets);
+    };
+    return html`<footer class="timebar">
+      <div class="transport">
+        <button class="quiet" title="To the beginning" aria-label="To the beginning" onClick=${() => look(0)}><${Icon} name="first" /></button>
+        <button class="quiet" title="Look at the packet before" aria-label="Look at the packet before" onClick=${step(-1)}><${Icon} name="stepBack" /></button>
+        <button class="play" title=${playing ? "Pause: the space bar" : "Play: the space bar"} aria-label=${playing ? "Pause" : "Play"}
+          onClick=${() => playback.toggle()}><${Icon} name=${playing ? "pause" : "play"} /></button>
+        <button class="quiet" title="Look at the packet after" aria-label="Look at the packet after" onClick=${step(1)}><${Icon} name="step" /></button>
+        <button class="quiet" title="To the end" aria-label="To the end" onClick=${toEnd}><${Icon} name="last" /></button>
+        <time class="clock" title="Robot time">${clock(past ? past.t : model.t)}</time>
+        <span class="run-end">${past ? "" : "End of the run"}</span>
+        <label class="speed" title="Robot seconds per second">Speed
+          <input type="range" min="0" max="1" step="0.005" value=${position} aria-label="Speed" aria-valuetext=${speedText(speed)}
+            onInput=${(event) => { playback.position = Number(event.target.value); }} />
+          <b>${speedText(speed)}</b></label>
+        <div class="spacer"></div>
+        <dl class="figures">
+          <div title="The length of the run, in robot time"><dt>Length</dt><dd>${clock(status.length)}</dd></div>
+          <div class=${status.overruns ? "warn" : ""} title="Turns of the robot's loop that took longer than its period">
+            <dt>Overruns</dt><dd>${status.overruns ?? 0}</dd></div>
+        </dl>
+      </div>
+      <${Timeline} />
+    </footer>`;
+  }
+}
+
+function toEnd() {
+  playback.pause();
+  live();
+}
+
+// The space bar plays and pauses, except where it means something else.
+export function startPlaybackKeys() {
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== " " || event.repeat || event.target.closest?.("input, select, textarea, button, summary, a")) return;
+    event.preventDefault();
+    playback.toggle();
+  });
+}
