@@ -43,7 +43,13 @@ def test_the_page_needs_no_network_no_build_and_makes_no_html_of_texts() -> None
     assert "<style" not in index
     assert " style=" not in index
     assert re.findall(r"<script(.*?)>(.*?)</script>", index) == [(' type="module" src="/static/js/main.js"', "")]
-    # Each module imports files that exist, by relative paths.
+    # Each module imports files that exist, by relative paths, and names that they export.
     for file in (PAGE / "js").rglob("*.js"):
-        for name in re.findall(r'^(?:import|export)\b[^"]*?from "([^"]+)"', file.read_text("utf-8"), re.MULTILINE):
-            assert (file.parent / name).is_file(), (file, name)
+        imports = re.findall(r'^(?:import|export)\b([^"]*?)from "([^"]+)"', file.read_text("utf-8"), re.MULTILINE)
+        for names, name in imports:
+            other = file.parent / name
+            assert other.is_file(), (file, name)
+            if "vendor" not in other.parts and "{" in names:
+                for each in re.findall(r"\w+", names):
+                    exported = rf"^export (?:async )?(?:function\*?|class|const) {each}\b|^export \{{.*\b{each}\b"
+                    assert re.search(exported, other.read_text("utf-8"), re.MULTILINE), (file, name, each)

@@ -2,7 +2,7 @@
 import { font, sizeCanvas } from "./canvas.js";
 import { valueText } from "./format.js";
 import { nameOf } from "./names.js";
-import { indexAfter } from "./series.js";
+import { indexAfter } from "./times.js";
 import { color } from "./settings.js";
 
 const GAP = 3; // pixels between bands
