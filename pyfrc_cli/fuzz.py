@@ -62,7 +62,7 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     "--jobs",
     type=click.IntRange(min=1),
     metavar="N",
-    help="How many matches run at the same time. Default: the number of processors.",
+    help="How many matches run at the same time. Default: the number of processors, or PYTHON_CPU_COUNT.",
 )
 @click.option(
     "--scheduler",

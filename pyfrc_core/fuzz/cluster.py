@@ -143,13 +143,13 @@ class ClusterMatchExecutor(PooledMatchExecutor):
 
 @contextmanager
 def _connected(address: str) -> Iterator[DaskClient]:
+    _check_address(address)
     from distributed import Client
 
     connect: Any = Client
     for name in logging.root.manager.loggerDict:
         if name.startswith(("asyncio", "distributed", "tornado")):  # what they log is shown as an error of ours
             logging.getLogger(name).setLevel(logging.CRITICAL)
-    _check_address(address)
     try:
         client: DaskClient = connect(address, timeout=_CONNECT_SECONDS, set_as_default=False)
     except OSError as error:
@@ -161,7 +161,8 @@ def _connected(address: str) -> Iterator[DaskClient]:
 
 
 def _check_address(address: str) -> None:
-    """Check that something listens at a scheduler's address: Dask tries to connect for long, also where nothing does.
+    """Check that something listens at a scheduler's address, before Dask is imported, which takes half a second: Dask
+    tries to connect for long, also where nothing does.
 
     :raises UsageError: when the address is not valid
     :raises ClusterError: when nothing listens there
