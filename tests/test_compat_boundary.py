@@ -6,6 +6,7 @@ An attribute is found by its name, unless pyfrc gives one of its own the same na
 from __future__ import annotations
 
 import ast
+import functools
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -42,6 +43,7 @@ def is_private(name: str) -> bool:
     return name.startswith("_") and not (name.startswith("__") and name.endswith("__")) and name != "_"
 
 
+@functools.cache
 def own_names() -> set[str]:
     """Return the names that pyfrc itself gives to something."""
     names: set[str] = set()

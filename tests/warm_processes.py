@@ -26,7 +26,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from warm_start import LARGEST, READ_AT_START, end_like_python
+from large_pages import use_large_pages
+from warm_start import LARGEST, READ_AT_START, READ_LATER, end_like_python
 
 from pyfrc_core.processes import spawn
 from pyfrc_core.sim.engine import host_process
@@ -36,7 +37,10 @@ from pyfrc_core.sim.engine.host import Hosting
 _MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
 
 #: May differ: what a fork can be given after its start, and what is read no more when the path is set.
-_NOT_COMPARED = {"PYTHONDONTWRITEBYTECODE", "PYTHONPATH", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
+_NOT_COMPARED = READ_LATER | {"PYTHONDONTWRITEBYTECODE", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
+
+#: Modules that a new interpreter does not have.
+_OF_THE_SUITE = ("warm_start", "warm_processes", "large_pages")
 
 StartInterpreter = Callable[[spawn.Start], spawn.Interpreter]
 
@@ -162,7 +166,7 @@ def _serve(listener: socket.socket) -> _Request | None:
     :return: in a fork, its request; otherwise None, when standard input was closed
     """
     started_with = dict(os.environ)
-    modules = {name.partition(".")[0] for name in sys.modules} - {"__main__", "warm_start", "warm_processes"}
+    modules = {name.partition(".")[0] for name in sys.modules} - {"__main__", *_OF_THE_SUITE}
     known = {*sys.path, str(Path.cwd())}
     processes: dict[int, tuple[int, socket.socket]] = {}
     while True:
@@ -230,7 +234,7 @@ def _become(request: _Request) -> None:
         for stream in (sys.stdin, sys.stdout, sys.stderr):
             stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
     sys.modules["__main__"] = types.ModuleType("__main__")
-    for name in ("warm_start", "warm_processes"):
+    for name in _OF_THE_SUITE:
         sys.modules.pop(name, None)
     request.asking.send(str(os.getpid()).encode())
     request.asking.detach()
@@ -257,6 +261,7 @@ def main() -> None:
     importlib.import_module("pyfrc_core.sim.engine.robot_side.robot_process")
     gc.collect()
     gc.freeze()
+    use_large_pages()
     serve(listener, interrupted)
 
 

@@ -36,6 +36,9 @@ POSSIBLE = hasattr(os, "pidfd_open") and "PYFRC_COLD_STARTS" not in os.environ
 #: What a new interpreter reads, and a fork does not.
 READ_AT_START = ("PYTHON", "LC_", "LANG", "LD_", "COVERAGE_")
 
+#: Of these, what a fork can be given after its start.
+READ_LATER = {"PYTHONPATH", "PYTHON_CPU_COUNT"}
+
 #: What most commands import, sooner or later; but nothing that takes a name that measuring has to replace before
 #: (what `pyfrc_core.measure.user_functions` does).
 _IMPORTED = (
@@ -118,7 +121,7 @@ class WarmStarts:
         """Whether in this directory a fork does the same as a new interpreter."""
         if any(
             name.startswith(READ_AT_START) and self._environment.get(name) != environment[name]
-            for name in environment.keys() - {"PYTHONPATH"}
+            for name in environment.keys() - READ_LATER
         ):
             return False
         # The user's modules come before others of their names; here, the others are imported already.
@@ -345,6 +348,7 @@ def main() -> None:
     """The process that forks."""
     server = socket.socket(fileno=int(sys.argv[1]))
     import warm_processes  # noqa: F401 - not to be found without the path's first entry
+    from large_pages import use_large_pages
 
     del sys.path[0]
     interrupted = signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -368,6 +372,7 @@ def main() -> None:
     server.send(json.dumps(list(sys.modules)).encode())
     gc.collect()
     gc.freeze()
+    use_large_pages()
     of_tests, alive = _fork_processes_of_tests(server, interrupted)
     with server:
         job = _serve(server)
