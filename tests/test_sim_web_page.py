@@ -215,7 +215,13 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
           const { fieldObjects, swerveStates } = await import("/static/js/field/published.js");
           const { mechanisms } = await import("/static/js/panels/mechanism.js");
           const objects = fieldObjects(model.values, model.hello.field);
+          // The physics' field has another name if robot code shows one of its own as "Field".
+          const both = ["Field", "Field (physics)"].flatMap((name) => [
+            [`nt:/SmartDashboard/${name}/.type`, "Field2d"], [`nt:/SmartDashboard/${name}/Robot`, [1, 2, 0]],
+          ]);
           return {
+            own: fieldObjects(new Map(both), model.hello.field).map(({ path }) => path),
+            physics: fieldObjects(new Map(both.slice(0, 2)), model.hello.field).length,
             objects: objects.map(({ name, poses, isPath }) => [name, poses.length, isPath]).sort(),
             goal: objects.find(({ name }) => name === "goal").poses[0],
             swerve: swerveStates(model.values)[0].states[0],
@@ -223,6 +229,8 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
           };
         }"""
     )
+    assert found["own"] == ["nt:/SmartDashboard/Field/Robot"]
+    assert found["physics"] == 0
     assert found["objects"] == [["goal", 1, False], ["path", 12, True], ["tags", 8, False]]
     # From WPILib's metres, y upwards, to feet, y downwards; angles are clockwise.
     height = person.simulation.field.height

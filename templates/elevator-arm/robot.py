@@ -32,8 +32,14 @@ class MyRobot(wpilib.TimedRobot):
         self.arm_line = self.elevator_line.appendLigament("arm", 0.6, -90)
         wpilib.SmartDashboard.putData("Mechanism", self.picture)
 
+        # Their numbers can be changed on the dashboard while the robot runs.
+        wpilib.SmartDashboard.putData("Elevator controller", self.elevator.controller)
+        wpilib.SmartDashboard.putData("Arm controller", self.arm.controller)
+
     def robotPeriodic(self) -> None:
-        """Called every 20 ms in every mode: draw the measured positions."""
+        """Called every 20 ms in every mode: show the measured positions."""
+        wpilib.SmartDashboard.putNumber("Elevator height", self.elevator.height)
+        wpilib.SmartDashboard.putNumber("Arm angle", math.degrees(self.arm.angle))
         self.elevator_line.setLength(0.3 + self.elevator.height)
         self.arm_line.setAngle(math.degrees(self.arm.angle) - 90)
 

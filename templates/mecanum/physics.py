@@ -1,4 +1,4 @@
-"""Physics of the robot in tests and in the simulator: mecanum wheels and a gyro.
+"""Physics of the robot in tests and in the simulator: mecanum wheels, their encoders and a gyro.
 
 The numbers describe a typical robot. Replace them with your robot's.
 """
@@ -6,13 +6,14 @@ The numbers describe a typical robot. Replace them with your robot's.
 from pyfrc.physics.core import PhysicsInterface
 from pyfrc.physics.drivetrains import MecanumDrivetrain
 from pyfrc.physics.units import units
-from wpilib.simulation import PWMSim
+from wpilib.simulation import EncoderSim, PWMSim
 
 from robot import MyRobot
 
 TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right wheels
 WHEEL_BASE = 24 * units.inch  # from the rear wheels to the front wheels
 MAX_SPEED = 10 * units.fps  # at full power
+METRES_PER_SECOND = MAX_SPEED.to(units.metre / units.second).magnitude
 
 
 class PhysicsEngine:
@@ -26,6 +27,7 @@ class PhysicsEngine:
             for motor in (robot.front_left, robot.rear_left, robot.front_right, robot.rear_right)
         ]
         self.drivetrain = MecanumDrivetrain(x_wheelbase=TRACK_WIDTH, y_wheelbase=WHEEL_BASE, speed=MAX_SPEED)
+        self.encoders = [EncoderSim(encoder) for encoder in robot.encoders]
         physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")  # turns with the robot
 
     def update_sim(self, now: float, tm_diff: float) -> None:
@@ -33,3 +35,6 @@ class PhysicsEngine:
         front_left, rear_left, front_right, rear_right = (motor.getSpeed() for motor in self.motors)
         speeds = self.drivetrain.calculate(front_left, rear_left, front_right, rear_right)
         self.physics_controller.drive(speeds, tm_diff)
+        # The right motors are inverted: forward at -1.
+        for encoder, power in zip(self.encoders, (front_left, rear_left, -front_right, -rear_right), strict=True):
+            encoder.setDistance(encoder.getDistance() + power * METRES_PER_SECOND * tm_diff)

@@ -1,5 +1,6 @@
 """The four swerve modules together: the robot's speed and its pose."""
 
+import ntcore
 import wpilib
 from wpimath.geometry import Pose2d, Rotation2d, Translation2d
 from wpimath.kinematics import (
@@ -22,9 +23,10 @@ MODULE_PLACES = (
     Translation2d(-HALF_LENGTH, -HALF_WIDTH),
 )
 
-MAX_TURNING_SPEED = 6.0  # of the whole robot, in rad/s
+# Where the robot starts: metres from the corner at the right of the blue drivers, as in sim/config.json.
+START = Pose2d(0.91, 4.03, Rotation2d())
 
-ALL_STILL = (SwerveModuleState(),) * 4
+MAX_TURNING_SPEED = 6.0  # of the whole robot, in rad/s
 
 
 class Drivetrain:
@@ -40,14 +42,18 @@ class Drivetrain:
 
         self.gyro = wpilib.ADXRS450_Gyro()
         self.kinematics = SwerveDrive4Kinematics(*MODULE_PLACES)
-        self.odometry = SwerveDrive4Odometry(self.kinematics, self.gyro.getRotation2d(), self._positions())
+        self.odometry = SwerveDrive4Odometry(self.kinematics, self.gyro.getRotation2d(), self._positions(), START)
 
+        # The field on the dashboard, and the modules' states, which dashboards draw as arrows.
         self.field = wpilib.Field2d()
-        wpilib.SmartDashboard.putData("Odometry", self.field)
+        wpilib.SmartDashboard.putData("Field", self.field)
+        table = ntcore.NetworkTableInstance.getDefault()
+        self.measured = table.getStructArrayTopic("/SwerveStates/Measured", SwerveModuleState).publish()
+        self.target = table.getStructArrayTopic("/SwerveStates/Target", SwerveModuleState).publish()
 
     @property
     def pose(self) -> Pose2d:
-        """Return the robot's pose relative to its start, from its wheels and its gyro."""
+        """Return the robot's pose on the field, from its wheels and its gyro."""
         return self.odometry.getPose()
 
     @property
@@ -72,6 +78,7 @@ class Drivetrain:
         """Stop all motors."""
         for module in self.modules:
             module.stop()
+        self.target.set([SwerveModuleState(0, module.angle) for module in self.modules])
 
     def face_forward(self) -> None:
         """Define the robot's current heading as the direction away from the driver."""
@@ -79,13 +86,19 @@ class Drivetrain:
         self.odometry.resetPosition(self.gyro.getRotation2d(), self._positions(), here)
 
     def update_odometry(self) -> None:
-        """Update the pose with the movement since the last call."""
+        """Update the pose with the movement since the last call, and show it."""
         self.odometry.update(self.gyro.getRotation2d(), self._positions())
         self.field.setRobotPose(self.pose)
+        self.measured.set([module.state for module in self.modules])
+
+    def show_path(self, path: list[Pose2d]) -> None:
+        """Show on the field where the robot is to go."""
+        self.field.getObject("Path").setPoses(path)
 
     def _set(self, states: tuple[SwerveModuleState, SwerveModuleState, SwerveModuleState, SwerveModuleState]) -> None:
         for module, state in zip(self.modules, states, strict=True):
             module.set(state)
+        self.target.set(list(states))
 
     def _positions(
         self,

@@ -33,6 +33,7 @@ class ModulePhysics:
         self.angle += self.turn_motor.getSpeed() * MAX_WHEEL_TURNING * tm_diff
         self.rolled += speed * tm_diff
         self.drive_encoder.setDistance(self.rolled)
+        self.drive_encoder.setRate(speed)
         self.angle_encoder.set(self.angle % math.tau)
         return SwerveModuleState(speed, Rotation2d(self.angle))
 

@@ -3,6 +3,7 @@
 import wpilib
 from wpimath import applyDeadband
 from wpimath.filter import SlewRateLimiter
+from wpimath.geometry import Pose2d, Rotation2d
 from wpimath.kinematics import ChassisSpeeds
 
 from drivetrain import MAX_TURNING_SPEED, Drivetrain
@@ -26,6 +27,11 @@ class MyRobot(wpilib.TimedRobot):
         self.gamepad = wpilib.XboxController(0)
         self.timer = wpilib.Timer()
 
+        self.chooser = wpilib.SendableChooser()
+        self.chooser.setDefaultOption("Forward, left, turn", AUTONOMOUS)
+        self.chooser.addOption("Stay", [])
+        wpilib.SmartDashboard.putData("Autonomous", self.chooser)
+
         # From zero to full speed in a third of a second, so that the wheels do not slip.
         self.forward_limit = SlewRateLimiter(3 * MAX_SPEED)
         self.left_limit = SlewRateLimiter(3 * MAX_SPEED)
@@ -37,11 +43,12 @@ class MyRobot(wpilib.TimedRobot):
     def autonomousInit(self) -> None:
         """Called once when autonomous starts."""
         self.timer.restart()
+        self.steps: list[tuple[float, ChassisSpeeds]] = self.chooser.getSelected()
 
     def autonomousPeriodic(self) -> None:
         """Called every 20 ms in autonomous: run the current step."""
         step_ends = 0.0
-        for seconds, speeds in AUTONOMOUS:
+        for seconds, speeds in self.steps:
             step_ends += seconds
             if self.timer.get() < step_ends:
                 self.drivetrain.drive_on_field(speeds)
@@ -57,6 +64,16 @@ class MyRobot(wpilib.TimedRobot):
         turn = -applyDeadband(self.gamepad.getRightX(), 0.1) * MAX_TURNING_SPEED
         speeds = ChassisSpeeds(self.forward_limit.calculate(forward), self.left_limit.calculate(left), turn)
         self.drivetrain.drive_on_field(speeds)
+
+    def disabledPeriodic(self) -> None:
+        """Called every 20 ms while the robot is disabled: show the path of the chosen autonomous, from here."""
+        path = [self.drivetrain.pose]
+        for seconds, speeds in self.chooser.getSelected():
+            place = path[-1]
+            turn = Rotation2d(speeds.omega * seconds)
+            x, y = place.X() + speeds.vx * seconds, place.Y() + speeds.vy * seconds
+            path.append(Pose2d(x, y, place.rotation() + turn))
+        self.drivetrain.show_path(path)
 
     def disabledInit(self) -> None:
         """Called once when the robot is disabled: stop, so that nothing moves suddenly later."""

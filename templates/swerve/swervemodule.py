@@ -40,6 +40,11 @@ class SwerveModule:
         """Return how far the wheel has rolled, in metres, and its direction."""
         return SwerveModulePosition(self.drive_encoder.getDistance(), self.angle)
 
+    @property
+    def state(self) -> SwerveModuleState:
+        """Return the wheel's speed, in m/s, and its direction."""
+        return SwerveModuleState(self.drive_encoder.getRate(), self.angle)
+
     def set(self, state: SwerveModuleState) -> None:
         """Drive the wheel at a speed, in a direction."""
         if abs(state.speed) < 0.01:

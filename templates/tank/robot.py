@@ -2,6 +2,12 @@
 
 import wpilib
 import wpilib.drive
+from wpimath.geometry import Pose2d, Rotation2d
+from wpimath.kinematics import DifferentialDriveOdometry
+
+# Where the robot starts: metres from the corner at the right of the blue drivers, as in sim/config.json.
+START = Pose2d(0.91, 4.03, Rotation2d())
+TRACK_WIDTH = 0.61  # from the left wheels to the right wheels, in metres
 
 
 class MyRobot(wpilib.TimedRobot):
@@ -31,15 +37,25 @@ class MyRobot(wpilib.TimedRobot):
         self.right_stick = wpilib.Joystick(1)
         self.timer = wpilib.Timer()
 
+        # The choices for autonomous, with the seconds that each drives.
+        self.chooser = wpilib.SendableChooser()
+        self.chooser.setDefaultOption("Drive forward", 2.0)
+        self.chooser.addOption("Stay", 0.0)
+        wpilib.SmartDashboard.putData("Autonomous", self.chooser)
+
+        # The field on the dashboard, with the robot where its encoders say that it is.
+        self.odometry = DifferentialDriveOdometry(Rotation2d(), 0, 0, START)
+        self.field = wpilib.Field2d()
+        wpilib.SmartDashboard.putData("Field", self.field)
+
     def autonomousInit(self) -> None:
         """Called once when autonomous starts."""
         self.timer.restart()
-        self.left_encoder.reset()
-        self.right_encoder.reset()
+        self.drive_seconds: float = self.chooser.getSelected()
 
     def autonomousPeriodic(self) -> None:
-        """Called every 20 ms in autonomous: drive forward for two seconds, at half speed."""
-        if self.timer.get() < 2.0:
+        """Called every 20 ms in autonomous: drive forward at half speed, for as long as chosen."""
+        if self.timer.get() < self.drive_seconds:
             self.drive.tankDrive(0.5, 0.5, squareInputs=False)
         else:
             self.drive.stopMotor()
@@ -53,9 +69,13 @@ class MyRobot(wpilib.TimedRobot):
         self.drive.stopMotor()
 
     def robotPeriodic(self) -> None:
-        """Called every 20 ms in every mode: show the distances (in metres) to the driver."""
-        wpilib.SmartDashboard.putNumber("Left distance", self.left_encoder.getDistance())
-        wpilib.SmartDashboard.putNumber("Right distance", self.right_encoder.getDistance())
+        """Called every 20 ms in every mode: show the driver the distances (in metres) and the place on the field."""
+        left, right = self.left_encoder.getDistance(), self.right_encoder.getDistance()
+        wpilib.SmartDashboard.putNumber("Left distance", left)
+        wpilib.SmartDashboard.putNumber("Right distance", right)
+        # The right wheels go further than the left ones when the robot turns left. A gyro measures turns better.
+        heading = Rotation2d((right - left) / TRACK_WIDTH)
+        self.field.setRobotPose(self.odometry.update(heading, left, right))
 
     def disabledPeriodic(self) -> None:
         """Called every 20 ms while the robot is disabled."""

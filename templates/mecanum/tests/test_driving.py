@@ -4,7 +4,7 @@
 """
 
 import pytest
-from wpilib.simulation import XboxControllerSim
+from wpilib.simulation import SendableChooserSim, XboxControllerSim
 
 
 def drive(control, seconds):
@@ -68,3 +68,24 @@ def test_autonomous_goes_forward_then_right(control, robot, physics_controller):
         moved = physics_controller.get_pose().relativeTo(start)
         assert moved.X() == pytest.approx(half_way.X(), abs=0.1)
         assert moved.Y() < -1.5
+
+
+def test_the_robot_knows_where_it_is(control, robot, physics_controller):
+    gamepad = XboxControllerSim(0)
+    with control.run_robot():
+        gamepad.setLeftY(-0.6)
+        gamepad.setLeftX(0.4)
+        gamepad.setRightX(0.3)
+        drive(control, 1.5)
+        believed, really = robot.field.getRobotPose(), physics_controller.get_pose()
+    assert believed.translation().distance(really.translation()) < 0.1
+    assert (believed.rotation() - really.rotation()).degrees() == pytest.approx(0, abs=3)
+
+
+def test_stay_is_a_choice_for_autonomous(control, robot, physics_controller):
+    start = physics_controller.get_pose()
+    with control.run_robot():
+        SendableChooserSim("/SmartDashboard/Autonomous/").setSelected("Stay")
+        control.step_timing(seconds=0.1, autonomous=True, enabled=False)  # chosen before the match
+        control.step_timing(seconds=3, autonomous=True, enabled=True)
+    assert physics_controller.get_pose() == start

@@ -6,7 +6,9 @@
 import math
 
 import pytest
-from wpilib.simulation import XboxControllerSim
+from wpilib.simulation import SendableChooserSim, XboxControllerSim
+
+from drivetrain import START
 
 
 def drive(control, seconds):
@@ -56,12 +58,25 @@ def test_odometry_knows_where_the_robot_is(control, robot, physics_controller):
         for _ in range(5):
             control.step_timing(seconds=1, autonomous=True, enabled=True)
             really = physics_controller.get_pose().relativeTo(start)
-            believed = robot.drivetrain.pose
+            believed = robot.drivetrain.pose.relativeTo(START)
             assert believed.translation().distance(really.translation()) < 0.1
             assert (believed.rotation() - really.rotation()).degrees() == pytest.approx(0, abs=5)
     assert really.X() > 1.5
     assert really.Y() > 0.7
     assert really.rotation().degrees() > 60
+
+
+def test_the_dashboard_shows_where_autonomous_goes(control, robot, physics_controller):
+    with control.run_robot():
+        control.step_timing(seconds=0.1, autonomous=True, enabled=False)
+        path = robot.drivetrain.field.getObject("Path")
+        *_, end = path.getPoses()
+        control.step_timing(seconds=6, autonomous=True, enabled=True)
+        assert end.translation().distance(physics_controller.get_pose().translation()) < 0.6
+
+        SendableChooserSim("/SmartDashboard/Autonomous/").setSelected("Stay")
+        control.step_timing(seconds=0.1, autonomous=True, enabled=False)
+        assert len(path.getPoses()) == 1
 
 
 def test_disabling_stops_every_motor(control, hal_data, robot):

@@ -37,9 +37,16 @@ function isTrajectory(poses) {
   return steps.every((step) => step <= STEP);
 }
 
+// The pose of the robot that the physics publishes. Its field has the other name if robot code shows a "Field" of its own.
+function physicsRobot(values) {
+  const others = "nt:/SmartDashboard/Field (physics)";
+  return `${values.has(`${others}/.type`) ? others : "nt:/SmartDashboard/Field"}/Robot`;
+}
+
 // The objects of every Field2d: { name, path, poses, isPath }.
 export function fieldObjects(values, field) {
   const objects = [];
+  const simulated = physicsRobot(values);
   for (const [path, type] of values) {
     if (!path.startsWith("nt:/") || !path.endsWith("/.type") || type !== "Field2d") continue;
     const folder = path.slice(0, -"/.type".length);
@@ -47,8 +54,7 @@ export function fieldObjects(values, field) {
       if (!each.startsWith(`${folder}/`)) continue;
       const name = each.slice(folder.length + 1);
       if (name.startsWith(".")) continue;
-      // The physics moves the robot of this one, and the page draws it anyway.
-      if (each === "nt:/SmartDashboard/Field/Robot" && model.shown.robot) continue;
+      if (each === simulated && model.shown.robot) continue; // the page draws it anyway
       // Nothing has moved this one yet: a Field2d begins with its robot in the corner.
       if (name === "Robot" && Array.isArray(value) && value.every((number) => number === 0)) continue;
       const poses = posesOf(value, field);

@@ -125,7 +125,7 @@ export class FieldPanel extends Live {
       if (object.isPath) draw.drawTrail(context, this.view, object.poses, name, 2);
       else if (object.poses.length > MOST_ROBOTS) for (const pose of object.poses) draw.drawPlace(context, this.view, pose, name);
       else for (const pose of object.poses) draw.drawRobot(context, this.view, field, pose, { body: name, alpha: 0.8, outline: true });
-      if (this.view.scale < LEAST_NAMED) return;
+      if (this.view.scale < LEAST_NAMED || isUnderRobot(object, model.shown.robot, field)) return;
       const [x, y] = this.view.toScreen(object.poses[0]);
       const above = object.isPath || object.poses.length > MOST_ROBOTS ? 8 : (Math.hypot(field.robot_length, field.robot_width) / 2) * this.view.scale + 2;
       context.fillStyle = color(name);
@@ -224,6 +224,11 @@ export class FieldPanel extends Live {
     if (event.shiftKey) command("place", { x: robot[0], y: robot[1], degrees: degrees + Math.sign(way[0] + way[1]) * TURN });
     else command("place", { x: robot[0] + way[0], y: robot[1] + way[1], degrees });
   };
+}
+
+// Whether an object's name would cover the robot, such as that of the pose which robot code measures.
+function isUnderRobot({ poses: [[x, y]], isPath }, robot, field) {
+  return Boolean(robot) && !isPath && Math.hypot(x - robot[0], y - robot[1]) < Math.min(field.robot_length, field.robot_width) / 2;
 }
 
 function heading(radians) {
