@@ -71,7 +71,7 @@ export class FieldPanel extends Live {
         <canvas ref=${this.canvas}></canvas>
       </div>
       <div class="field-line">
-        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose[0])} ft</b><i>y</i><b>${numberText(pose[1])} ft</b><i>heading</i><b>${numberText(heading(pose[2]), 1)}°</b>` : "No physics.py: pyfrc create-physics writes one"}</span>
+        <span class="pose">${pose ? html`<i>x</i><b>${numberText(pose[0])} ft</b><i>y</i><b>${numberText(pose[1])} ft</b><i class="long">heading</i><b>${numberText(heading(pose[2]), 1)}°</b>` : "No physics.py: pyfrc create-physics writes one"}</span>
         <button class="quiet" title="Show the whole field: double click" aria-label="Show the whole field" onClick=${this.whole}><${Icon} name="fit" /></button>
         <${Menu} label="Show" title="What is drawn" items=${layers} />
       </div>
