@@ -140,7 +140,9 @@ export function drawSwerve(context, view, field, pose, modules, name) {
   context.save();
   context.strokeStyle = color(name);
   context.fillStyle = color(name);
-  context.lineWidth = 2.5;
+  // Thinner on a small field, where four thick arrows would be one blot.
+  const size = Math.min(Math.max(view.scale * 0.45, 2.5), 6);
+  context.lineWidth = size * 0.4;
   context.lineCap = "round";
   modules.slice(0, 4).forEach(({ speed, angle }, index) => {
     const [x, y] = beside(pose, ...places[index]);
@@ -148,9 +150,9 @@ export function drawSwerve(context, view, field, pose, modules, name) {
     const reach = Math.min(Math.max(speed / FASTEST, -1), 1) * longest;
     const end = [x + Math.cos(way) * reach, y + Math.sin(way) * reach];
     context.beginPath();
-    context.arc(...view.toScreen([x, y]), 2.5, 0, 2 * Math.PI);
+    context.arc(...view.toScreen([x, y]), size * 0.4, 0, 2 * Math.PI);
     context.fill();
-    if (Math.abs(speed) > 0.02) arrow(context, view.toScreen([x, y]), view.toScreen(end), 6);
+    if (Math.abs(speed) > 0.02) arrow(context, view.toScreen([x, y]), view.toScreen(end), size);
   });
   context.restore();
 }

@@ -132,7 +132,8 @@ export class FieldPanel extends Live {
       context.font = font(11);
       context.textAlign = "center";
       context.textBaseline = "bottom";
-      context.fillText(object.name, x, y - above);
+      const half = context.measureText(object.name).width / 2 + 2;
+      context.fillText(object.name, Math.min(Math.max(x, half), this.view.width - half), y - above);
     });
   }
 
