@@ -237,7 +237,7 @@ def test_the_hal_reports_devices_values_and_writes() -> None:
     program = """
 import gc
 from hal.simulation import getSimDeviceHandle, getSimValueHandle
-from pyfrc_core.compat.hal_callbacks import HalNotes, cancel
+from pyfrc_core.compat.hal_callbacks import HalNotes, WriteFlags
 
 notes = HalNotes()
 notes.note_devices(7)
@@ -246,19 +246,25 @@ print(bool(notes), list(notes.take()), bool(notes))
 notes.note_new_values(getSimDeviceHandle("Arm"), 8)
 value = device.createDouble("Angle", 0, 1.0)
 print(list(notes.take()))
-registered = notes.note_writes(getSimValueHandle(getSimDeviceHandle("Arm"), "Angle"), 9)
+other = device.createDouble("Infinity", 0, 1.0)  # the C library would read a number
+list(notes.take())
+flags = WriteFlags([getSimValueHandle(getSimDeviceHandle("Arm"), name) for name in ("Angle", "Infinity")])
+print(flags.take())
 value.set(1.0)
 value.set(2.0)
-print(list(notes.take()))
+print(flags.take(), flags.take())
 value.reset()
-print(list(notes.take()))
-cancel(registered)
+other.set(1.0)
+print(flags.take())
+flags.close()
 value.set(3.0)
+print(flags.take())
 del device, value
 gc.collect()
 print(list(notes.take()))
 """
-    assert said_by(program) == ["True [7] False", "[8]", "[9]", "[9]", "[7]"], wpilib_private.NATIVE_HAL.gone
+    expected = ["True [7] False", "[8]", "[]", "[0] []", "[0, 1]", "[]", "[7]"]
+    assert said_by(program) == expected, wpilib_private.NATIVE_HAL.gone
 
 
 def test_threads_that_write_while_others_read_do_not_block_each_other() -> None:
@@ -267,13 +273,15 @@ def test_threads_that_write_while_others_read_do_not_block_each_other() -> None:
 import threading
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
-from pyfrc_core.compat.hal_callbacks import HalNotes
+from pyfrc_core.compat.hal_callbacks import HalNotes, WriteFlags
 
 device = hal.SimDevice("Arm")
 value = device.createDouble("Angle", 0, 1.0)
 handle = hs.getSimDeviceHandle("Arm")
 notes = HalNotes()
-notes.note_writes(hs.getSimValueHandle(handle, "Angle"), 9)
+notes.note_devices(7)
+notes.note_new_values(handle, 8)
+flags = WriteFlags([hs.getSimValueHandle(handle, "Angle")])
 stop = threading.Event()
 
 def write():
@@ -290,6 +298,7 @@ for _ in range(5000):
     SimDeviceSim("Arm").getDouble("Angle").get()
     hs.getSimDeviceName(handle)
     value.set(2.0)
+    flags.take()
     list(notes.take())
 stop.set()
 thread.join()

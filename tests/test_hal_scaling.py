@@ -16,7 +16,7 @@ from pyfrc_core.hal import HalData
 from pyfrc_core.hal.change_reader import MISSING, ChangeReader, Changes
 from pyfrc_core.hal.output_gate import OutputGate
 
-#: Looks after which a value that has not changed is no longer read.
+#: Looks that find nothing, before a change.
 LOOKS = 60
 
 
@@ -202,6 +202,15 @@ def test_devices_and_values_that_come_and_go(tree: HalData) -> None:
     assert changes.look() == ([], ['CAN["Motor[0]"].later'])
     values[1].set(7.0)
     assert found(changes.look()) == {'CAN["Motor[0]"].v1': 7.0}
+    # Here the names of the values are the same, too.
+    for _ in range(LOOKS):
+        changes.look()
+    del again, values
+    gc.collect()
+    again, values = make(1)
+    assert changes.look().changed == [('CAN["Motor[0]"].v1', 7.0, 1.0)]
+    values[1].set(8.0)
+    assert found(changes.look()) == {'CAN["Motor[0]"].v1': 8.0}
     del again
 
 

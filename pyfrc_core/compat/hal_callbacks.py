@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import atexit
 import ctypes
-from collections.abc import Iterator
+import sys
+from collections.abc import Iterator, Sequence
 from functools import cache
+from itertools import compress, count
 from typing import Any, NamedTuple
 
 from .wpilib_private import NATIVE_HAL
 
-# A callback has one or two more arguments, which are not declared: the C calling conventions of all systems that
+# A callback has up to three more arguments, which are not declared: the C calling conventions of all systems that
 # WPILib supports allow it. So `dict.__setitem__` serves as the callback. It is no Python code, so no signal handler
 # runs within it: the exception of a handler, such as KeyboardInterrupt, would be lost there.
 _CALLBACK = ctypes.CFUNCTYPE(None, ctypes.c_size_t, ctypes.c_size_t)
@@ -75,18 +77,66 @@ class HalNotes:
         """Note `number` whenever the SimDevice with this handle gets a new value."""
         self._register("SimValueCreated", ctypes.c_int32(device), number)
 
-    def note_writes(self, value: int, number: int) -> Registered:
-        """Note `number` whenever the value with this handle is written. Return what `cancel` needs."""
-        return self._register("SimValueChanged", ctypes.c_int32(value), number)
-
-    def _register(self, event: str, subject: Any, number: int) -> Registered:
-        register = getattr(_library(), f"HALSIM_Register{event}Callback")
-        registered = Registered(event, register(subject, ctypes.c_void_p(number), self._callback, 0), _resets)
-        _REGISTERED[registered] = None
-        return registered
+    def _register(self, event: str, subject: Any, number: int) -> None:
+        _register(event, subject, number, self._callback)
 
 
-def cancel(registered: Registered) -> None:
+class WriteFlags:
+    """Flags that show which values of SimDevices have been written.
+
+    The callback is ``strtod(text, end)`` of the C library: it stores in ``*end`` where it has stopped reading, which is
+    never 0. The HAL passes the name of the value, which is the text, and the address that was registered, which is that
+    of the value's flag. So a report takes less time than reading the value, and needs no lock of Python's.
+
+    :param values: the handles of the values
+    """
+
+    def __init__(self, values: Sequence[int]) -> None:
+        self._flags = (ctypes.c_size_t * max(1, len(values)))()
+        self._view = memoryview(self._flags).cast("B").cast("N")
+        self._none = bytes(self._flags)
+        begin, size, callback = ctypes.addressof(self._flags), ctypes.sizeof(ctypes.c_size_t), _strtod()
+        _FLAGS[begin] = self._flags
+        self._registered = [
+            _register("SimValueChanged", ctypes.c_int32(value), begin + size * position, callback)
+            for position, value in enumerate(values)
+        ]
+
+    def take(self) -> list[int]:
+        """Return the positions of the values that were written since the last call; read the values after it."""
+        if self._view.tobytes() == self._none:
+            return []
+        flags = self._view
+        written = list(compress(count(), flags.tolist()))
+        for position in written:  # not all: another one may have been set meanwhile
+            flags[position] = 0
+        return written
+
+    def close(self) -> None:
+        """End the HAL's reports."""
+        while self._registered:
+            _cancel(self._registered.pop())
+        _FLAGS.pop(ctypes.addressof(self._flags), None)
+
+
+#: The memory of flags that are not closed, by its address: the HAL may still write there.
+_FLAGS: dict[int, object] = {}
+
+
+@cache
+def _strtod() -> ctypes.c_void_p:
+    library = ctypes.CDLL("msvcrt" if sys.platform == "win32" else None)
+    return ctypes.cast(library.strtod, ctypes.c_void_p)
+
+
+def _register(event: str, subject: Any, parameter: int, callback: Any) -> Registered:
+    register = getattr(_library(), f"HALSIM_Register{event}Callback")
+    registered = Registered(event, register(subject, ctypes.c_void_p(parameter), callback, 0), _resets)
+    _REGISTERED[registered] = None
+    return registered
+
+
+def _cancel(registered: Registered) -> None:
     """Cancel a callback, unless it has been removed by a reset: the HAL counts from 1 again then."""
     if registered in _REGISTERED:
         del _REGISTERED[registered]
@@ -103,7 +153,7 @@ def forget_registered() -> None:
 @atexit.register
 def _cancel_all() -> None:
     for registered in list(_REGISTERED):
-        cancel(registered)
+        _cancel(registered)
 
 
 def led_bytes(index: int, buffer: ctypes.Array[ctypes.c_char]) -> bytes:

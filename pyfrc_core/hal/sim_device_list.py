@@ -23,7 +23,7 @@ class SimDeviceList:
         self._signature: Signature = ()
 
     def signature(self) -> Signature:
-        """Return the name, handle and names of values of each device: the same object until one of them changes."""
+        """Return the name, handle and names of values of each device: the same object until one is created or freed."""
         notes = self._notes
         if notes is not None and not notes and not hs.isSimDeviceEnabled(_CANARY):
             return self._signature
@@ -33,9 +33,8 @@ class SimDeviceList:
             self._begin(notes)
         for _ in notes.take():  # first, since a thread may create more devices meanwhile
             pass
-        found = tuple(self._entry(name, notes) for name in SimDeviceSim.enumerateDevices(""))
-        if found != self._signature:
-            self._signature = found
+        # Always a new object: a device that was freed and created again has the same handles, and not its callbacks.
+        self._signature = tuple([self._entry(name, notes) for name in SimDeviceSim.enumerateDevices("")])
         return self._signature
 
     def _begin(self, notes: HalNotes) -> None:
