@@ -93,7 +93,7 @@ class WriteFlags:
 
     def __init__(self, values: Sequence[int]) -> None:
         self._flags = (ctypes.c_size_t * max(1, len(values)))()
-        self._view = memoryview(self._flags).cast("B").cast("N")
+        self._view = memoryview(self._flags).cast("B").cast("P")
         self._none = bytes(self._flags)
         begin, size, callback = ctypes.addressof(self._flags), ctypes.sizeof(ctypes.c_size_t), _strtod()
         _FLAGS[begin] = self._flags

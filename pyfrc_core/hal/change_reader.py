@@ -81,9 +81,12 @@ class ChangeReader:
         source = self._source
         if refresh:
             source.refresh()
-        if source.version != self._version:
-            self._version = source.version
+        version, self._version = self._version, source.version
+        if source.paths is not self._paths:
             self._paths, self._values = source.paths, source.values.copy()
+        elif source.version != version:
+            for position in source.changed_since(version):
+                self._values[position] = source.values[position]
 
     def _compare_all(self) -> Changes:
         before = dict(zip(self._paths, self._values, strict=True))

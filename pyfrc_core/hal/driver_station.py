@@ -11,6 +11,13 @@ from typing import Any
 
 import hal
 from hal import simulation as hs
+from hal.simulation import (
+    getJoystickAxes,
+    getJoystickButtons,
+    getJoystickCounts,
+    getJoystickOutputs,
+    getJoystickPOVs,
+)
 from wpilib import DriverStation
 from wpilib.simulation import DriverStationSim
 
@@ -207,13 +214,15 @@ class JoystickData(LiveDict):
 
     def fingerprint(self) -> object:
         """Return a value that differs after any change of the controls, or of the data sent back."""
-        port, counts = self._port, self.counts()
+        port = self._port
+        counts = getJoystickCounts(port)
         if counts == (0, 0, 0):  # unplugged: the robot sees no control, and its data are sent to nothing
             return counts
-        hs.getJoystickAxes(port, self._axes)
-        hs.getJoystickPOVs(port, self._povs)
-        values = self._axis_values.tobytes(), self._pov_values.tobytes(), self._bits()
-        return values, counts, hs.getJoystickOutputs(port)
+        getJoystickAxes(port, self._axes)
+        getJoystickPOVs(port, self._povs)
+        getJoystickButtons(port, self._buttons)
+        axes, povs = self._axis_values.tobytes(), self._pov_values.tobytes()
+        return axes, povs, self._buttons.buttons, counts, getJoystickOutputs(port)
 
     def controls(self) -> tuple[list[float], list[bool], list[int]]:
         """Return the axes, buttons and POVs that the robot sees."""

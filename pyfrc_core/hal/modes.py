@@ -11,6 +11,7 @@ from hal.simulation import (
     getDriverStationDsAttached,
     getDriverStationEnabled,
     getDriverStationEStop,
+    getDriverStationMatchTime,
     getDriverStationTest,
     resetDriverStationData,
     setDriverStationAllianceStationId,
@@ -156,6 +157,11 @@ def is_stopped() -> bool:
 def set_match_time(seconds_left: float) -> None:
     """Set the time left in the current period, in seconds: `DriverStation.getMatchTime` in robot code."""
     setDriverStationMatchTime(seconds_left)
+
+
+def match_time() -> float:
+    """Return what was last set with `set_match_time`."""
+    return getDriverStationMatchTime()
 
 
 def set_game_message(message: str) -> None:

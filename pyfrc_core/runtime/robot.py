@@ -41,10 +41,10 @@ _SIMULATION_INIT = MAGIC_SIMULATION_INIT.name
 class ExternalWrites(Protocol):
     """A listener for what is written from outside the robot program, such as a recorder."""
 
-    def begin_outside(self, stepping: bool = False) -> None:
-        """External writes begin."""
+    def begin_outside(self, stepping: bool = False, only_time: bool = False) -> None:
+        """External writes begin: before a packet, and of the match time alone."""
 
-    def end_outside(self, stepping: bool = False) -> None:
+    def end_outside(self, stepping: bool = False, only_time: bool = False) -> None:
         """External writes end."""
 
     def on_packet_out_of_turn(self) -> None:

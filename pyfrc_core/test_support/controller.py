@@ -118,11 +118,13 @@ class TestController:
         __tracebackhide__ = True
         self._begin("run_test")
         instance, steps = self._steps(controller)
+        match = self._practice_match if controller is None else None
 
         def step(now: float) -> None:
             __tracebackhide__ = True
+            only_time = match is not None and not match.changes_mode(now)
             if run.recorder is not None:
-                run.recorder.begin_outside(stepping=True)
+                run.recorder.begin_outside(stepping=True, only_time=only_time)
             results = [on_step(now) for on_step in steps]  # a list, so that every function is called on every packet
             if not all(results):
                 if run.starting:
@@ -135,7 +137,7 @@ class TestController:
             if not run.alive and run.started:
                 raise RuntimeError(f"the robot program ended by itself: startCompetition() returned at {now:.2f} s")
             if run.recorder is not None:
-                run.recorder.end_outside(stepping=True)
+                run.recorder.end_outside(stepping=True, only_time=only_time)
 
         run = self._run
         run.clock.before_packet.insert(0, step)
@@ -299,6 +301,11 @@ class _PracticeMatch:
         self._control = control
         self._mode: modes.Mode | None = None
         self._periods = MatchPeriods(settings)
+
+    def changes_mode(self, now: float) -> bool:
+        """Return whether `on_step` will change the mode."""
+        period = self._periods.at(to_us(now))
+        return period is not None and period[0] != self._mode
 
     def on_step(self, now: float) -> bool:
         """Set the mode of this time; return whether the match continues."""

@@ -17,6 +17,7 @@ from pyfrc_core.hal import HalData, modes
 from pyfrc_core.hal.changing_values import same
 from pyfrc_core.hal.timing import deliver_packet
 from pyfrc_core.runtime.robot import RobotRun
+from pyfrc_core.runtime.scripts.network_entries import NETWORK
 from pyfrc_core.runtime.scripts.player import Player
 from pyfrc_core.runtime.scripts.recorder import Recorder, _MatchTime, _parts, _shortest
 from pyfrc_core.runtime.scripts.script import FORMAT, InputScript, ScriptError, Step, load_script, parse_script
@@ -325,6 +326,31 @@ def test_packets_out_of_turn_and_what_is_set_before_the_start(run: RobotRun) -> 
     assert (20_000, {"match_time": 15.0}) in steps or (20_000, {"time.remaining": 15.0}) in steps
     assert (20_001, {"joysticks[4].plugged": False}) in steps
     assert not any("joysticks[3].plugged" in writes for _, writes in steps)
+
+
+def test_before_packets_with_only_the_match_time_nothing_else_is_recorded(run: RobotRun) -> None:
+    recorder = Recorder(run)
+    published = ntcore.NetworkTableInstance.getDefault().getDoubleTopic("/speed").publish()
+    axes = run.hal_data["joysticks"][0]["axes"]
+    run.construct(Robot)
+    run.start()
+    for number in range(1, 121):  # the robot's values wait to be read, for some packets
+        run.clock.run_until(20_000 * number)
+        published.set(number)
+        axes[0] = number / 200
+        recorder.begin_outside(stepping=True, only_time=True)
+        modes.set_match_time((15_000_000 - 20_000 * number) / 1_000_000)
+        recorder.end_outside(stepping=True, only_time=True)
+    recorder.begin_outside()
+    published.set(0.5)
+    axes[1] = 0.25
+    recorder.end_outside()
+    steps = [(step.at_us, dict(step.writes)) for step in recorder.steps_from(0) if step.writes]
+    assert steps == [
+        (20_000, {"match_time": 14.98}),
+        (2_400_001, {"joysticks[0].axes[1]": 0.25, f"{NETWORK}/speed": 0.5}),
+    ]
+    published.close()
 
 
 def test_a_script_that_does_not_fit_the_robot_names_its_line(run: RobotRun) -> None:

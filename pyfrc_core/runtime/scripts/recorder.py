@@ -28,6 +28,9 @@ _TOLD_OTHERWISE = {"control.enabled", "control.autonomous", "control.test"}
 #: The types that entries of NetworkTables have for people; structs and the like are written by robots.
 _PLAIN = (bool, int, float, str)
 
+#: How many packets' values of NetworkTables are read together.
+_PACKETS_AT_ONCE = 50
+
 
 class Recorder:
     """Listens to a run: to be made as soon as the run is open.
@@ -57,13 +60,18 @@ class Recorder:
         self._skip()
         run.recorder = self
 
-    def begin_outside(self, stepping: bool = False) -> None:
+    def begin_outside(self, stepping: bool = False, only_time: bool = False) -> None:
         """Begin external writes.
 
         :param stepping: whether they come before a packet, which delivers them
+        :param only_time: whether nothing is written but the match time: then nothing else is read
         """
         if stepping:
             self._stepping_since = self._run.clock.now_us
+        if only_time:
+            self._left = modes.match_time()
+            self._network.skip_later()
+            return
         # Nothing has changed if the clock has called only the packet since the look. What code between two calls of the
         # clock has done, was looked at when it ended.
         self._skip(refresh=not stepping or self._looked_at != self._run.clock.actions - 1)
@@ -80,15 +88,19 @@ class Recorder:
         self._steps.append(Step(self._at_us(), {PACKET: True}))
         self.begin_outside()
 
-    def end_outside(self, stepping: bool = False) -> None:
-        """End external writes."""
+    def end_outside(self, stepping: bool = False, only_time: bool = False) -> None:
+        """End external writes; the arguments are those of `begin_outside`."""
         at_us = self._at_us()
         if stepping:
             self._stepping_since = None
         if not self._run.started:
             self._start_us = at_us
         left_before = self._left
-        writes = dict(self._writes(self._look()))
+        writes: dict[str, Any] = {}
+        if only_time:
+            self._left = modes.match_time()
+        else:
+            writes.update(self._writes(self._look()))
         self._match_time.hear(writes, left_before, self._left, at_us, stepping)
         if writes:
             self._steps.append(Step(at_us, writes))
@@ -123,7 +135,7 @@ class Recorder:
         """
         self._mode = modes.mode_name()
         self._changes.skip(refresh)
-        self._left = self._hal_data["time"]["remaining"]
+        self._left = modes.match_time()
         list(self._look_at_sticks())
         self._network.skip()
 
@@ -228,6 +240,8 @@ class _Network:
         flags = ntcore.EventFlags
         self._news.addListener([""], flags.kValueAll | flags.kUnpublish | flags.kImmediate)
         self._found: dict[str, Any] = {}
+        #: The packets whose values have not been read.
+        self._waiting = 0
 
     def look(self) -> list[Change]:
         """Return the entries that have changed since the last look, in the order in which they were first heard of."""
@@ -247,8 +261,15 @@ class _Network:
 
     def skip(self) -> None:
         """Look without finding what has changed."""
+        self._waiting = 0
         for target, value in self._heard():
             self._hear(target, value)
+
+    def skip_later(self) -> None:
+        """Skip now or with one of the next calls: many values at once take less time. Call `skip` before `look`."""
+        self._waiting += 1
+        if self._waiting == _PACKETS_AT_ONCE:
+            self.skip()
 
     def _heard(self) -> Iterator[tuple[str, Any]]:
         """Return the news since the last look: targets, with their plain values or `MISSING`."""
