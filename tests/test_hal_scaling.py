@@ -214,6 +214,22 @@ def test_devices_and_values_that_come_and_go(tree: HalData) -> None:
     del again
 
 
+def test_all_trees_see_a_device_that_is_created_again(tree: HalData) -> None:
+    devices, values = make(1)
+    trees = [tree, HalData()]
+    changes = [after_many_looks(each) for each in trees]
+    for number in range(3):
+        del devices, values
+        gc.collect()
+        devices, values = make(1)
+        for each in reversed(changes):
+            each.look()
+        values[1].set(7.0 + number)
+        assert [found(each.look()) for each in changes] == [{'CAN["Motor[0]"].v1': 7.0 + number}] * 2
+        changes.reverse()
+    del devices
+
+
 def test_a_reset_of_all_sim_devices_is_noticed(tree: HalData) -> None:
     before = make(1)
     changes = after_many_looks(tree)

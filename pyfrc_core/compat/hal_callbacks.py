@@ -37,8 +37,9 @@ class Registered(NamedTuple):
     resets: int
 
 
-#: What is registered, to be cancelled before Python ends: a thread of a vendor's library may still write values then.
-_REGISTERED: dict[Registered, None] = {}
+#: What is registered, with its parameter, to be cancelled before Python ends: a thread of a vendor's library may still
+#: write values then. When a device is freed and created again, the HAL returns the same numbers again.
+_REGISTERED: dict[Registered, int] = {}
 _resets = 0
 
 
@@ -97,9 +98,10 @@ class WriteFlags:
         self._none = bytes(self._flags)
         begin, size, callback = ctypes.addressof(self._flags), ctypes.sizeof(ctypes.c_size_t), _strtod()
         _FLAGS[begin] = self._flags
+        #: What is registered, and the address of its flag.
         self._registered = [
-            _register("SimValueChanged", ctypes.c_int32(value), begin + size * position, callback)
-            for position, value in enumerate(values)
+            (_register("SimValueChanged", ctypes.c_int32(value), address, callback), address)
+            for address, value in zip(count(begin, size), values, strict=False)
         ]
 
     def take(self) -> list[int]:
@@ -115,7 +117,7 @@ class WriteFlags:
     def close(self) -> None:
         """End the HAL's reports."""
         while self._registered:
-            _cancel(self._registered.pop())
+            _cancel(*self._registered.pop())
         _FLAGS.pop(ctypes.addressof(self._flags), None)
 
 
@@ -132,13 +134,13 @@ def _strtod() -> ctypes.c_void_p:
 def _register(event: str, subject: Any, parameter: int, callback: Any) -> Registered:
     register = getattr(_library(), f"HALSIM_Register{event}Callback")
     registered = Registered(event, register(subject, ctypes.c_void_p(parameter), callback, 0), _resets)
-    _REGISTERED[registered] = None
+    _REGISTERED[registered] = parameter
     return registered
 
 
-def _cancel(registered: Registered) -> None:
-    """Cancel a callback, unless it has been removed by a reset: the HAL counts from 1 again then."""
-    if registered in _REGISTERED:
+def _cancel(registered: Registered, parameter: int) -> None:
+    """Cancel a callback, unless it has been removed with its device or by a reset: its number may be another's then."""
+    if _REGISTERED.get(registered) == parameter:
         del _REGISTERED[registered]
         getattr(_library(), f"HALSIM_Cancel{registered.event}Callback")(registered.number)
 
@@ -152,8 +154,8 @@ def forget_registered() -> None:
 
 @atexit.register
 def _cancel_all() -> None:
-    for registered in list(_REGISTERED):
-        _cancel(registered)
+    for registered, parameter in list(_REGISTERED.items()):
+        _cancel(registered, parameter)
 
 
 def led_bytes(index: int, buffer: ctypes.Array[ctypes.c_char]) -> bytes:
