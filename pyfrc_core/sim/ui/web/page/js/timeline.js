@@ -3,6 +3,7 @@ import { font, sizeCanvas } from "./canvas.js";
 import { clock } from "./format.js";
 import { model } from "./model.js";
 import { length, live, look, lookBy, lookByPackets } from "./past.js";
+import { isRecorded } from "./recorded.js";
 import { watch, unwatch } from "./series.js";
 import { color } from "./settings.js";
 import { Live, createRef, html } from "./view.js";
@@ -13,7 +14,7 @@ const NEAR = 5; // pixels between the pointer and a mark
 const MOST_NAMED = 5; // marks beside the pointer
 const HEIGHT = 46;
 const EDGE = 8; // pixels at both ends
-const SHORTEST = 10; // seconds on the timeline at least
+const SHORTEST = isRecorded ? 0.1 : 10; // seconds on the timeline at least
 
 export class Timeline extends Live {
   parts = ["t", "status", "shown", "series", "marks", "settings", "window", "branches", "compared"];
