@@ -520,6 +520,7 @@ def test_the_speed_slider_has_real_time_and_no_limit() -> None:
     ("shown", "status", "words"),
     [
         (None, Status(), ("Starting…", "wait")),
+        (None, Status(replayed=1.2, replaying_to=63.0), ("Replaying 0:01.20 of 1:03.00", "wait")),
         (snapshot(), Status("running"), ("Teleoperated disabled", "disabled")),
         (snapshot("disabled autonomous"), Status("paused"), ("Autonomous disabled", "disabled")),
         (snapshot("teleop"), Status("running"), ("Teleoperated enabled", "enabled")),

@@ -33,6 +33,12 @@ class ChangeStreams:
             self._network.next = network
             self._network = network
 
+    def begin_anew(self) -> None:
+        """Note that the run begins at its start, with other code: its changes have everything."""
+        self._hal.begin(0.0, {}, new_code=True)
+        if self._network is not None:
+            self._network.begin(0.0, {}, new_code=True)
+
     def begin(self, update: Update) -> None:
         """Note what the run begins with, if this update is its first."""
         if update.base is None:

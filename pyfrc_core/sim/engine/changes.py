@@ -30,11 +30,13 @@ class RunBegan:
     :param number: as in `Status.starts`
     :param time: robot time where it goes on from, in seconds
     :param values: all values there, as in `Snapshot.values`; they replace those read before
+    :param new_code: whether it replays the inputs from the start with changed code
     """
 
     number: int
     time: float
     values: Mapping[str, Any]
+    new_code: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,11 +85,11 @@ class RunChanges:
         self.began: RunBegan | None = None
         self.next: RunChanges | None = None
 
-    def begin(self, time: float, values: Mapping[str, object]) -> None:
+    def begin(self, time: float, values: Mapping[str, object], new_code: bool = False) -> None:
         """Note what the run begins with; only the first call counts."""
         if self.began is None:
             unchangeable = {path: frozen(value) for path, value in values.items()}
-            self.began = RunBegan(self.number, time, MappingProxyType(unchangeable))
+            self.began = RunBegan(self.number, time, MappingProxyType(unchangeable), new_code)
 
 
 class ChangeCursor:

@@ -42,6 +42,7 @@ class Job:
     :param extensions: WPILib's simulation extensions to load, by name
     :param tags: the field's tags, if they are known already
     :param network_values: whether to report the values of NetworkTables
+    :param reports_replay: whether to report what the robot does in the replay: its code has changed since
     """
 
     project: Project
@@ -56,6 +57,20 @@ class Job:
     extensions: tuple[str, ...] = ()
     tags: tuple[Tag, ...] | None = None
     network_values: bool = False
+    reports_replay: bool = False
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """How far the robot has come on its way to the moment that it goes on from.
+
+    :param time_us: robot time
+    :param lines: what it did since the last report, if that is not known: new lines of the trace, as in `Update`
+    """
+
+    time_us: int
+    lines: tuple[str, ...] = ()
+    network_lines: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -133,4 +148,4 @@ class WindowClosed:
     """The user has closed WPILib's window."""
 
 
-Message = Ready | Update | Failed | WindowClosed
+Message = Replayed | Ready | Update | Failed | WindowClosed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from heapq import merge
 from importlib.metadata import version
@@ -42,19 +42,26 @@ class Recording:
         self._stations: History[StationState] = History()
         #: The end of the recording, in microseconds of robot time.
         self.length_us = 0
+        #: Whether another program has yet to replay the inputs, so that what it does there is not known.
+        self.is_open = False
 
     def add(self, update: Update) -> None:
         """Add what has happened since the last update."""
+        self.is_open = False
         self.length_us = max(self.length_us, update.time_us)
         for step in self._changing[: update.steps_from - self._changing_from]:
             self._steps.append(step.at_us, step)
         self._changing, self._changing_from = update.steps, update.steps_from
-        for line in update.lines:
-            self._lines.append(to_us(line_time(line)), line)
-        for line in update.network_lines:
-            self._network_lines.append(to_us(line_time(line)), line)
+        self.add_lines(update.lines, update.network_lines)
         if self._stations.last != update.station:
             self._stations.append(update.time_us, update.station)
+
+    def add_lines(self, lines: Iterable[str], network_lines: Iterable[str]) -> None:
+        """Add what the robot did, as in `Update`."""
+        for line in lines:
+            self._lines.append(to_us(line_time(line)), line)
+        for line in network_lines:
+            self._network_lines.append(to_us(line_time(line)), line)
 
     def script(self) -> InputScript:
         """Return the robot's inputs, with the hash of what it did, if that is known."""
@@ -87,8 +94,10 @@ class Recording:
         """Return a recording of the part until a moment, which can grow from there."""
         part = Recording(self._script_until(time_us), self._known)
         part.length_us = time_us
-        part._lines = self._lines.until(time_us)
-        part._network_lines = self._network_lines.until(time_us)
+        part.is_open = self.is_open
+        if not self.is_open:
+            part._lines = self._lines.until(time_us)
+            part._network_lines = self._network_lines.until(time_us)
         part._stations = self._stations.until(time_us)
         return part
 
@@ -96,6 +105,7 @@ class Recording:
         """Return a recording of the same inputs for a changed robot program, which may do something else."""
         again = Recording(self.script(), known=False)
         again.length_us = self.length_us
+        again.is_open = True
         again._stations = self._stations.until(self.length_us)
         return again
 

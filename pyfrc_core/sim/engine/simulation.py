@@ -21,7 +21,7 @@ from .changes import ChangeCursor
 from .commands import Command
 from .controls import Controls
 from .field import field_of, robot_at, start_named
-from .messages import Failed, Job, Message, Ready, Update
+from .messages import Failed, Job, Message, Ready, Replayed, Update
 from .options import SimOptions
 from .output_log import OutputCursor, OutputLog
 from .pending import PendingCommands
@@ -29,7 +29,7 @@ from .processes import RobotProcesses
 from .recording import Recording
 from .scene import Pose, Tag
 from .snapshot import Failure, Snapshot, Status
-from .snapshot_builder import SnapshotBuilder
+from .snapshot_builder import SnapshotBuilder, status_after, status_at_start
 from .time_state import TimeState
 
 #: A running robot does not respond when it has sent nothing for this time, in wall seconds.
@@ -275,6 +275,7 @@ class Simulation(Controls):
             extensions=options.extensions,
             tags=self._tags,
             network_values=options.network_values,
+            reports_replay=recording.is_open,
         )
         with self._sending, self._changed:
             self._recording = recording
@@ -282,10 +283,9 @@ class Simulation(Controls):
             self._time, self._pending = time, PendingCommands(commands)
             self._builder = SnapshotBuilder()
             self._reported_at = monotonic()
-            starts = self._status.starts + 1
-            self._status = replace(self._status, state="starting", failure=None, note="", starts=starts)
+            self._status = status_at_start(self._status, forward_to_us)
             if options.recording:
-                self._streams.begin_run(starts, recording)
+                self._streams.begin_run(self._status.starts, recording)
             self._launch = self._processes.launch(job)
             self._changed.notify_all()
 
@@ -315,6 +315,8 @@ class Simulation(Controls):
             self._reported_at = monotonic()
             if isinstance(message, Update):
                 self._take_in(message)
+            elif isinstance(message, Replayed):
+                self._follow_replay(message)
             elif isinstance(message, Ready):
                 self._tags = message.tags
                 self.field = replace(self.field, tags=message.tags)
@@ -362,8 +364,16 @@ class Simulation(Controls):
             self._status = replace(self._status, note=note)
             self._changed.notify_all()
 
+    def _follow_replay(self, replayed: Replayed) -> None:
+        self._recording.add_lines(replayed.lines, replayed.network_lines)
+        if replayed.lines:
+            self._streams.begin_anew()
+        self._status = replace(self._status, replayed=replayed.time_us / 1_000_000)
+
     def _take_in(self, update: Update) -> None:
         if self.options.recording:
+            if self._recording.is_open and update.lines:
+                self._streams.begin_anew()
             self._recording.add(update)
             self._streams.begin(update)
         else:
@@ -371,20 +381,7 @@ class Simulation(Controls):
         self._time = update.time_state
         self._pending.settle(update.carried_out, update.recorded)
         self._snapshot = self._builder.snapshot_after(update, self.field)
-        self._status = replace(
-            self._status,
-            state="paused" if update.time_state.paused else "running",
-            speed=update.time_state.speed,
-            reached=update.reached,
-            average=update.average,
-            packet_seconds=update.packet_seconds,
-            worst_packet_seconds=update.worst_packet_seconds,
-            late_packets=update.late_packets,
-            overruns=update.overruns,
-            worst_loop_seconds=update.worst_loop_seconds,
-            length=self._recording.length_us / 1_000_000,
-            note=" ".join(update.notes) or self._status.note,
-        )
+        self._status = status_after(self._status, update, self._recording.length_us)
 
     def _check_recorded(self) -> None:
         if not self.options.recording:

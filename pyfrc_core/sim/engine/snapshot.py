@@ -105,6 +105,8 @@ class Status:
     :param responding: False while the robot should run and its process has sent nothing for a second
     :param former_trail: the robot's path before the code changed or the user went back in time
     :param starts: the number of robot processes that were started
+    :param replayed: how far the robot has come, in seconds of robot time, while it replays its inputs to `replaying_to`
+    :param replaying_to: 0: it replays nothing
     :param network_address: the address of the NetworkTables server, if there is one
     """
 
@@ -124,3 +126,5 @@ class Status:
     former_trail: tuple[Point, ...] = ()
     network_address: str | None = None
     starts: int = 0
+    replayed: float = 0.0
+    replaying_to: float = 0.0

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
 from .changes import change_of, frozen
 from .messages import Update
 from .scene import Field, Point, Scene
-from .snapshot import Snapshot
+from .snapshot import Snapshot, Status
 
 #: The number of the trail's last points that are all shown, and the most points that are shown before them.
 _RECENT_POINTS, _OLDER_POINTS = 2048, 4096
@@ -90,3 +91,36 @@ def _values(before: Snapshot, update: Update) -> dict[str, Any]:
         for path in change.gone:
             values.pop(path, None)
     return values
+
+
+def status_at_start(status: Status, forward_to_us: int) -> Status:
+    """Return the status when another process of the robot is launched.
+
+    :param forward_to_us: the moment that it replays to
+    """
+    forward_to = forward_to_us / 1_000_000
+    starts = status.starts + 1
+    return replace(
+        status, state="starting", failure=None, note="", starts=starts, replayed=0.0, replaying_to=forward_to
+    )
+
+
+def status_after(status: Status, update: Update, length_us: int) -> Status:
+    """Return the status after an update.
+
+    :param length_us: the end of the recording
+    """
+    return replace(
+        status,
+        state="paused" if update.time_state.paused else "running",
+        speed=update.time_state.speed,
+        reached=update.reached,
+        average=update.average,
+        packet_seconds=update.packet_seconds,
+        worst_packet_seconds=update.worst_packet_seconds,
+        late_packets=update.late_packets,
+        overruns=update.overruns,
+        worst_loop_seconds=update.worst_loop_seconds,
+        length=length_us / 1_000_000,
+        note=" ".join(update.notes) or status.note,
+    )

@@ -19,9 +19,8 @@ from ....runtime.robot import RobotRun
 from ....runtime.scripts.player import Player
 from ....runtime.scripts.recorder import Recorder
 from ....runtime.scripts.targets import Targets
-from ....runtime.trace import Trace
 from ..commands import ROBOT_ON_FIELD, ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
-from ..messages import Job, Ready, Update
+from ..messages import Job, Ready, Replayed, Update
 from ..scene import Pose, Target
 from ..time_state import TimeState
 from .driven_path import DrivenPath
@@ -29,11 +28,14 @@ from .network import Choosers, Served
 from .network_trace import NetworkTrace
 from .pace import Pace, wall
 from .station import Station
+from .traces import Traces
 from .user_renderer import UserRenderer
 
 #: Above real time, the shortest interval of updates, in wall seconds; otherwise each packet has one. Unrecorded
 #: simulations run unattended, and each update takes as long as dozens of packets.
 _UPDATE_SECONDS, _UNRECORDED_UPDATE_SECONDS = 0.02, 0.1
+#: How often to report how far a replay has come, in wall seconds.
+_REPLAY_SECONDS = 0.05
 #: How long to wait for commands in a pause before reading what dashboards have written, in wall seconds.
 _LOOK_SECONDS = 0.05
 #: The robot's place is read at this interval, in packets.
@@ -46,13 +48,6 @@ _INITIALIZED_BY_US = 10_000_000
 
 class Ended(Exception):
     """The robot program has ended by itself."""
-
-
-class _Lines(list[str]):
-    """A file for a trace's lines."""
-
-    def write(self, line: str) -> None:
-        self.append(line)
 
 
 class Session:
@@ -72,17 +67,14 @@ class Session:
         if job.extensions:  # which have changed the initial state: that counts as an input, too
             modes.reset_driver_station()
         self._recorder = Recorder(run) if job.recording else None
-        self._lines = _Lines()
-        self._trace = Trace(run.hal_data, self._lines)  # type: ignore[arg-type]
-        self._lines.clear()  # its header
-        self._network = NetworkTrace(self._robot_pose) if job.network_values else None
+        self._traces = Traces(run.hal_data, NetworkTrace(self._robot_pose) if job.network_values else None)
         self._renderer = UserRenderer(self._robot_pose)
         self._drawings: tuple[Any, ...] = ()
         self._vision: tuple[Target, ...] = ()
         self._path = DrivenPath()
         self._mode_packets: Counter[str] = Counter()
         self._notes: list[str] = []
-        self._tracing = False
+        self._replaying = False
         self._packet_began = wall()
         self._steps_sent = 0
         self._sent_at = 0.0
@@ -107,7 +99,8 @@ class Session:
         """
         run, job = self._run, self._job
         from_the_start = job.forward_to_us <= job.script.start_us
-        self._tracing = job.recording and from_the_start
+        self._traces.is_on = job.recording and (from_the_start or job.reports_replay)
+        self._replaying = not from_the_start
         if job.recording:
             run.clock.before_packet.append(self._packet_begins)
             run.observe(self._packet_is_over)
@@ -119,6 +112,8 @@ class Session:
         try:
             Player(job.script, run).start()
             self._mark_position()
+            if job.reports_replay:
+                self._traces.look(run.clock.now)  # the values that it begins with
             if run.clock.now_us < job.forward_to_us:
                 self._target_us = job.forward_to_us
                 run.run_until(job.forward_to_us)
@@ -132,7 +127,7 @@ class Session:
     def _take_over(self) -> None:
         """Begin to carry out commands: the replay is over."""
         run, job = self._run, self._job
-        self._taken_over = True
+        self._taken_over, self._replaying = True, False
         self._station.take_over()
         for command in job.commands:
             self._carry_out(command)
@@ -142,10 +137,8 @@ class Session:
                 self._notes.append(self._served.problem)
         self._connection.send(self._ready())
         self.send_update(dict(run.hal_data.leaves()))
-        if not self._tracing:
-            self._trace.look(run.clock.now)
-            self._lines.clear()
-            self._tracing = job.recording
+        if job.recording:
+            self._traces.begin(run.clock.now)
         self._pace.begin(run.clock.now_us)
 
     @property
@@ -312,12 +305,11 @@ class Session:
         """
         run, pace = self._run, self._pace
         if not self._job.recording and base is None:
-            self._trace.look(run.clock.now)
+            self._traces.look_at_hal(run.clock.now)
         steps = () if self._recorder is None else self._recorder.steps_from(max(0, self._steps_sent - 2))
         overruns, worst_us = run.overruns_until_now()
         drawings, vision = self._renderer.drawings(), self._targets_seen()
-        network = self._network
-        tables = ({}, ()) if network is None else network.report(run.clock.now, base is not None, not self._tracing)
+        network_base, network_lines = self._traces.take_network(run.clock.now, base is not None)
         update = Update(
             time_us=run.clock.now_us - self._beyond_us,
             mode=modes.mode_name(),
@@ -334,9 +326,9 @@ class Session:
             worst_loop_seconds=worst_us / 1_000_000,
             robot=self._robot_pose(),
             base=base,
-            lines=tuple(self._lines),
-            network_base=tables[0],
-            network_lines=tables[1],
+            lines=self._traces.take(),
+            network_base=network_base,
+            network_lines=network_lines,
             trail=tuple(self._path.points),
             distance=self._path.distance,
             mode_seconds={mode: packets * PACKET_US / 1_000_000 for mode, packets in self._mode_packets.items()},
@@ -353,7 +345,6 @@ class Session:
         self._steps_sent = update.steps_from + len(steps)
         if self._recorder is not None:
             self._recorder.forget_before(update.steps_from)
-        self._lines.clear()
         self._path.points.clear()
         self._notes.clear()
 
@@ -371,10 +362,8 @@ class Session:
     def _packet_is_over(self, now: float) -> None:
         # Measured before recording, whose time does not count as the robot's.
         self._pace.took(wall() - self._packet_began)
-        if self._tracing:
-            self._trace.look(now)
-            if self._network is not None:
-                self._network.look(now)
+        if self._traces.is_on:
+            self._traces.look(now)
 
     def _follow(self) -> None:
         """Note the robot's place and mode. Called for every second packet."""
@@ -383,9 +372,16 @@ class Session:
         self._mode_packets[modes.mode_name() if modes.is_attached() else "disabled"] += _FOLLOW_PACKETS
         if (note := self._refresh.look()) is not None:
             self._notes.append(note)
-        if self._network is not None and not self._tracing:
-            self._network.skip(self._run.clock.now)
+        self._traces.skip(self._run.clock.now)
+        if self._replaying and wall() - self._sent_at >= _REPLAY_SECONDS:
+            self._report_replay()
         self._mark_position()
+
+    def _report_replay(self) -> None:
+        clock = self._run.clock
+        _, network_lines = self._traces.take_network(clock.now)
+        self._connection.send(Replayed(clock.now_us, self._traces.take(), network_lines))
+        self._sent_at = wall()
 
     def _mark_position(self) -> None:
         if (controller := self._controller) is not None:

@@ -34,6 +34,8 @@ def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
         return "No robot code", "error"
     if not status.responding:
         return "Not responding", "error"
+    if status.state == "starting" and status.replaying_to:
+        return f"Replaying {clock(status.replayed)} of {clock(status.replaying_to)}", "wait"
     if snapshot is None or status.state == "starting":
         return "Starting…", "wait"
     if snapshot.emergency_stopped:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ...engine.changes import Change, RunBegan
 from ...engine.network_paths import MODE
 from ..models.devices import DeviceRows, Panel
+from ..models.wording import clock
 from .console import Console
 from .marks import Marks
 from .runs import Branch, Runs
@@ -47,6 +48,13 @@ class State:
     branches: tuple[Branch, ...]
     wants_to_run: bool
     run: tuple[int, float]
+
+
+def _moment_of(state: State) -> float:
+    """Return the robot time that the robot has come to, also in a replay."""
+    if state.status.state == "starting":
+        return state.status.replayed
+    return 0.0 if state.snapshot is None else state.snapshot.time
 
 
 class Collector:
@@ -111,7 +119,7 @@ class Collector:
         simulation = self._simulation
         # Before the changes are read, so that they are at least as new as what is shown beside them.
         snapshot, status = simulation.snapshot, simulation.status
-        now = 0.0 if before.snapshot is None else before.snapshot.time
+        now = _moment_of(before)
         if output := self._output.read():
             for line in self.console.add(output, now):
                 if line.level in ("error", "warning"):
@@ -159,9 +167,10 @@ class Collector:
 
     def _look_at_hal(self, event: RunBegan | Change) -> None:
         if isinstance(event, RunBegan):
-            self.marks.forget_after(event.time)
-            if event.number > 1:
-                self.marks.add(event.time, "run", f"went on from {event.time:.2f} s" if event.time else "restarted")
+            self.marks.forget_after(event.time, except_own=event.new_code)
+            if event.number > 1 and not event.new_code:
+                what = f"went on from {clock(event.time)}" if event.time else "restarted"
+                self.marks.add(event.time, "run", what)
             self._run = event.number, event.time
         for path in _BUTTONS:
             if path in event.values:

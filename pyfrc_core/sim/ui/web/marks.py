@@ -56,9 +56,12 @@ class Marks:
             marks.remove(spare)
         self._marks = marks
 
-    def forget_after(self, time: float) -> None:
-        """Forget the marks after a moment: another run goes on from there."""
-        self._marks = [mark for mark in self._marks if mark.t <= time]
+    def forget_after(self, time: float, except_own: bool = False) -> None:
+        """Forget the marks after a moment: another run goes on from there.
+
+        :param except_own: keep those of the person, since the run comes to the same moments again
+        """
+        self._marks = [mark for mark in self._marks if mark.t <= time or (except_own and mark.kind == "own")]
         self._buttons = {}
 
     def look_at_buttons(self, time: float, path: str, pressed: Any) -> None:

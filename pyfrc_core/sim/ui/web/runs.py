@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from ...engine.changes import Change, RunBegan
 from ...engine.network_paths import MODE, POSE, TYPE, VALUE
+from ..models.wording import clock
 from .chunks import ChunkFile
 from .columns import MISSING
 from .comparison import FirstDifference
@@ -102,10 +103,10 @@ class Runs:
         """Keep the values of the run before, when those of both sources are there and the run went on further."""
         leaving = self._leaving
         if leaving is None or leaving.number != began.number:
-            name = f"before {began.time:.2f} s" if began.time else "before the restart"
-            leaving = Branch(began.number, name, began.time, 0.0)
+            leaving = Branch(began.number, "", began.time, 0.0)
         histories = {**leaving.histories, source: former}
-        self._leaving = leaving = replace(leaving, end=max(leaving.end, former.end), histories=histories)
+        end = max(leaving.end, former.end)
+        self._leaving = leaving = replace(leaving, name=_name_of(began, end), end=end, histories=histories)
         if len(histories) == len(self._histories) and leaving.end > leaving.begin + _ROUNDING:
             self.branches = (*self.branches, leaving)[-_MOST_BRANCHES:]
 
@@ -256,6 +257,16 @@ class Runs:
 
     def _branch(self, number: int) -> Branch | None:
         return next((each for each in self.branches if each.number == number), None)
+
+
+def _name_of(began: RunBegan, end: float) -> str:
+    """Return the name of the run before another one, until a person names it.
+
+    :param end: where it ended
+    """
+    if began.new_code:
+        return f"before the new code at {clock(end)}"
+    return f"before {clock(began.time)}" if began.time else "before the restart"
 
 
 @dataclass(frozen=True)
