@@ -262,5 +262,5 @@ def test_a_port_that_is_taken_is_said(make_project) -> None:
         port = other.getsockname()[1]
         result = make_project(FILES).run("sim", "--ui", "none", "--seconds", "0.1", "--nt-port", str(port))
     assert result.code == 0, result.output
-    warning = f"warning: No NetworkTables: port {port} is taken: is another simulation running?"
+    warning = f"warning: Dashboards cannot connect: port {port} is taken. Is another simulation running?"
     assert warning in result.stdout.splitlines(), result.output

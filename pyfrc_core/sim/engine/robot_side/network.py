@@ -119,6 +119,6 @@ def _problem_with(port: int) -> str | None:
             probe.bind(("", port))
         except OSError as error:
             taken = error.errno == errno.EADDRINUSE
-            why = "is taken: is another simulation running?" if taken else f"cannot be had: {error.strerror}"
-            return f"No NetworkTables: port {port} {why}"
+            why = "is taken. Is another simulation running?" if taken else f"cannot be had: {error.strerror}"
+            return f"Dashboards cannot connect: port {port} {why}"
     return None
