@@ -159,6 +159,8 @@ def command(
     printer.end(campaign.progress)
     if pages is not None:
         _write_pages(project, campaign, pages)
+    for text in campaign.hints.texts():
+        hint(f"hint: {text}")
     if campaign.real_time:
         hint(explain_real_time(campaign.real_time))
     if campaign.always_fails:

@@ -17,6 +17,7 @@ from typing import Protocol
 from ..errors import PyfrcError
 from ..project import Project
 from ..runtime.scripts.script import InputScript
+from .campaign_hints import CampaignHints
 from .corpus import Corpus, CorpusEntry, found_in
 from .describe import late_failure, story_of
 from .failure import PROCESS_ENDED, FuzzFailure
@@ -120,6 +121,7 @@ class Campaign:
     :param findings: the failures that it found
     :param interrupted: whether the user interrupted it
     :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
+    :param hints: what is no failure, but may be a mistake, in words
     :param always_fails: whether it ended because the robot fails at its start in every match
     """
 
@@ -128,6 +130,7 @@ class Campaign:
     interrupted: bool = False
     real_time: tuple[str, ...] = ()
     always_fails: bool = False
+    hints: CampaignHints = field(default_factory=CampaignHints)
 
 
 class CampaignListener(Protocol):
@@ -289,6 +292,7 @@ class _Runner:
         with closing(self._executor.play(tasks)) as results:
             for match, played in zip(matches, results, strict=True):
                 match.stream.learn(match.schedule, match.number, played)
+                self.campaign.hints.add(played.hints)
                 self._reached |= played.reached.keys()
                 self.campaign.real_time = self.campaign.real_time or played.real_time
                 progress.matches += 1

@@ -38,6 +38,7 @@ from .goals import Goal
 from .input_generator import InputGenerator
 from .inputs import Input
 from .lines import RobotLines
+from .match_hints import HintWatch, MatchHints
 from .match_plan import MatchEvent, length_of, plan_match
 from .misbehavior_notes import MisbehaviorNotes, NotedFailure
 from .network_reads import watch_network_reads
@@ -103,6 +104,7 @@ class MatchResult:
     :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
     :param noted: the failures after which the match went on
     :param went_on: whether the match went on after this failure
+    :param hints: what is no failure, but may be a mistake
     :param next_boot: what the next boot of the robot program needs; None if the match is over
     """
 
@@ -113,6 +115,7 @@ class MatchResult:
     real_time: tuple[str, ...] = ()
     noted: tuple[NotedFailure, ...] = ()
     went_on: bool = False
+    hints: MatchHints = field(default_factory=MatchHints)
     next_boot: NextBoot | None = None
 
     def each_failure(self) -> Iterator[MatchResult]:
@@ -236,6 +239,7 @@ def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: Fuz
         fuzz_run = FuzzRun(run, generator, journal)
         fuzz_run.may_lack_targets = task.schedule.base is not None
         states = RobotStates(run, project.files, task.known)
+        watch = HintWatch(run, project.files, lambda: states.containers)
 
         def step(now: float) -> None:
             nonlocal before_us
@@ -245,6 +249,7 @@ def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: Fuz
                 generator.left_out = task.schedule.left_out_at(now_us)
             before_us = now_us
             states.after_packet(now_us)
+            watch.after_packet(now_us)
             if not fuzz_run.on_packet(now) or now_us >= ends_us:
                 run.clock.halted = True
 
@@ -261,6 +266,7 @@ def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: Fuz
                     rng.setstate(boot.rng_state)
                     fuzz_run.resume(before.script.steps, boot.entries)
                 run.start()
+                watch.measure_loops()
                 run.run_until(run.clock.limit_us + 1)
             except (TestEnded, TestRanTooLong):
                 pass
@@ -277,6 +283,7 @@ def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: Fuz
             generator.inputs,
             real_time,
             tuple(notes.found),
+            hints=watch.hints(),
             next_boot=next_boot,
         )
         return _joined(before, played)

@@ -17,6 +17,7 @@ from ..compat.wpilib_private import is_state_of_machine, scheduled_commands
 from ..project.robot_files import RobotFiles
 from ..runtime.robot import RobotRun
 from .goals import STATE, Goal
+from .growth import CONTAINERS
 
 #: When attributes are searched for, in packets: objects may appear during a match.
 _SEARCHES = frozenset({1, 10, 60, 200, 500, 1000})
@@ -51,6 +52,8 @@ class RobotStates:
     def __init__(self, run: RobotRun, files: RobotFiles, known: frozenset[Goal]) -> None:
         #: The goals that were reached, and when, in microseconds.
         self.reached: dict[Goal, int] = {}
+        #: The attributes with elements, by path: their owner's attributes, and their name.
+        self.containers: dict[str, tuple[dict[str, object], str]] = {}
         self._run = run
         self._files = files
         self._known = known
@@ -127,6 +130,8 @@ class RobotStates:
 
     def _observe(self, path: str, owner: dict[str, object], now_us: int) -> None:
         for name in list(owner):
+            if isinstance(owner[name], CONTAINERS):
+                self.containers.setdefault(f"{path}{name}", (owner, name))
             if (id(owner), name) in self._found or len(self._found) >= _MOST_ATTRIBUTES:
                 continue
             if _text_of(owner[name]) is not None:

@@ -1,0 +1,111 @@
+"""What is no failure, but may be a mistake: it is noted in each match, and shown once at the end of a campaign."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..project.robot_files import RobotFiles
+from ..runtime.clock import PACKET_US
+from ..runtime.robot import RobotRun
+from .growth import Containers, Growth, Growths
+from .unfinished_commands import UnfinishedCommands
+
+#: How many loops of a match may take long: Python collects garbage in some, and reads modules in others.
+_SLOW_AT_TIMES = 5
+#: How many loops are measured after one that may have taken long.
+_MEASURED = 50
+
+
+@dataclass(frozen=True)
+class MatchHints:
+    """What one match shows.
+
+    :param growths: what grew all the time
+    :param unfinished: the commands that ran for long, and for how long, in microseconds
+    :param finished: the commands that ended because they were finished
+    :param loop_seconds: the processor time of a long loop; a few loops took longer
+    :param period: the period of these loops, in seconds
+    """
+
+    growths: tuple[Growth, ...] = ()
+    unfinished: dict[str, int] = field(default_factory=dict)
+    finished: frozenset[str] = frozenset()
+    loop_seconds: float = 0.0
+    period: float = PACKET_US / 1_000_000
+
+
+class LoopTimes:
+    """Measures the processor time of loops of a `TimedRobot`, which has been started.
+
+    Reading it takes microseconds on some systems. So it is read only for the loops that follow one which took longer
+    than its period in real time: no loop needs more processor time than that.
+    """
+
+    def __init__(self, run: RobotRun) -> None:
+        self._longest: list[float] = [0.0] * (_SLOW_AT_TIMES + 1)
+        self._measures_next = 0
+        self.period = PACKET_US / 1_000_000
+        if (main := run.timed_loop.main) is not None:
+            self.period = main.period_us / 1_000_000
+            main.call = self._measured(main.call)
+
+    @property
+    def seconds(self) -> float:
+        """Return the time that only a few loops exceeded."""
+        return self._longest[-1]
+
+    def _measured(self, call: Callable[[], Any]) -> Callable[[], Any]:
+        period, real_time, processor_time = self.period, time.perf_counter, time.thread_time
+
+        def measured() -> None:
+            __tracebackhide__ = True
+            if not self._measures_next:
+                began = real_time()
+                call()
+                if real_time() - began > period:
+                    self._measures_next = _MEASURED
+                return
+            self._measures_next -= 1
+            began = processor_time()
+            call()
+            took = processor_time() - began
+            if took > self._longest[-1]:
+                self._longest[-1] = took
+                self._longest.sort(reverse=True)
+
+        return measured
+
+
+class HintWatch:
+    """Watches one match for hints.
+
+    :param containers: see `Growths`
+    """
+
+    def __init__(self, run: RobotRun, files: RobotFiles, containers: Containers) -> None:
+        self._run = run
+        self._growths = Growths(containers)
+        self._commands = UnfinishedCommands(run.clock, files)
+        self._loops: LoopTimes | None = None
+
+    def measure_loops(self) -> None:
+        """Measure loops from now on; the robot has been started."""
+        self._loops = LoopTimes(self._run)
+
+    def after_packet(self, now_us: int) -> None:
+        """Look at the robot once in each packet."""
+        self._growths.after_packet(now_us)
+        self._commands.after_packet()
+
+    def hints(self) -> MatchHints:
+        """Return what the match shows; it is over."""
+        commands = self._commands
+        commands.end()
+        growths = tuple(self._growths.found())
+        if self._loops is None:
+            return MatchHints(growths, commands.longest, frozenset(commands.finished))
+        loops = self._loops
+        return MatchHints(growths, commands.longest, frozenset(commands.finished), loops.seconds, loops.period)

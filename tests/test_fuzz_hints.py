@@ -1,0 +1,126 @@
+"""Hints at the end of a campaign: what grows, commands that are never finished, and loops that compute for long."""
+
+from __future__ import annotations
+
+import time
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pyfrc_core.fuzz.campaign_hints import CampaignHints
+from pyfrc_core.fuzz.growth import Growth, Growths
+from pyfrc_core.fuzz.match_hints import LoopTimes, MatchHints
+from pyfrc_core.runtime.timed_loop import Periodic
+
+ROBOT = """
+    import commands2
+    import wpilib
+
+    class Lift(commands2.Subsystem):
+        height = 0.0
+
+    class Climb(commands2.Command):
+        def __init__(self, lift):
+            super().__init__()
+            self.lift = lift
+
+        def isFinished(self):  # it never is
+            return self.lift.height > 5
+
+    class Wait(Climb):
+        def isFinished(self):
+            return False
+
+    class Up(Climb):
+        def isFinished(self):
+            return self.lift.height < 5
+
+    class Hold(Climb):
+        def isFinished(self):
+            return self.lift.height > 6
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.history, self.lift = [], Lift()
+            hold = Hold(self.lift)
+            hold.addRequirements(self.lift)
+            self.lift.setDefaultCommand(hold)
+
+        def robotPeriodic(self):
+            commands2.CommandScheduler.getInstance().run()
+            self.history.append(0.0)
+
+        def teleopInit(self):
+            for kind in (Climb, Wait, Up):
+                kind(self.lift).schedule()
+    """
+
+
+def test_a_campaign_ends_with_hints(make_project: Any) -> None:
+    project = make_project({"robot.py": ROBOT})
+    fuzzed = project.run("fuzz", "--seed", "3", "--runs", "12")
+    assert fuzzed.code == 0, fuzzed.output
+    hints = [line for line in fuzzed.output.splitlines() if line.startswith("hint: ")]
+    assert len(hints) == 2, fuzzed.output
+    assert hints[0].startswith("hint: robot.history grows all the time: by about 50 elements a second, to 1")
+    line = project.place("robot.py", "it never is")
+    assert hints[1].startswith(f"hint: {line}: Climb.isFinished() was never true: the command ran for up to ")
+
+
+def growths_of(sizes: list[int]) -> list[Growth]:
+    attributes: dict[str, object] = {"log": []}
+    growths = Growths(lambda: {"arm.log": (attributes, "log")})
+    for second, size in enumerate(sizes):
+        attributes["log"] = [0] * size
+        growths.after_packet((second + 1) * 4_000_000)
+    return list(growths.found())
+
+
+def test_what_grows_all_the_time() -> None:
+    assert growths_of([0, 40, 90, 130, 200, 250]) == [Growth("arm.log", 12.5, 250)]
+
+
+@pytest.mark.parametrize(
+    "sizes", [[0, 100, 200, 300, 400], [0, 100, 200, 200, 300, 400], [0, 100, 50, 200, 300, 400], [5] * 6]
+)
+def test_what_does_not(sizes: list[int]) -> None:
+    assert growths_of(sizes) == []
+
+
+def seconds_measured(call: Any, period_us: int) -> float:
+    loop = Periodic(call, 0, period_us)
+    times = LoopTimes(SimpleNamespace(timed_loop=SimpleNamespace(main=loop)))  # type: ignore[arg-type]
+    for _ in range(7):
+        loop.call()
+    return times.seconds
+
+
+def test_loops_are_measured_after_one_that_took_long() -> None:
+    def compute() -> None:
+        began = time.thread_time()
+        while time.thread_time() - began < 0.002:
+            pass
+
+    assert seconds_measured(compute, period_us=1_000) >= 0.002
+    assert seconds_measured(compute, period_us=3_600_000_000) == 0.0
+
+
+def test_loops_that_compute_for_long_in_five_matches() -> None:
+    campaign = CampaignHints()
+    for seconds in (0.03, 0.05, 0.04, 0.01, 0.07):
+        campaign.add(MatchHints(loop_seconds=seconds))
+    assert not list(campaign.texts())
+    campaign.add(MatchHints(loop_seconds=0.06))
+    (text,) = campaign.texts()
+    assert "need 50 ms of processor time or more on this computer, and a period is 20 ms (5 matches)" in text
+
+
+def test_a_command_that_was_finished_once_is_no_hint() -> None:
+    campaign = CampaignHints()
+    for _ in range(5):
+        campaign.add(MatchHints(unfinished={"robot.py:3: Climb.isFinished()": 9_000_000}))
+    (text,) = campaign.texts()
+    assert text == "robot.py:3: Climb.isFinished() was never true: the command ran for up to 9 s (5 matches)"
+    campaign.add(MatchHints(finished=frozenset({"robot.py:3: Climb.isFinished()"})))
+    assert not list(campaign.texts())
