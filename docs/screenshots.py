@@ -1,7 +1,7 @@
-"""Makes the pictures in docs/images from the simulator's real window.
+"""Makes the pictures in docs/images from the simulator's real window and page.
 
-Run it with ``python docs/screenshots.py``. It needs Xvfb (Debian's package xvfb) and Pillow; the letters are those of
-the machine that it runs on.
+Run it with ``python docs/screenshots.py``, or ``python docs/page_screenshots.py`` for those of the page alone. It needs
+Xvfb (Debian's package xvfb), Chromium and Pillow; the window's letters are those of the machine that it runs on.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
+from page_screenshots import take_page_pictures  # noqa: E402
 from PIL import Image, ImageGrab  # noqa: E402
 from virtual_display import virtual_display  # noqa: E402
 
@@ -148,6 +149,7 @@ def main() -> None:
             with tempfile.TemporaryDirectory() as directory:
                 take_pictures(make_project(Path(directory)), display.name, suffix)
             gc.collect()  # what is Tk's can be tidied away in this thread only
+    take_page_pictures()
     print(*sorted(file.name for file in IMAGES.iterdir()), sep="\n")
 
 

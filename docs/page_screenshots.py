@@ -1,0 +1,111 @@
+"""Makes the pictures of the page of ``pyfrc sim --ui web`` in docs/images, in a real browser.
+
+``python docs/screenshots.py`` runs it, too. It needs Chromium, playwright and Pillow.
+"""
+
+from __future__ import annotations
+
+import io
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Literal
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+
+from browser_pages import open_browser  # noqa: E402
+from PIL import Image  # noqa: E402
+from web_pages import Served, served  # noqa: E402
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+IMAGES = ROOT / "docs" / "images"
+PATIENCE = 60.0
+
+
+def save(page: Page, name: str) -> None:
+    """Save a picture in few colours: a repository is no place for large files."""
+    page.wait_for_timeout(800)  # until everything has been drawn
+    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    picture.quantize(128, dither=Image.Dither.NONE).save(IMAGES / f"{name}.png", optimize=True)
+
+
+def run_for(server: Served, seconds: float) -> None:
+    """Wait until this much robot time has passed."""
+    simulation = server.simulation
+    assert simulation.snapshot is not None
+    end = simulation.snapshot.time + seconds
+    simulation.wait_for(lambda: simulation.snapshot is not None and simulation.snapshot.time >= end, PATIENCE)
+
+
+def open_page(browser: Browser, server: Served, theme: Literal["light", "dark"]) -> Page:
+    page = browser.new_page(viewport={"width": 1366, "height": 768}, color_scheme=theme)
+    page.goto(server.address)
+    page.locator(".state.disabled").wait_for()
+    return page
+
+
+def choose_layout(page: Page, name: str) -> None:
+    page.get_by_title("Layout", exact=True).click()
+    page.get_by_role("menuitemcheckbox", name=name).click()
+
+
+def plot(page: Page, panel: str, *paths: str) -> None:
+    """Plot values, as dragging them to the plot does."""
+    page.evaluate(
+        "([panel, paths]) => import('/static/js/plotting.js').then((m) => paths.forEach((p) => m.addToPlot(p, panel)))",
+        [panel, list(paths)],
+    )
+
+
+def drive_swerve(browser: Browser, server: Served) -> None:
+    """The driving layout: a swerve robot in a curve, with its arrows."""
+    page = open_page(browser, server, "light")
+    server.simulation.enable()
+    for sideways, turn, seconds in ((0.0, 0.0, 0.8), (0.35, 0.1, 1.2), (-0.5, -0.12, 1.6)):
+        for axis, value in ((1, -0.6), (0, sideways), (4, turn)):
+            server.simulation.set_axis(0, axis, value)
+        run_for(server, seconds)
+    server.simulation.pause()
+    save(page, "browser")
+    page.close()
+
+
+def tune_elevator(browser: Browser, server: Served) -> None:
+    """The tuning layout in the dark, at an earlier moment: plots, the controllers' numbers, the mechanism."""
+    page = open_page(browser, server, "dark")
+    choose_layout(page, "Tuning")
+    plot(page, "plot:1", "nt:/SmartDashboard/Elevator height", "nt:/SmartDashboard/Arm angle")
+    plot(page, "plot:2", "pwm[0].value", "pwm[1].value")
+    page.get_by_role("tab", name="Mechanism", exact=True).click()
+    server.simulation.enable()
+    for button in (1, 2, 4, 3):
+        server.simulation.set_button(0, button, True)
+        run_for(server, 0.1)
+        server.simulation.set_button(0, button, False)
+        run_for(server, 1.8)
+    server.simulation.pause()
+    page.wait_for_timeout(500)
+    box = page.locator(".timeline").bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + box["width"] * 0.62, box["y"] + 14)
+    save(page, "browser-past")
+    page.close()
+
+
+def take_page_pictures() -> None:
+    """Take the pictures of the page, each of a new project."""
+    with tempfile.TemporaryDirectory() as directory, open_browser() as browser:
+        for template, take in (("swerve", drive_swerve), ("elevator-arm", tune_elevator)):
+            project = Path(directory, template)
+            shutil.copytree(ROOT / "templates" / template, project)
+            with served(SimpleNamespace(path=project), speed=1, paused=False) as server:
+                take(browser, server)
+
+
+if __name__ == "__main__":
+    take_page_pictures()
