@@ -160,7 +160,8 @@ def test_it_starts_on_a_robot(
 
 def _install_real_packages(there: Path) -> None:
     """Put what the templates import into the look-alike, instead of its own stand-in for wpilib."""
-    shutil.rmtree(there / "wpilib")
+    for name in ("wpilib", "wpimath"):
+        shutil.rmtree(there / name)
     (there / "sitecustomize.py").unlink()  # the packages look at Python's version
     for name in ON_THE_ROBOT:
         spec = importlib.util.find_spec(name)

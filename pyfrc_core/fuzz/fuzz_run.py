@@ -35,6 +35,7 @@ class FuzzRun:
         #: Whether the robot program is started again now: the run ends.
         self.restarts = False
         self._targets = Targets(run.hal_data, run.connection.packet)
+        run.at_close(self._targets.close)
         generator.write_at_once = self._apply
 
     def write(self) -> None:

@@ -130,6 +130,10 @@ class RobotRun:
         self._started = self._ended = False
         self._closing = contextlib.ExitStack()
 
+    def at_close(self, call: Callable[[], object]) -> None:
+        """Call this before the HAL is released."""
+        self._closing.callback(call)
+
     def open(self) -> None:
         """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
         deferred_imports.import_all()

@@ -308,8 +308,8 @@ class Roborio:
             metadata.write_text(metadata.read_text().replace("@IMAGE_VERSION@", image))
         packages = self.disk / "usr/local/lib/python3.14/site-packages"
         if wpilib is None:
-            shutil.rmtree(packages / "wpilib")
-            shutil.rmtree(packages / "robotpy")
+            for name in ("wpilib", "wpimath", "robotpy"):
+                shutil.rmtree(packages / name)
         else:
             with (packages / "wpilib/__init__.py").open("a") as file:
                 file.write(f'\n__version__ = "{wpilib}"\n')

@@ -46,10 +46,11 @@ def parse_entry_target(target: str) -> tuple[str, str]:
 
 
 class NetworkEntries:
-    """Writes to entries of NetworkTables."""
+    """Writes to entries of NetworkTables, until it is closed."""
 
     def __init__(self) -> None:
         self._writers: dict[str, Callable[[Any], None]] = {}
+        self._unpublish: list[Callable[[], object]] = []
 
     def write(self, target: str, value: object) -> None:
         """Write one value.
@@ -58,14 +59,29 @@ class NetworkEntries:
         """
         writer = self._writers.get(target)
         if writer is None:
-            writer = self._writers[target] = _writer(*parse_entry_target(target))
+            writer = self._writers[target] = _writer(*parse_entry_target(target), self._unpublish.append)
         writer(value)
 
+    def close(self) -> None:
+        """Unpublish what was written.
 
-def _writer(name: str, type_name: str) -> Callable[[Any], None]:
+        In a later run in this process, NetworkTables would take these values for newer than all that is written then.
+        """
+        for unpublish in self._unpublish:
+            unpublish()
+        self._writers.clear()
+        self._unpublish.clear()
+
+
+def _writer(name: str, type_name: str, at_end: Callable[[Callable[[], object]], object]) -> Callable[[Any], None]:
+    """Return what writes an entry.
+
+    :param at_end: is given what unpublishes it
+    """
     network = ntcore.NetworkTableInstance.getDefault()
     if type_name.startswith(_STRUCT):
         publisher = network.getRawTopic(name).publish(type_name)
+        at_end(publisher.close)
 
         def write_struct(value: Sequence[float]) -> None:
             try:
@@ -75,6 +91,7 @@ def _writer(name: str, type_name: str) -> Callable[[Any], None]:
 
         return write_struct
     entry = network.getEntry(name)
+    at_end(entry.unpublish)
     if not type_name:
         return lambda value: _write_plain(entry, value)
     if type_name not in MAKE_VALUE:

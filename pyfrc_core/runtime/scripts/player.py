@@ -22,6 +22,7 @@ class Player:
         self._script = script
         self._run = run
         self._targets = Targets(run.hal_data, run.connection.packet)
+        run.at_close(self._targets.close)
         self._steps = iter(script.steps)
         self._next = next(self._steps, None)
         for step in script.steps:

@@ -75,6 +75,10 @@ class Targets:
         self._controls: dict[str, tuple[Any, Any]] = {}
         self._countdown = Countdown()
 
+    def close(self) -> None:
+        """Leave nothing to later runs in this process."""
+        self._entries.close()
+
     def write(self, target: str, value: Any, now_us: int) -> None:
         """Write one value.
 
