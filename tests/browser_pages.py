@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from sim_robots import FILES, PATIENCE
-from skips import missing_programs
+from skips import missing_programs, require
 from web_pages import Served, served
 
 if TYPE_CHECKING:
@@ -209,7 +209,8 @@ class Seen:
 
 @pytest.fixture(scope="module", name="browser")
 def shared_browser() -> Iterator[Browser]:
-    """One browser for the tests of a module."""
+    """One browser for the tests of a module, which are skipped where there is none."""
+    require("the page of pyfrc sim in a browser", missing_browser())
     with open_browser() as browser:
         yield browser
 

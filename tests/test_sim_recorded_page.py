@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser_pages import HOSTILE, ROBOT, missing_browser, shared_browser  # noqa: F401 - `browser`
+from browser_pages import HOSTILE, ROBOT, shared_browser  # noqa: F401 - `browser`
 from recorded_pages import run_in
 from sim_robots import FILES
-from skips import require
 
 from pyfrc_core.sim.ui.web.columns import MISSING
 from pyfrc_core.sim.ui.web.history import History
@@ -46,7 +45,6 @@ def recorded(make_shared_project: Any) -> Any:
 @pytest.fixture
 def page(recorded: Any, browser: Any) -> Iterator[Any]:
     """The page, opened from disk without a network; it may report no error, and may ask for nothing."""
-    require("the page of pyfrc sim in a browser", missing_browser())
     context = browser.new_context(viewport={"width": 1366, "height": 768}, offline=True)
     try:
         page = context.new_page()
