@@ -1,0 +1,169 @@
+"""How quickly the page of `pyfrc sim --ui web` shows what happens, and what its server costs.
+
+    python benchmarks/sim_page.py [--robot tests/robots/competition/rev_swerve]
+
+Needs Chromium, and pyfrc's development requirements. README.md beside it says what is measured, and how.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+CHECKOUT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(CHECKOUT / "tests"))
+
+from browser_pages import open_browser  # noqa: E402
+
+ROBOT = CHECKOUT / "tests/robots/competition/rev_swerve"
+#: A motor that follows the key W at once, after the line in `robotInit` and before the end of `robotPeriodic`.
+MOTOR = (
+    ("    def robotInit(self) -> None:\n", "        self.at_once = wpilib.PWMSparkMax(19)\n"),
+    ("    def robotPeriodic(self) -> None:\n", "        self.at_once.set(-wpilib.DriverStation.getStickAxis(0, 1))\n"),
+)
+PRESSES, MOMENTS, SECONDS = 40, 60, 5.0
+
+#: Press and release a key, and wait until the motor's number is drawn: milliseconds of each.
+KEY_TO_MOTOR = """async (presses) => {
+  const number = () => document.querySelector("[data-path='pwm[19].value'] .number").textContent;
+  const frame = () => new Promise(requestAnimationFrame);
+  const found = [];
+  for (let press = 0; press < presses; press++) {
+    await new Promise((resolve) => setTimeout(resolve, 130 + 40 * Math.random()));
+    const [kind, wanted] = press % 2 ? ["keyup", "0.00"] : ["keydown", "1.00"];
+    const began = performance.now();
+    dispatchEvent(new KeyboardEvent(kind, { key: "w", code: "KeyW", bubbles: true }));
+    do await frame(); while (number() !== wanted && performance.now() - began < 3000);
+    found.push(performance.now() - began);
+  }
+  return found;
+}"""
+
+#: Count frames for some seconds: frames a second, and the longest, in milliseconds.
+FRAMES = """(seconds) => new Promise((resolve) => {
+  const began = performance.now();
+  let last = began, count = 0, longest = 0;
+  const frame = () => {
+    const now = performance.now();
+    count += 1;
+    longest = Math.max(longest, now - last);
+    last = now;
+    if (now - began < 1000 * seconds) requestAnimationFrame(frame);
+    else resolve([count / ((now - began) / 1000), longest]);
+  };
+  requestAnimationFrame(frame);
+})"""
+
+PLOT = """(paths) => import("/static/js/plotting.js").then(({ addToPlot }) => {
+  paths.forEach((path, index) => addToPlot(path, index % 2 ? "plot:1" : "plot:2"));
+})"""
+
+#: Look at moments of the whole run at random, until every panel has its values: milliseconds of each.
+SEEK = """async (moments) => {
+  const { model } = await import("/static/js/model.js");
+  const { look, length } = await import("/static/js/past.js");
+  const found = [];
+  for (let index = 0; index < moments; index++) {
+    const t = Math.round(Math.random() * length() / 0.02) * 0.02;
+    const began = performance.now();
+    const shown = new Promise((resolve) => {
+      const stop = model.listen(() => model.past && Math.abs(model.past.t - t) < 1e-6 && (stop(), resolve()));
+    });
+    look(t);
+    await shown;
+    await new Promise(requestAnimationFrame);
+    found.push(performance.now() - began);
+  }
+  return found;
+}"""
+
+MODEL = "import('/static/js/model.js').then(({ model }) => [model.t, model.values.size])"
+
+
+@contextmanager
+def serving(robot: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """Simulate a copy of a robot that has a motor of its own for the key W; the process, and the page's address."""
+    with TemporaryDirectory() as directory:
+        project = Path(shutil.copytree(robot, Path(directory) / "robot"))
+        code = (project / "robot.py").read_text("utf-8")
+        for place, line in MOTOR:
+            heading, docstring = re.escape(place), r'(?:        """.*"""\n)?'
+            code, count = re.subn(f"({heading}{docstring})", rf"\g<1>{line}", code)
+            assert count == 1, f"{project / 'robot.py'} has no {place.strip()}"
+        (project / "robot.py").write_text(code, "utf-8")
+        command = [sys.executable, "-m", "pyfrc", "sim", "--ui", "web", "--nt-port", "0", *options]
+        environment = {**os.environ, "DISPLAY": "", "WAYLAND_DISPLAY": "", "PYTHONUNBUFFERED": "1"}
+        with subprocess.Popen(command, cwd=project, env=environment, text=True, stdout=subprocess.PIPE) as process:
+            assert process.stdout is not None
+            try:
+                yield process, next(match[0] for line in process.stdout if (match := re.search(r"http://\S+", line)))
+            finally:
+                process.terminate()
+
+
+def processor_seconds(process: int) -> float:
+    """Return the processor time that a process has used, without its children, in seconds."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def opened(browser: Any, address: str, layout: str) -> Any:
+    """Open the page with one of its layouts, when the robot has started."""
+    page = browser.new_page(viewport={"width": 1366, "height": 768})
+    page.goto(address)
+    page.locator(".state.disabled").wait_for(timeout=60_000)
+    page.get_by_title("Layout", exact=True).click()
+    page.get_by_role("menuitemcheckbox", name=layout).click()
+    return page
+
+
+def line(what: str, found: list[float], unit: str) -> str:
+    """Return the median, and what nine of ten are below."""
+    return f"{what:46} {statistics.median(found):6.1f} {unit}, 90 %: {sorted(found)[len(found) * 9 // 10]:6.1f} {unit}"
+
+
+def main() -> None:
+    """Measure, and print."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--robot", type=Path, default=ROBOT, help="a robot whose autonomous and teleop need no person")
+    robot = parser.parse_args().robot
+    with open_browser() as browser:
+        with serving(robot) as (process, address):
+            page = opened(browser, address, "Driving")
+            page.get_by_role("button", name="Enable", exact=True).click()
+            page.locator(".state.enabled").wait_for()
+            print(line("key to drawn motor", page.evaluate(KEY_TO_MOTOR, PRESSES), "ms"), flush=True)
+            page.get_by_title("Layout", exact=True).click()
+            page.get_by_role("menuitemcheckbox", name="Tuning").click()
+            axes = [f"joysticks[0].axes[{axis}]" for axis in range(4)]
+            page.evaluate(PLOT, [*axes, "pwm[19].value", "sim.pose[0]", "sim.pose[1]", "sim.pose[2]"])
+            page.keyboard.down("w")
+            before = processor_seconds(process.pid)
+            frames, longest = page.evaluate(FRAMES, SECONDS)
+            share = (processor_seconds(process.pid) - before) / SECONDS
+            values = page.evaluate(MODEL)[1]
+            print(f"{'frames while 8 values are plotted':46} {frames:6.1f} a second, the longest {longest:.0f} ms")
+            print(f"{f'server, {values} values':46} {100 * share:6.1f} % of a core", flush=True)
+        with serving(robot, "--speed", "0") as (process, address):
+            page = opened(browser, address, "Driving")
+            page.get_by_role("button", name="Practice", exact=True).click()
+            page.locator(".state.enabled").wait_for(timeout=60_000)
+            while page.evaluate(MODEL)[0] < 150:
+                page.wait_for_timeout(200)
+            page.keyboard.press("F5")
+            page.get_by_role("button", name="Run", exact=True).first.wait_for()
+            print(line("a moment of a match of 150 s, in every panel", page.evaluate(SEEK, MOMENTS), "ms"))
+
+
+if __name__ == "__main__":
+    main()
