@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
-from ..processes.call import ForkedCall, run_in_subprocess
+from ..processes.call import ForkedCall, can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
-from ..processes.fork import FORK_IS_SAFE, wait_for_any
 from ..project import Project
 from ..runtime.scripts.boots import PersistentEntry, persistent_entries
 
@@ -54,33 +53,28 @@ class BootResult(Protocol):
 Result = TypeVar("Result", bound=BootResult)
 
 
-def play_boots(project: Project, play_boot: Callable[[Project, CrashLog, Result | None], Result]) -> Result:
-    """Play one boot after the other, and return the result of the last one, which contains those before.
+class PlayBoot(Protocol[Result]):
+    """Plays one boot in this process, which must end afterwards; can be pickled."""
 
-    :param play_boot: called in another process with the result of the boots before; can be pickled
+    def __call__(self, project: Project, log: CrashLog, before: Result | None) -> Result:
+        """Return the result, which contains that of the boots before."""
+
+
+def play_boots(project: Project, play_boot: PlayBoot[Result]) -> Result:
+    """Play one boot after the other, each in another process, and return the result of the last one.
+
     :raises RobotCodeError: when a process ends without a result
     """
     played: Result | None = None
     while played is None or played.next_boot is not None:
-        played = _call(project, partial(_play_boot, play_boot=play_boot, before=played))
+        played = _call(project, partial(play_boot, before=played))
     return played
 
 
-def _play_boot(
-    project: Project,
-    log: CrashLog,
-    play_boot: Callable[[Project, CrashLog, Result | None], Result],
-    before: Result | None,
-) -> Result:
-    return play_boot(project, log, before)
-
-
 def _call(project: Project, work: Callable[[Project, CrashLog], Result]) -> Result:
-    if not FORK_IS_SAFE or project.settings.test.isolation == "spawn":
+    if not can_fork(project):
         return run_in_subprocess(work, project, MEANWHILE)
-    call: ForkedCall[Result] = ForkedCall(lambda log: work(project, log))
+    call: ForkedCall[Result] = ForkedCall(partial(work, project))
     with closing(call):
-        while not call.finished:
-            wait_for_any([call.fileno()])
-            call.poll()
+        call.wait()
         return call.result(project.files, MEANWHILE)

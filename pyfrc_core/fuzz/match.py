@@ -128,7 +128,7 @@ class MatchResult:
             yield replace(self, noted=())
 
 
-def play(project: Project, task: Task, log: CrashLog) -> MatchResult:
+def play(project: Project, log: CrashLog, task: Task) -> MatchResult:
     """Run one task in this process, which must end afterwards.
 
     :param log: where to write a crash report when the robot's code cannot be stopped

@@ -21,9 +21,9 @@ from typing import Any, TypeVar
 from ..compat.wpilib_private import NETWORK_LOG
 from ..errors import RobotCodeError
 from ..hal import devices_exist
-from ..processes.call import ForkedCall, run_in_subprocess
+from ..processes.call import ForkedCall, can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
-from ..processes.fork import FORK_IS_SAFE, wait_for_any
+from ..processes.fork import wait_for_any
 from ..project import Project
 from ..runtime.clock import to_us
 from ..runtime.fork_obstacles import reasons_not_to_fork
@@ -139,7 +139,7 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[MatchExecutor]:
     :raises RobotCodeError: when the robot's code cannot be imported
     """
     with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary:
-        if project.settings.test.isolation == "spawn" or not FORK_IS_SAFE:
+        if not can_fork(project):
             yield SpawnedMatchExecutor(project, jobs, Path(temporary))
             return
         with closing(ForkedMatchExecutor(project, jobs, Path(temporary))) as executor:
@@ -195,17 +195,13 @@ class SpawnedMatchExecutor(PooledMatchExecutor):
         return ThreadPoolExecutor(self.jobs)
 
     def _call(self, task: Task) -> Callable[[], MatchResult]:
-        return partial(run_in_subprocess, partial(_play, task=task), self.project, MEANWHILE)
+        return partial(run_in_subprocess, partial(play, task=task), self.project, MEANWHILE)
 
     def _match_result(self, task: Task, future: Future[MatchResult]) -> MatchResult:
         try:
             return future.result()
         except RobotCodeError as ended:
             return self._died(task, str(ended))
-
-
-def _play(project: Project, log: CrashLog, task: Task) -> MatchResult:
-    return play(project, task, log)
 
 
 def _all_lines(project: Project, log: CrashLog) -> frozenset[Line]:
@@ -274,7 +270,7 @@ class ForkedMatchExecutor(MatchExecutor):
     def _begin(self, task: Task) -> ForkedCall[MatchResult]:
         if self._imported and isinstance(task, FuzzTask):
             robot_lines(self.project).prepare(task.known_to_all)
-        work = ForkedCall(lambda log: play(self.project, task, log))
+        work = ForkedCall(lambda log: play(self.project, log, task))
         self._running.append(work)
         return work
 
@@ -289,7 +285,5 @@ class ForkedMatchExecutor(MatchExecutor):
     def _do(self, what: Callable[[], Answer]) -> Answer:
         work = ForkedCall(lambda log: what())
         with closing(work):
-            while not work.finished:
-                wait_for_any([work.fileno()])
-                work.poll()
+            work.wait()
             return work.result(self.project.files, "while it was imported")

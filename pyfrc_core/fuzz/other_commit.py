@@ -7,9 +7,8 @@ from contextlib import closing, contextmanager, suppress
 from functools import partial
 from multiprocessing.connection import Pipe
 
-from ..processes.call import ForkedCall, run_in_subprocess
+from ..processes.call import ForkedCall, can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
-from ..processes.fork import FORK_IS_SAFE, wait_for_any
 from ..project import Project
 from .match import MatchResult, ReplayTask
 from .match_executor import open_match_executor
@@ -30,7 +29,7 @@ def open_other_commit(project: Project, jobs: int) -> Iterator[tuple[Play, bool]
     :param project: the project as it was
     :param jobs: how many matches to run at a time
     """
-    if project.settings.test.isolation == "spawn" or not FORK_IS_SAFE:
+    if not can_fork(project):
         yield lambda tasks: run_in_subprocess(partial(_play_all, tasks=tasks, jobs=jobs), project, _MEANWHILE), False
         return
     with closing(_ForkedCommit(project, jobs)) as other:
@@ -63,20 +62,15 @@ class _ForkedCommit:
             self._connection.send(tasks)
             results: list[MatchResult] = self._connection.recv()
             return results
-        self._wait()
+        self._call.wait()
         self._call.result(self._project.files, _MEANWHILE)
         raise AssertionError("the process has ended without an error")
 
     def close(self) -> None:
         """End the process, and remove its temporary files."""
         self._connection.close()
-        self._wait()
+        self._call.wait()
         self._call.close()
-
-    def _wait(self) -> None:
-        while not self._call.finished:
-            wait_for_any([self._call.fileno()])
-            self._call.poll()
 
 
 def _play_all(project: Project, log: CrashLog, tasks: Sequence[ReplayTask], jobs: int) -> list[MatchResult]:

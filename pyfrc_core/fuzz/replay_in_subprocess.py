@@ -7,11 +7,10 @@ from pathlib import Path
 
 from ..errors import RobotCodeError
 from ..processes.call import run_in_subprocess
-from ..processes.crash_report import CrashLog
 from ..project import Project
 from ..runtime.scripts.script import InputScript
 from .boots import MEANWHILE
-from .match import MatchResult, ReplayTask, play
+from .match import ReplayTask, play
 
 
 def replay_in_subprocess(project: Project, script: InputScript, trace: Path | None = None) -> None:
@@ -24,11 +23,7 @@ def replay_in_subprocess(project: Project, script: InputScript, trace: Path | No
     :raises ScriptError: when something cannot be written, or the robot has no such device
     """
     task = ReplayTask(script, use_oracle=bool(script.story), trace=trace, ignores_missing=False)
-    played = run_in_subprocess(partial(_play, task=task), project, MEANWHILE)
+    played = run_in_subprocess(partial(play, task=task), project, MEANWHILE)
     failures = [each.failure for each in played.each_failure() if each.failure is not None]
     if failures:
         raise RobotCodeError(failures[-1].text)
-
-
-def _play(project: Project, log: CrashLog, task: ReplayTask) -> MatchResult:
-    return play(project, task, log)

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 
 from ..errors import PyfrcError
-from ..processes.call import run_in_subprocess
+from ..processes.call import can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
-from ..processes.fork import FORK_IS_SAFE
 from ..project import Project
 from ..runtime.scripts.script import InputScript
 from .describe import story_of
@@ -40,7 +39,7 @@ def shrink_in_subprocess(
 
     :param most_runs: how many robots to run
     """
-    if not FORK_IS_SAFE or project.settings.test.isolation == "spawn":
+    if not can_fork(project):
         return Shrunk(None, why_not="making it short takes hundreds of processes, and they cannot be forked here")
     work = partial(_shrink, script=script, failure=failure, inputs=dict(inputs), most_runs=most_runs)
     try:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from ..errors import PyfrcError, RobotCodeError, text_of
 from .crash_report import CrashLog
+from .fork import FORK_IS_SAFE, wait_for_any
 from .worker import ForkedWorker, Send, SpawnedWorker, Worker
 
 if TYPE_CHECKING:
@@ -29,6 +30,11 @@ class _FailedThere(Exception):
 
     def __str__(self) -> str:
         return f"\n{self.args[0]}"
+
+
+def can_fork(project: Project) -> bool:
+    """Return whether robot code may run in forks of this process: where that is safe, and the settings allow it."""
+    return FORK_IS_SAFE and project.settings.test.isolation != "spawn"
 
 
 def run_in_subprocess(work: Callable[[Project, CrashLog], Answer], project: Project, meanwhile: str) -> Answer:
@@ -70,6 +76,12 @@ class ForkedCall(Generic[Answer]):
     def poll(self) -> None:
         """See whether it has finished."""
         self._worker.poll()
+
+    def wait(self) -> None:
+        """Wait until it has finished."""
+        while not self.finished:
+            wait_for_any([self.fileno()])
+            self.poll()
 
     def close(self) -> None:
         """End the process, if it has not ended."""
