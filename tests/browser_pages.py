@@ -224,7 +224,7 @@ def shared_server(make_shared_project: Any) -> Iterator[Served]:
 
 @pytest.fixture(name="person")
 def person_at_page(browser: Browser, server: Served) -> Iterator[Seen]:
-    """Somebody new at the page."""
+    """A new person at the page."""
     with page_of(browser, server) as person:
         yield person
 

@@ -179,14 +179,19 @@ def test_every_change_of_a_subscribed_value_arrives_at_any_speed(make_project) -
         assert times == pytest.approx([times[0] + 0.02 * number for number in range(500)])
 
 
+def drive_and_mark(page: Page) -> None:
+    """Drive at half speed from 0.1 s to 1.1 s, and mark a moment."""
+    page.run_for(0.1)
+    page.command("enable")
+    page.command("axis", stick=0, axis=1, value=-0.5)
+    page.run_for(1.0)
+    page.command("mark", t=0.9, text="here")
+    page.until(lambda: any(mark["kind"] == "own" for mark in page.marks))
+
+
 def test_driving_on_from_the_past_keeps_the_former_run_as_a_branch(make_project) -> None:
     with served(make_project(FILES)) as server, server.page() as page:
-        page.run_for(0.1)
-        page.command("enable")
-        page.command("axis", stick=0, axis=1, value=-0.5)
-        page.run_for(1.0)
-        page.command("mark", t=0.9, text="here")
-        page.until(lambda: any(mark["kind"] == "own" for mark in page.marks))
+        drive_and_mark(page)
         page.command("rewind", t=0.5)
         page.until(lambda: page.parts["branches"] and page.status["state"] == "paused" and page.time == 0.5)
         assert (page.parts["run"]["number"], page.parts["run"]["t"]) == (2, 0.5)
@@ -214,12 +219,7 @@ def test_driving_on_from_the_past_keeps_the_former_run_as_a_branch(make_project)
 def test_new_code_replays_the_inputs_and_keeps_what_the_old_code_did_as_a_branch(make_project) -> None:
     made = make_project(FILES)
     with served(made) as server, server.page() as page:
-        page.run_for(0.1)
-        page.command("enable")
-        page.command("axis", stick=0, axis=1, value=-0.5)
-        page.run_for(1.0)
-        page.command("mark", t=0.9, text="here")
-        page.until(lambda: any(mark["kind"] == "own" for mark in page.marks))
+        drive_and_mark(page)
         robot = made.path / "robot.py"
         robot.write_text(robot.read_text().replace("SPEED = 1.0", "SPEED = 0.5"))
         page.command("reload")

@@ -1,9 +1,7 @@
 // Playing a recorded run: the moment that is shown goes on by itself.
 import { model } from "./model.js";
 import { length, live, look } from "./past.js";
-
-const SLOWEST = 0.1;
-const FASTEST = 8;
+import { positionOf, speedAt } from "./speeds.js";
 
 class Playback {
   playing = false;
@@ -26,20 +24,19 @@ class Playback {
     model.announce("playback");
   }
 
-  // Each doubling takes the same distance on the slider, from 0 to 1.
+  // Of the speed slider.
   get position() {
-    return Math.log(this.speed / SLOWEST) / Math.log(FASTEST / SLOWEST);
+    return positionOf(this.speed);
   }
 
-  set position(share) {
-    const exact = SLOWEST * (FASTEST / SLOWEST) ** share;
-    this.speed = exact > 0.93 && exact < 1.07 ? 1 : Number(exact.toFixed(exact < 1 ? 2 : 1));
+  set position(position) {
+    this.speed = speedAt(position);
     model.announce("playback");
   }
 
   #next = (now) => {
     if (!this.playing) return;
-    if (model.past && Math.abs(model.past.t - this.#t) > 0.5) this.#t = model.past.t; // somebody chose another moment
+    if (model.past && Math.abs(model.past.t - this.#t) > 0.5) this.#t = model.past.t; // another moment was chosen
     this.#t += (Math.max(now - this.#shown, 0) / 1000) * this.speed;
     this.#shown = now;
     if (this.#t >= length()) {

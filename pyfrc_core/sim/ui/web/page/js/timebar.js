@@ -6,10 +6,11 @@ import { clock, speedText } from "./format.js";
 import { Menu } from "./menu.js";
 import { model } from "./model.js";
 import { driveOn, live, look, lookByPackets } from "./past.js";
+import { positionOf, speedAt } from "./speeds.js";
 import { Timeline } from "./timeline.js";
 import { Icon, Live, html } from "./view.js";
 
-// The speed slider: each doubling takes the same distance, and beyond the fastest comes "as fast as possible".
+// The share of the speed slider that has speeds: beyond the fastest comes "as fast as possible".
 const UNLIMITED = 0.94;
 
 export class TimeBar extends Live {
@@ -121,18 +122,11 @@ async function save() {
 }
 
 function sliderOf(speed) {
-  if (speed === 0) return 1;
-  const { slowest, fastest } = model.hello.options.speeds;
-  const limited = Math.min(Math.max(speed, slowest), fastest);
-  return (UNLIMITED * Math.log(limited / slowest)) / Math.log(fastest / slowest);
+  return speed === 0 ? 1 : positionOf(speed, UNLIMITED);
 }
 
 function speedOf(position) {
-  const { slowest, fastest } = model.hello.options.speeds;
-  if (position >= (1 + UNLIMITED) / 2) return 0;
-  const exact = slowest * (fastest / slowest) ** (Math.min(position, UNLIMITED) / UNLIMITED);
-  if (exact > 0.93 && exact < 1.07) return 1;
-  return Number(exact.toFixed(exact < 1 ? 2 : 1));
+  return position >= (1 + UNLIMITED) / 2 ? 0 : speedAt(position, UNLIMITED);
 }
 
 function setSpeed(slider) {
