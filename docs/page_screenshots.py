@@ -1,4 +1,4 @@
-"""Makes the pictures of the page of ``pyfrc sim --ui web`` in docs/images, in a real browser.
+"""Makes the pictures of the page of ``pyfrc sim`` in docs/images, in a real browser.
 
 ``python docs/screenshots.py`` runs it, too. It needs Chromium, playwright and Pillow.
 """

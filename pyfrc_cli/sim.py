@@ -19,13 +19,14 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
 @project_options
 @click.option(
     "--ui",
-    type=click.Choice(["tk", "web", "wpilib", "none"]),
-    help="pyfrc's window, a page in the browser, WPILib's window, or none. Default: tk, where there is a display.",
+    type=click.Choice(["web", "tk", "wpilib", "none"]),
+    help="A page in the browser, pyfrc's window, WPILib's window, or none. Default: web; none with --mode, and in jobs "
+    "and scripts.",
 )
 @click.option(
     "--mode",
     type=click.Choice(["practice", "auto", "teleop", "test", "disabled"]),
-    help="With --ui none: the mode that the robot is put through.",
+    help="Without a page or a window: the mode that the robot is put through.",
 )
 @click.option("--seconds", type=click.FloatRange(min=0.02), metavar="S", help="End, or pause, at this robot time.")
 @click.option("--script", type=_FILE, metavar="FILE", help="Replay the inputs of this script.")
@@ -70,19 +71,19 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
     type=click.Choice(["view", "drive"]),
     is_flag=False,
     flag_value="view",
-    help="With --ui web: serve the page to the network, too, to look only or to drive.",
+    help="Serve the page to the network, too, to look only or to drive.",
 )
 @click.option(
     "--port",
     type=click.IntRange(1, 65535),
     metavar="PORT",
-    help="With --ui web: serve the page here. Default: any free port.",
+    help="Serve the page at this port. Default: any free one.",
 )
 def command(directory: Path | None, main: Path | None, robot_class: str | None, **request: Any) -> None:
-    """Drive the robot on the desk: simulate it, with its physics, in a window or without one.
+    """Drive the robot on the desk: simulate it, with its physics, on a page in your browser.
 
-    Without a window, --mode, --seconds or --script say what to simulate, as fast as it goes; with none of them the
-    robot runs in real time, for dashboards, until Ctrl-C.
+    Where no browser can be opened, pyfrc prints the page's address. With --ui none, --mode, --seconds or --script say
+    what to simulate, as fast as it goes; with none of them the robot runs in real time, for dashboards, until Ctrl-C.
 
     \b
     Exit codes: 0 all went well, 1 the robot's code failed, 2 wrong usage.

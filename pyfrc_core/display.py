@@ -1,4 +1,4 @@
-"""Check whether a window can be shown here, without importing a GUI toolkit."""
+"""Check whether a window or a person is here, without importing a GUI toolkit."""
 
 from __future__ import annotations
 
@@ -7,6 +7,12 @@ import os
 import sys
 
 GET_TKINTER = "Install it with your system's package manager: sudo apt install python3-tk, or brew install python-tk."
+
+#: What to do where no window can be shown.
+WITHOUT_DISPLAY = (
+    "Use the page in a browser, also of another computer: pyfrc sim. For a window over SSH: ssh -X. "
+    "Without either: pyfrc sim --ui none --mode practice."
+)
 
 
 def has_display() -> bool:
@@ -17,3 +23,8 @@ def has_display() -> bool:
 
 def has_tkinter() -> bool:
     return importlib.util.find_spec("tkinter") is not None
+
+
+def has_terminal() -> bool:
+    """Return whether a person may read what is printed, or type: a program that a script starts may have neither."""
+    return any(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout))

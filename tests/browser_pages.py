@@ -1,4 +1,4 @@
-"""A real browser on the page of `pyfrc sim --ui web`, and a robot that has something of everything."""
+"""A real browser on the page of `pyfrc sim`, and a robot that has something of everything."""
 
 from __future__ import annotations
 

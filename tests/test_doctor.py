@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from browsers import NO_BROWSER
 from packaging.requirements import Requirement
 from ports import refusing_port
 
@@ -204,11 +205,12 @@ def test_a_library_that_cannot_be_imported_is_named_and_the_next_is_tried(code: 
 
 
 def test_without_a_display_there_is_no_window(make_project) -> None:
-    bare = {"DISPLAY": "", "WAYLAND_DISPLAY": ""}
-    (finding,) = results_of(make_project({}).run("doctor", "--no-robot", "--json", env=bare))["window"]
+    found = results_of(make_project({}).run("doctor", "--no-robot", "--json", env=NO_BROWSER))
+    (window,), (browser,) = found["window"], found["browser"]
     if sys.platform == "linux":
-        assert finding["status"] == "hint"
-        assert "--ui none" in finding["remedy"]
+        assert window["status"] == browser["status"] == "hint"
+        assert "--ui none" in window["remedy"]
+        assert browser["text"] == "pyfrc sim cannot open one: there is no display"
 
 
 # --- the project

@@ -37,11 +37,14 @@ ROBOT = """
 """
 
 
+START = [sys.executable, "-m", "pyfrc", "sim", "--ui", "tk", "--nt-port", "0"]
+
+
 @contextmanager
 def simulated(project: RobotProject, display: VirtualDisplay) -> Iterator[tuple[subprocess.Popen[str], list[str]]]:
     """A window; and what the terminal shows until the robot has seen ten packets."""
     with subprocess.Popen(
-        [sys.executable, "-m", "pyfrc", "sim", "--nt-port", "0", "--record", "run.jsonl", "--wpilog", "run.wpilog"],
+        [*START, "--record", "run.jsonl", "--wpilog", "run.wpilog"],
         cwd=project.path,
         env=display.environment | {"TMPDIR": str(project.temporary)},
         stdout=subprocess.PIPE,

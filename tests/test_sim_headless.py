@@ -11,7 +11,6 @@ from sim_robots import FILES
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.sim.engine.extensions import check_installed
-from pyfrc_core.sim.ui.choose import default_name
 from pyfrc_core.sim.ui.headless import WholeLines
 from pyfrc_core.sim.ui.picture import check_pictures
 
@@ -25,10 +24,10 @@ def project(make_shared_project):
 
 
 def test_a_practice_match(project) -> None:
-    """Where there is no screen, that is said, and no window is needed."""
-    result = project.run("sim", "--mode", "practice", env=NO_DISPLAY)
+    """--mode needs no person, so neither a page nor a window is opened."""
+    result = project.run("sim", "--mode", "practice", env={"DISPLAY": ":0", "BROWSER": "no-such-browser"})
     assert result.code == 0, result.output
-    assert "No window: there is no display." in result.stdout
+    assert "The simulator is at" not in result.stdout
     assert "the robot is there" in result.stdout
     assert re.search(r"simulated 3\.90 s of robot time, at \d+ times real time", result.stdout), result.stdout
     assert "autonomous 1.0 s, teleop 2.0 s" in result.stdout
@@ -139,10 +138,6 @@ def test_what_is_not_installed_is_said(name: str, package: str, monkeypatch: pyt
         check_installed([name])
     with pytest.raises(UsageError, match=r"pip install .pyfrc\[picture\]"):
         check_pictures(Path("path.png"))
-    monkeypatch.setenv("DISPLAY", ":0")
-    chosen, why = default_name()
-    assert chosen == "none"
-    assert "python3-tk" in why
 
 
 def test_a_robot_that_fails(project, make_project) -> None:

@@ -1,4 +1,4 @@
-"""`pyfrc sim --ui web` as a user runs it: what it prints, what it opens, how it ends; with robots that fail."""
+"""`pyfrc sim` with its page, as a user runs it: what it prints, what it opens, how it ends; with robots that fail."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from urllib.parse import urlsplit
 
 import pytest
+from browsers import NO_BROWSER
 from conftest import RobotProject
 from sim_robots import FILES, PATIENCE
 from web_pages import Page, served
@@ -23,7 +24,7 @@ ADDRESS = re.compile(r"The simulator is at (http://127\.0\.0\.1:\d+/\?token=\S+)
 
 
 class Running:
-    """A `pyfrc sim --ui web` that goes on."""
+    """A `pyfrc sim` with a page, which goes on."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self.process = process
@@ -53,8 +54,8 @@ class Running:
 
 @contextmanager
 def simulating(made: RobotProject, *arguments: str, environment: Mapping[str, str] | None = None) -> Iterator[Running]:
-    given = {**os.environ, "DISPLAY": "", "WAYLAND_DISPLAY": "", "PYTHONUNBUFFERED": "1", **(environment or {})}
-    command = [sys.executable, "-m", "pyfrc", "sim", "--ui", "web", "--nt-port", "0", *arguments]
+    given = {**os.environ, **NO_BROWSER, "PYTHONUNBUFFERED": "1", **(environment or {})}
+    command = [sys.executable, "-m", "pyfrc", "sim", "--nt-port", "0", *arguments]
     with subprocess.Popen(
         command, cwd=made.path, env=given, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
     ) as process:
@@ -66,7 +67,8 @@ def simulating(made: RobotProject, *arguments: str, environment: Mapping[str, st
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 def test_it_prints_its_address_and_ends_by_a_signal(make_project, name: str) -> None:
-    with simulating(make_project(FILES)) as running:
+    with simulating(make_project(FILES), "--ui", "web") as running:
+        running.until(re.compile("No browser is opened: there is no display."))
         with running.page() as page:
             page.until(lambda: page.status["state"] == "running")
             page.command("enable")
@@ -81,7 +83,7 @@ def test_it_prints_its_address_and_ends_by_a_signal(make_project, name: str) -> 
 
 def test_it_ends_by_the_page_and_writes_its_files(make_project) -> None:
     made = make_project(FILES)
-    with simulating(made, "--record", "drive.jsonl") as running:
+    with simulating(made, "--ui", "web", "--record", "drive.jsonl") as running:
         with running.page() as page:
             page.until(lambda: page.time > 0.1)
             page.quit()
@@ -91,9 +93,10 @@ def test_it_ends_by_the_page_and_writes_its_files(make_project) -> None:
 
 
 def test_it_opens_the_page_in_a_browser_where_there_is_one(make_project) -> None:
+    """That is the default."""
     made = make_project({**FILES, "browser.py": "import sys; open('opened.txt', 'w').write(sys.argv[1])"})
     browser = f"{sys.executable} {made.path / 'browser.py'} %s"
-    with simulating(made, environment={"DISPLAY": ":0", "BROWSER": browser}) as running:
+    with simulating(made, environment={"BROWSER": browser}) as running:
         end = time.monotonic() + PATIENCE
         opened = made.path / "opened.txt"
         while not (opened.is_file() and opened.read_text()) and time.monotonic() < end:
@@ -103,7 +106,7 @@ def test_it_opens_the_page_in_a_browser_where_there_is_one(make_project) -> None
 
 def test_new_code_comes_with_a_saved_file(make_project) -> None:
     made = make_project(FILES)
-    with simulating(made, "--watch") as running, running.page() as page:
+    with simulating(made, "--ui", "web", "--watch") as running, running.page() as page:
         page.command("enable")
         page.command("axis", stick=0, axis=1, value=-1.0)
         page.until(lambda: page.values.get("pwm[0].value") == 1)

@@ -1,4 +1,4 @@
-"""The page of `pyfrc sim --ui web` in a real browser: driving, the field, devices, NetworkTables, joysticks."""
+"""The page of `pyfrc sim` in a real browser: driving, the field, devices, NetworkTables, joysticks."""
 
 from __future__ import annotations
 

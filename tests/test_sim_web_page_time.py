@@ -1,4 +1,4 @@
-"""The page of `pyfrc sim --ui web` in a real browser: plots, the timeline, failures, the console, layouts, windows."""
+"""The page of `pyfrc sim` in a real browser: plots, the timeline, failures, the console, layouts, windows."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine.scene import Tag, Target
 from pyfrc_core.sim.engine.snapshot import Chooser, Failure
-from pyfrc_core.sim.ui.choose import FRONT_ENDS, Wishes, default_name, make_front_end
+from pyfrc_core.sim.ui.choose import FRONT_ENDS, Wishes, make_front_end
 from pyfrc_core.sim.ui.tk import TkFrontEnd
 from pyfrc_core.sim.ui.tk.window import Window
 
@@ -543,7 +543,7 @@ def test_nothing_is_left_when_the_display_goes(make_project: MakeProject) -> Non
     project = make_project({**ROBOT, "robot.py": robot})
     with virtual_display() as screen:
         running = subprocess.Popen(
-            [sys.executable, "-m", "pyfrc", "sim", "--nt-port", "0"],
+            [sys.executable, "-m", "pyfrc", "sim", "--ui", "tk", "--nt-port", "0"],
             cwd=project.path, env=screen.environment | {"TMPDIR": str(project.temporary)},
         )  # fmt: skip
         try:
@@ -617,9 +617,9 @@ def test_closing_whatever_the_robot_does(what: str, sit: Sit, make_project: Make
 
 
 def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None:
-    """`pyfrc sim` opens the window, and ends when it is closed; what was done in it can be replayed."""
+    """`pyfrc sim --ui tk` opens the window, and ends when it is closed; what was done in it can be replayed."""
     project = make_project(ROBOT)
-    command = [sys.executable, "-m", "pyfrc", "sim", "--nt-port", "0", "--record", "run.jsonl"]
+    command = [sys.executable, "-m", "pyfrc", "sim", "--ui", "tk", "--nt-port", "0", "--record", "run.jsonl"]
     with subprocess.Popen(
         command, cwd=project.path, env=display.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     ) as running:
@@ -828,7 +828,6 @@ def test_no_display(make_project: MakeProject, monkeypatch: pytest.MonkeyPatch) 
     if sys.platform == "linux":
         monkeypatch.delenv("DISPLAY")
         monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-        assert default_name()[0] == "none"
         with pytest.raises(UsageError, match="needs a display"):
             make_front_end("tk", Wishes(say=print))
 

@@ -1,4 +1,4 @@
-"""Checks of this computer: a display for the simulator's window, and pyfrc's optional packages."""
+"""Checks of this computer: a browser and a display for the simulator, and pyfrc's optional packages."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from importlib.util import find_spec
 
 from .._version import requirement
-from ..display import GET_TKINTER, has_display, has_tkinter
+from ..browser import why_no_browser
+from ..display import GET_TKINTER, WITHOUT_DISPLAY, has_display, has_tkinter
 from .check_result import CheckResult, hint, ok
 
 #: Each of pyfrc's extras with its module and its purpose.
@@ -19,13 +20,24 @@ EXTRAS = {
 }
 
 
+def check_browser() -> Iterator[CheckResult]:
+    """Check whether `pyfrc sim` can open its page."""
+    if why := why_no_browser():
+        yield hint(
+            "browser",
+            f"pyfrc sim cannot open one: {why}",
+            "It prints the address of its page. Open that in a browser, on another computer through a forwarded port.",
+        )
+    else:
+        yield ok("browser", "pyfrc sim opens its page in one")
+
+
 def check_window() -> Iterator[CheckResult]:
-    """Check whether `pyfrc sim` can show its window."""
-    without = "Without a window: pyfrc sim --ui none --mode practice"
+    """Check whether `pyfrc sim --ui tk` can show its window."""
     if not has_display():
-        yield hint("window", "pyfrc sim cannot show one: there is no display", without)
+        yield hint("window", "pyfrc sim --ui tk cannot show one: there is no display", WITHOUT_DISPLAY)
     elif not has_tkinter():
-        yield hint("window", "pyfrc sim cannot show one: this Python has no tkinter", f"{GET_TKINTER} {without}")
+        yield hint("window", "pyfrc sim --ui tk cannot show one: this Python has no tkinter", GET_TKINTER)
     else:
         yield ok("window", "there is a display, and tkinter")
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..errors import PyfrcError
 from ..project import Project, find_project
 from .check_result import CheckResult, hint
-from .computer import check_extras, check_window
+from .computer import check_browser, check_extras, check_window
 from .imports import check_imports
 from .installed import find_installed
 from .packages import check_pyfrc, check_python, check_wpilib
@@ -47,6 +47,7 @@ def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
     yield from check_pyfrc(installed)
     yield from check_wpilib(installed)
     yield from check_imports(installed)
+    yield from check_browser()
     yield from check_window()
     yield from check_extras()
     if about_project is not None:

@@ -28,7 +28,7 @@ from .ui.headless import Headless, HeadlessMode
 class SimRequest:
     """The options of the command.
 
-    :param ui: the name of the front end; None: a window where one is possible
+    :param ui: the name of the front end; None: the one that the other options need, or that this machine allows
     :param mode: what a headless simulation puts the robot through
     :param seconds: the end, in robot time; `start_at` likewise
     :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
@@ -63,11 +63,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
 
     :param say: prints
     """
-    ui = request.ui
-    if ui is None:
-        ui, why = default_name()
-        if why and not request.quiet:
-            say(f"No window: {why}. This is --ui none.\n")
+    ui = _front_end_name(request, say)
     kind = FRONT_ENDS[ui]
     if request.mode is not None and kind.interactive:
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
@@ -115,6 +111,19 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         for file in () if request.quiet else written:
             say(f"wrote {file}\n")
     return code
+
+
+def _front_end_name(request: SimRequest, say: Callable[[str], object]) -> str:
+    if request.ui is not None:
+        return request.ui
+    if request.mode is not None:  # possible without a person only
+        return "none"
+    if request.share is not None or request.port is not None:
+        return "web"
+    name, why = default_name()
+    if why and not request.quiet:
+        say(f"No page: {why}. This is --ui none.\n")
+    return name
 
 
 def _wishes(request: SimRequest, say: Callable[[str], object]) -> Wishes:

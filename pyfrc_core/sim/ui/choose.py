@@ -9,7 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from ...display import GET_TKINTER, has_display, has_tkinter
+from ...browser import is_ci, why_no_browser
+from ...display import GET_TKINTER, WITHOUT_DISPLAY, has_display, has_terminal
 from ...errors import UsageError
 from ..engine.extensions import WINDOW
 from . import FrontEnd
@@ -76,7 +77,7 @@ def _make_web(wishes: Wishes) -> FrontEnd:
     from .web.front_end import WebFrontEnd
     from .web.server import WebOptions
 
-    return WebFrontEnd(wishes.say, WebOptions(wishes.share, wishes.port))
+    return WebFrontEnd(wishes.say, WebOptions(wishes.share, wishes.port), wishes.quiet)
 
 
 def _make_wpilib(wishes: Wishes) -> FrontEnd:
@@ -90,20 +91,24 @@ def _make_headless(wishes: Wishes) -> FrontEnd:
 
 
 FRONT_ENDS: dict[str, FrontEndKind] = {
-    "tk": FrontEndKind(_make_tk, needs_display=True, opens_display=True),
     "web": FrontEndKind(_make_web, shows_network=True, is_served=True),
+    "tk": FrontEndKind(_make_tk, needs_display=True, opens_display=True),
     "wpilib": FrontEndKind(_make_wpilib, needs_display=True, prints=True, extensions=(WINDOW,)),
     "none": FrontEndKind(_make_headless, interactive=False, prints=True),
 }
 
 
 def default_name() -> tuple[str, str]:
-    """Return the name of the front end for this machine, and the reason when it is not the window."""
-    if not has_display():
-        return "none", "there is no display"
-    if not has_tkinter():
-        return "none", f"this Python has no tkinter. {GET_TKINTER}"
-    return "tk", ""
+    """Return the name of the front end for this machine, and the reason when it is not the page.
+
+    Without a browser the page is served as well: a person can open its address, also through a forwarded port. A
+    script or a job would wait for that person forever, so it gets no page.
+    """
+    if is_ci():
+        return "none", "CI is set"
+    if (why := why_no_browser()) and not has_terminal():
+        return "none", f"{why}, and no terminal"
+    return "web", ""
 
 
 def make_front_end(name: str, wishes: Wishes) -> FrontEnd:
@@ -115,7 +120,6 @@ def make_front_end(name: str, wishes: Wishes) -> FrontEnd:
     if kind.needs_display and not has_display():
         raise UsageError(
             f"--ui {name} needs a display, and there is none",
-            remedy="Run without a window: pyfrc sim --ui none --mode practice. "
-            "In a container or over SSH: xvfb-run, or ssh -X.",
+            remedy=WITHOUT_DISPLAY,
         )
     return kind.make(wishes)

@@ -11,6 +11,7 @@ from tkinter import ttk
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from ....display import WITHOUT_DISPLAY
 from ....errors import UsageError
 from ....interruption import calling_when_ended
 from ...engine.snapshot import Snapshot, Status
@@ -256,6 +257,5 @@ def _open(screen: str | None) -> tk.Tk:
     except tk.TclError as wrong:
         raise UsageError(
             f"the window cannot be opened: {wrong}",
-            remedy="Run without a window: pyfrc sim --ui none --mode practice. "
-            "In a container or over SSH: xvfb-run, or ssh -X.",
+            remedy=WITHOUT_DISPLAY,
         ) from None

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import threading
-import webbrowser
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ....display import has_display
+from ....browser import open_in_browser, why_no_browser
 from .. import FrontEnd
 from .access import Access
 from .app import WebApp
@@ -26,10 +25,11 @@ class WebFrontEnd(FrontEnd):
     """Serves pages that show a simulation, until Ctrl-C or until a page closes it.
 
     :param say: prints to the terminal
+    :param quiet: print addresses only
     """
 
-    def __init__(self, say: Callable[[str], object], options: WebOptions) -> None:
-        self._say, self._options = say, options
+    def __init__(self, say: Callable[[str], object], options: WebOptions, quiet: bool = False) -> None:
+        self._say, self._options, self._quiet = say, options, quiet
         self._access = Access(options.share)
         self._over = threading.Event()
         self.server: Server | None = None
@@ -70,12 +70,21 @@ class WebFrontEnd(FrontEnd):
             self._say(
                 f"Shared with the network: who has this address {can}: {server.network_address(share == 'drive')}\n"
             )
-        if self._options.opens_browser and has_display():
-            threading.Thread(target=self._open, args=(server.address,), name="pyfrc sim: browser", daemon=True).start()
-
-    @staticmethod
-    def _open(address: str) -> None:
-        try:
-            webbrowser.open(address)
-        except webbrowser.Error:  # the address was printed
+        if not self._options.opens_browser:
             return
+        if why := why_no_browser():
+            self._advise(
+                f"No browser is opened: {why}. Open the address in one; "
+                f"on another computer, forward port {server.port} to it first."
+            )
+        else:
+            threading.Thread(target=self._open, args=(server.address,), name="pyfrc sim: browser", daemon=True).start()
+        self._advise("Ctrl-C ends the simulation.")
+
+    def _open(self, address: str) -> None:
+        if not open_in_browser(address):
+            self._advise("No browser was found. Open the address in one.")
+
+    def _advise(self, text: str) -> None:
+        if not self._quiet:
+            self._say(f"{text}\n")
