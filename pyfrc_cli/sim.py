@@ -79,6 +79,12 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
     metavar="PORT",
     help="Serve the page at this port. Default: any free one.",
 )
+@click.option(
+    "--allow-host",
+    multiple=True,
+    metavar="HOST",
+    help="Also serve the page under this host name, to which a port of this computer is forwarded.",
+)
 def command(directory: Path | None, main: Path | None, robot_class: str | None, **request: Any) -> None:
     """Drive the robot on the desk: simulate it, with its physics, on a page in your browser.
 

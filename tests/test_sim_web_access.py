@@ -11,6 +11,9 @@ from web_pages import PATIENCE, Served, served
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
+from pyfrc_core.errors import UsageError
+from pyfrc_core.sim.ui.web.forwarding import forwarded_origins
+
 QUIET = {
     "robot.py": """
         import wpilib
@@ -66,6 +69,80 @@ def test_a_name_that_leads_here_is_refused(make_project) -> None:
             for path in (f"/?{parts.query}", "/static/index.html", f"/ws?{parts.query}"):
                 assert server.get(path, {"Host": host})[0] == 403, host
         assert server.get(f"/?{parts.query}", {"Host": f"localhost:{parts.port}"})[0] == 200
+
+
+def opened(server: Served, host: str, origin: str, token: str = "") -> int:
+    """The status that a browser gets for a WebSocket, whose request comes to this computer with this host."""
+    parts = urlsplit(server.address)
+    query = f"token={token}" if token else parts.query
+    connection = socket.create_connection(("127.0.0.1", parts.port or 0), PATIENCE)
+    try:
+        with connect(f"ws://{host}/ws?{query}", sock=connection, origin=origin):
+            return 101
+    except InvalidStatus as refusal:
+        return refusal.response.status_code
+
+
+def test_a_forwarded_port_of_another_number(make_project) -> None:
+    """`ssh -L 9999:127.0.0.1:PORT`, and VS Code: the browser's own computer has another port."""
+    with served(make_project(QUIET)) as server:
+        assert server.get(f"/?{urlsplit(server.address).query}", {"Host": "localhost:9999"})[0] == 200
+        assert opened(server, "localhost:9999", "http://localhost:9999") == 101
+        assert opened(server, "localhost:9999", "http://localhost:8888") == 403
+        assert opened(server, "localhost:9999", "http://localhost:9999", token="x") == 403
+
+
+def test_a_codespace_serves_the_name_at_which_its_port_is_forwarded(
+    make_project, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CODESPACE_NAME", "Cuddly-Robot-x7")
+    monkeypatch.setenv("GITHUB_CODESPACES_PORT_FORWARDING_DOMAIN", "app.github.dev")
+    with served(make_project(QUIET)) as server:
+        port, query = urlsplit(server.address).port, urlsplit(server.address).query
+        name, local = f"cuddly-robot-x7-{port}.app.github.dev", f"localhost:{port}"
+        assert server.printed[0] == f"The simulator is at https://{name}/?{query}\n"
+        assert f"On this computer: {server.address}\n" in server.printed
+        status, headers, _ = server.get(f"/?{query}", {"Host": name})
+        assert status == 200
+        assert f"wss://{name}" in headers["content-security-policy"]
+        # As it comes from the browser, and as GitHub changes it on the way.
+        for host in (name, local):
+            for origin in (f"https://{name}", f"https://{host}", f"http://{host}"):
+                assert opened(server, host, origin) == 101
+                assert opened(server, host, origin, token="x") == 403
+        # Another Codespace, also another port of this one, is another page.
+        other = f"evil-robot-{port}.app.github.dev"
+        for wrong in (other, "cuddly-robot-x7-1.app.github.dev", "app.github.dev", f"x{name}", f"{name}.evil.example"):
+            assert server.get(f"/?{query}", {"Host": wrong})[0] == 403, wrong
+            assert opened(server, wrong, f"https://{wrong}") == 403, wrong
+            assert opened(server, name, f"https://{wrong}") == 403, wrong
+            assert opened(server, local, f"https://{wrong}") == 403, wrong
+        assert opened(server, local, "null") == 403
+
+
+def test_a_host_that_the_user_allows(make_project) -> None:
+    hosts = ("Pit.example", "http://cart.local:8080", "[fd00::7]:9000")
+    with served(make_project(QUIET), allowed_hosts=hosts) as server:
+        query = urlsplit(server.address).query
+        origins = ("https://pit.example", "http://cart.local:8080", "https://[fd00::7]:9000")
+        for origin in origins:
+            host = urlsplit(origin).netloc
+            assert f"The simulator is at {origin}/?{query}\n" in server.printed
+            assert server.get(f"/?{query}", {"Host": host})[0] == 200
+            assert server.get("/?token=x", {"Host": host})[0] == 403
+            assert opened(server, host, origin) == 101
+            assert opened(server, host, origin, token="x") == 403
+            assert opened(server, host, "https://evil.example") == 403
+        assert server.get(f"/?{query}", {"Host": "evil.example"})[0] == 403
+        assert opened(server, "pit.example", "https://pit.example:444") == 403
+
+
+@pytest.mark.parametrize(
+    "host", ["", "*", "*.example", "ftp://pit.example", "pit.example/page", "pit.example:x", "a b", "user@pit.example"]
+)
+def test_what_is_no_host(host: str) -> None:
+    with pytest.raises(UsageError, match="this is no host"):
+        forwarded_origins([host], 8080)
 
 
 def test_a_second_user_on_the_network_is_refused(make_project) -> None:

@@ -136,7 +136,7 @@ def test_a_robot_that_hangs_or_ends_leaves_the_page_alive(make_project, button: 
 
 def test_its_options_belong_to_it(make_project) -> None:
     made = make_project(FILES)
-    for option in (["--share"], ["--port", "7777"]):
+    for option in (["--share"], ["--port", "7777"], ["--allow-host", "cart.example"]):
         result = made.run("sim", "--ui", "none", "--seconds", "1", *option)
         assert result.code == 2
         assert "Add --ui web" in result.output
@@ -147,3 +147,5 @@ def test_its_options_belong_to_it(make_project) -> None:
         assert result.code == 2
         assert "Choose another --port" in result.output
     assert made.run("sim", "--ui", "web", "--mode", "auto").code == 2
+    result = made.run("sim", "--allow-host", "*.example")
+    assert (result.code, result.first_error) == (2, "--allow-host *.example: this is no host")

@@ -159,12 +159,14 @@ class Page:
 
 
 @contextmanager
-def served(made: Any, share: Share | None = None, **options: Any) -> Iterator[Served]:
+def served(
+    made: Any, share: Share | None = None, allowed_hosts: tuple[str, ...] = (), **options: Any
+) -> Iterator[Served]:
     """Serve a simulation of a project."""
     given = {"speed": 0, "paused": True, "network_values": True, **options}
     simulation = Simulation(find_project(made.path), SimOptions(**given))
     printed: list[str] = []
-    front_end = WebFrontEnd(printed.append, WebOptions(share, opens_browser=False))
+    front_end = WebFrontEnd(printed.append, WebOptions(share, allowed_hosts=allowed_hosts, opens_browser=False))
     codes: list[int] = []
     thread = threading.Thread(target=lambda: codes.append(front_end.run(simulation)), daemon=True)
     thread.start()

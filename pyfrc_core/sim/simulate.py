@@ -36,6 +36,7 @@ class SimRequest:
     :param quiet: print only the robot's output and what is wrong
     :param share: what clients on the network may do with a page; None: they are not served
     :param port: where to serve a page; None: at any free port
+    :param allow_host: where else browsers find a page, through a forwarded port
     """
 
     ui: str | None = None
@@ -56,6 +57,12 @@ class SimRequest:
     quiet: bool = False
     share: Literal["view", "drive"] | None = None
     port: int | None = None
+    allow_host: tuple[str, ...] = ()
+
+    @property
+    def is_for_page(self) -> bool:
+        """Whether options are given that only a page has."""
+        return self.share is not None or self.port is not None or bool(self.allow_host)
 
 
 def simulate(project: Project, request: SimRequest, say: Callable[[str], object]) -> int:
@@ -67,8 +74,8 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     kind = FRONT_ENDS[ui]
     if request.mode is not None and kind.interactive:
         raise UsageError("--mode is for simulations without a window", remedy="Add --ui none.")
-    if not kind.is_served and (request.share is not None or request.port is not None):
-        raise UsageError("--share and --port are for the simulator in a browser", remedy="Add --ui web.")
+    if not kind.is_served and request.is_for_page:
+        raise UsageError("--share, --port and --allow-host are for the simulator in a browser", remedy="Add --ui web.")
     front_end = make_front_end(ui, _wishes(request, say))
     ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script))
     unattended = not kind.interactive and ends_by_itself
@@ -118,7 +125,7 @@ def _front_end_name(request: SimRequest, say: Callable[[str], object]) -> str:
         return request.ui
     if request.mode is not None:  # possible without a person only
         return "none"
-    if request.share is not None or request.port is not None:
+    if request.is_for_page:
         return "web"
     name, why = default_name()
     if why and not request.quiet:
@@ -135,6 +142,7 @@ def _wishes(request: SimRequest, say: Callable[[str], object]) -> Wishes:
         quiet=request.quiet,
         share=request.share,
         port=request.port or 0,
+        allowed_hosts=request.allow_host,
     )
 
 

@@ -28,6 +28,7 @@ class Wishes:
     :param quiet: print only the robot's output and what is wrong
     :param share: what clients on the network may do, if they are served
     :param port: where to serve a page; 0: at any free port
+    :param allowed_hosts: where else browsers find a page, through a forwarded port
     """
 
     say: Callable[[str], object]
@@ -37,6 +38,7 @@ class Wishes:
     quiet: bool = False
     share: Literal["view", "drive"] | None = None
     port: int = 0
+    allowed_hosts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,7 @@ def _make_web(wishes: Wishes) -> FrontEnd:
     from .web.front_end import WebFrontEnd
     from .web.server import WebOptions
 
-    return WebFrontEnd(wishes.say, WebOptions(wishes.share, wishes.port), wishes.quiet)
+    return WebFrontEnd(wishes.say, WebOptions(wishes.share, wishes.port, wishes.allowed_hosts), wishes.quiet)
 
 
 def _make_wpilib(wishes: Wishes) -> FrontEnd:

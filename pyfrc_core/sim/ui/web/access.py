@@ -10,10 +10,12 @@ from __future__ import annotations
 import ipaddress
 import secrets
 import socket
-from collections.abc import Awaitable, Callable, MutableMapping
+from collections.abc import Awaitable, Callable, MutableMapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 from urllib.parse import parse_qs
+
+from .forwarding import name_of
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -43,10 +45,12 @@ class Access:
     """The keys of one server.
 
     :param share: what clients on the network may do
+    :param origins: where else browsers find the page, through a forwarded port
     :param drive: the token that drives; `view` is the one that only sees
     """
 
     share: Share | None = None
+    origins: tuple[str, ...] = ()
     drive: str = field(default_factory=_token)
     view: str = field(default_factory=_token)
 
@@ -63,12 +67,21 @@ class Access:
     def allows_host(self, host: str) -> bool:
         """Return whether a request may have this `Host` header."""
         name = _name_of(host)
-        if name in ("localhost", "127.0.0.1", "::1"):
+        if name in ("localhost", "127.0.0.1", "::1") or name in map(name_of, self.origins):
             return True
         if self.share is None:
             return False
         own = socket.gethostname().lower()
         return _is_address(name) or name in (own, f"{own}.local")  # no page from elsewhere has such a name
+
+    def allows_origin(self, origin: str, host: str) -> bool:
+        """Return whether a request with this `Host` header, which is allowed, may have this `Origin` header.
+
+        What forwards a port may change the one header and not the other, and it ends TLS.
+        """
+        if origin == f"http://{host}" or origin in self.origins:
+            return True
+        return bool(self.origins) and origin == f"https://{host}"
 
 
 def _name_of(host: str) -> str:
@@ -112,13 +125,14 @@ class Guard:
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
         host = headers.get("host", "")
         origin = headers.get("origin")
-        if not self._access.allows_host(host) or (origin is not None and origin != f"http://{host}"):
+        access = self._access
+        if not access.allows_host(host) or (origin is not None and not access.allows_origin(origin, host)):
             await _refuse(scope, receive, send)
             return
 
         async def send_guarded(message: MutableMapping[str, Any]) -> None:
             if message["type"] == "http.response.start":
-                added = {**_HEADERS, "Content-Security-Policy": _policy(host)}
+                added = {**_HEADERS, "Content-Security-Policy": _policy(host, access.origins)}
                 message["headers"] = [
                     *message.get("headers", ()),
                     *((name.lower().encode(), value.encode()) for name, value in added.items()),
@@ -128,15 +142,16 @@ class Guard:
         await self._app(scope, receive, send_guarded)
 
 
-def _policy(host: str) -> str:
+def _policy(host: str, origins: Sequence[str]) -> str:
     """Return a page's Content-Security-Policy. `connect-src` names WebSockets for browsers in which 'self' has none."""
+    forwarded = "".join(f" ws{origin.removeprefix('http')}" for origin in origins)  # wss for https
     rules = {
         "default-src": "'none'",
         "script-src": "'self'",
         "style-src": "'self'",
         "img-src": "'self' data: blob:",
         "font-src": "'self'",
-        "connect-src": f"'self' ws://{host}",
+        "connect-src": f"'self' ws://{host}{forwarded}",
         "base-uri": "'none'",
         "form-action": "'none'",
         "frame-ancestors": "'none'",

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ....browser import open_in_browser, why_no_browser
+from ....errors import UsageError
 from .. import FrontEnd
 from .access import Access
 from .app import WebApp
 from .collector import Collector
 from .commands import Commands
+from .forwarding import forwarded_origins
 from .server import Server, WebOptions
 
 if TYPE_CHECKING:
@@ -38,12 +41,18 @@ class WebFrontEnd(FrontEnd):
 
     def run(self, simulation: Simulation) -> int:
         self.server = server = Server(self._options, self._access)
+        try:
+            origins = forwarded_origins(self._options.allowed_hosts, server.port)
+        except UsageError:
+            server.close()
+            raise
+        access = replace(self._access, origins=origins)
         self.collector = collector = Collector(simulation, server.wake)
         commands = Commands(simulation, collector, self.close)
         try:
-            server.start(WebApp(simulation, collector, commands, self._access))
+            server.start(WebApp(simulation, collector, commands, access))
             collector.start()
-            self._announce(server)
+            self._announce(server, access)
             simulation.start()
             while not self._over.wait(_LOOK_SECONDS):
                 pass
@@ -62,9 +71,15 @@ class WebFrontEnd(FrontEnd):
         if (collector := self.collector) is not None:
             collector.announce(f"saved: {', '.join(files)}")
 
-    def _announce(self, server: Server) -> None:
-        self._say(f"The simulator is at {server.address}\n")
-        self._say(f"To look only: {server.viewing_address}\n")
+    def _announce(self, server: Server, access: Access) -> None:
+        if access.origins:
+            for origin in access.origins:
+                self._say(f"The simulator is at {origin}/?token={access.drive}\n")
+            self._say(f"To look only: {access.origins[0]}/?token={access.view}\n")
+            self._say(f"On this computer: {server.address}\n")
+        else:
+            self._say(f"The simulator is at {server.address}\n")
+            self._say(f"To look only: {server.viewing_address}\n")
         if (share := self._options.share) is not None:
             can = "can drive the robot" if share == "drive" else "can only look"
             self._say(

@@ -28,11 +28,13 @@ class WebOptions:
 
     :param share: what clients on the network may do; None: they are not served
     :param port: the port; 0: any that is free
+    :param allowed_hosts: where else browsers find the page, through a forwarded port
     :param opens_browser: whether to open the page in a browser
     """
 
     share: Share | None = None
     port: int = 0
+    allowed_hosts: tuple[str, ...] = ()
     opens_browser: bool = True
 
 
