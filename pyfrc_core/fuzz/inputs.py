@@ -17,6 +17,7 @@ from ..hal import HalData, format_path
 from ..hal.devices import KINDS
 from ..hal.modules import Modules
 from ..hal.sim_device_list import Signature
+from ..runtime.counters import counted_channels
 from .gamepads import TRIGGERS
 from .robot_constants import UNKNOWN, RobotConstants
 from .values import InputKind
@@ -64,6 +65,8 @@ _DEVICES: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "analog_gyro": (("angle", "angle"), ("rate", "turning")),
     "duty_cycle": (("output", "turns"), ("frequency", "hertz")),
 }
+#: What a digital input measures that a `Counter` counts.
+_COUNTED: tuple[tuple[str, InputKind], ...] = (("value", "pulses"),)
 _MODULES: dict[str, tuple[tuple[str, InputKind], ...]] = {
     "pcm_compressor": (("pressure_switch", "switch"),),
     "ph_compressor": (("pressure_switch", "switch"),),
@@ -128,16 +131,21 @@ class SensorFinder:
     def _devices(self) -> _Devices:
         hal_data = self._hal_data
         modules = tuple([exists() for exists in _modules()])
-        return _Devices(_used(), modules, hal_data["accelerometer"]["active"], hal_data["CAN"].signature())
+        accelerometer, sim_devices = hal_data["accelerometer"]["active"], hal_data["CAN"].signature()
+        return _Devices(_used(), modules, accelerometer, sim_devices, counted_channels())
 
 
 class _Devices(NamedTuple):
-    """The devices that exist: those of the roboRIO that have a sensor, and all others."""
+    """The devices that exist: those of the roboRIO that have a sensor, and all others.
+
+    :param counted: the digital inputs that counters count
+    """
 
     channels: tuple[tuple[str, int], ...]
     modules: tuple[bool, ...]
     accelerometer: bool
     sim_devices: Signature
+    counted: frozenset[int]
 
 
 @cache
@@ -182,10 +190,10 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN) -> Iter
     if hal_data["accelerometer"]["active"]:
         for axis in "xyz":
             yield Input(f"accelerometer.{axis}", "acceleration", "accelerometer")
-    wired = _wired(hal_data, channels)
+    wired, counted = _wired(hal_data, channels), counted_channels()
     for key, number in channels:
         if hal_data[key][number].get("is_input", True) and (key, number) not in wired:
-            for value, kind in _DEVICES[key]:
+            for value, kind in _DEVICES[key] if key != "dio" or number not in counted else _COUNTED:
                 yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
     for key, values in _MODULES.items():
         for number in hal_data[key]:

@@ -23,6 +23,9 @@ _PAUSE, _SHORTEST_PAUSE = 1.0, 0.1
 #: Devices that change a quarter as often as the others.
 _SELDOM = ("power", "fpga_button", "pdp")
 
+#: How often an input that a counter counts switches many times, and not once or twice.
+_PULSED = 0.5
+
 #: Kinds that begin again at their end, and those that are 0 without their sensor.
 _WRAPS = ("half turns", "heading", "turns")
 _DROPS_OUT = ("volts", "turns", "range")
@@ -126,7 +129,9 @@ class SensorGenerator:
             found[each.target] = value
             rest = before if each.kind == "connected" else round(rng.uniform(11.5, 12.8), 2)
             return now_us + rng.choice((1, 2, 5, 25, 50)) * PACKET_US, _back(each, rest)
-        if each.kind == "switch":
+        if each.kind == "pulses" and rng.random() < _PULSED:
+            return self._pulses(each, now_us)
+        if each.kind in ("switch", "pulses"):
             found[each.target] = not before
             if rng.random() < 0.5:
                 return now_us + rng.choice((1, 1, 2, 5, 25)) * PACKET_US, _back(each, before)
@@ -151,6 +156,18 @@ class SensorGenerator:
             return at_us + _STEP_US if at_us < end_us else None
 
         return now_us + _STEP_US, go
+
+    def _pulses(self, each: Input, now_us: int) -> tuple[int, _Change]:
+        """Turn a wheel whose magnet or slots switch a digital input, which a `Counter` counts."""
+        rng = self._rng
+        interval_us = rng.choice((1, 1, 2, 5)) * PACKET_US
+        end_us = now_us + round(rng.uniform(0.1, 2) * 50) * PACKET_US
+
+        def go(at_us: int, found: dict[str, Value]) -> int | None:
+            found[each.target] = not self._hal_data.read(each.target)
+            return at_us + interval_us if at_us < end_us else None
+
+        return now_us + interval_us, go
 
     def _turn_wheel(self, device: str, now_us: int, found: dict[str, Value]) -> tuple[int, _Change] | None:
         """Turn an encoder. Its count continues from the current value, since robots reset it."""

@@ -24,6 +24,7 @@ InputKind = Literal[
     "button",
     "pov",
     "switch",
+    "pulses",
     "connected",
     "volts",
     "battery",

@@ -1,0 +1,114 @@
+"""`wpilib.Counter` on simulated digital inputs: which edges it counts, and when it has stopped."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import pytest
+import wpilib
+from wpilib.simulation import DIOSim
+
+from pyfrc_core.runtime import counters
+from pyfrc_core.runtime.counters import counted_channels
+from pyfrc_core.runtime.patch_table import patched
+
+#: The first of some channels that no other test uses.
+FIRST = 20
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now = 1.0
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[Clock]:
+    """Counters that measure with this clock."""
+    clock = Clock()
+    monkeypatch.setattr(counters, "_now", lambda: clock.now)
+    with patched(counters.patches()):
+        yield clock
+
+
+def write(channel: int, *values: int, clock: Clock | None = None, seconds: float = 0.0) -> None:
+    for value in values:
+        if clock is not None:
+            clock.now += seconds
+        DIOSim(channel).setValue(bool(value))
+
+
+def test_rising_edges_are_counted_until_it_is_reset(clock: Clock) -> None:
+    counter = wpilib.Counter(FIRST)
+    assert (counter.get(), FIRST in counted_channels()) == (0, True)
+    write(FIRST, 0, 1, 1, 0, 1, 0)
+    assert counter.get() == 2
+    counter.setDistancePerPulse(0.5)
+    assert counter.getDistance() == 1.0
+    counter.reset()
+    assert counter.get() == 0
+    counter.setUpSourceEdge(True, True)
+    write(FIRST, 1, 0)
+    assert counter.get() == 2
+    counter.clearUpSource()
+    write(FIRST, 1, 0)
+    assert (counter.get(), counted_channels()) == (2, frozenset())
+
+
+def test_the_period_of_a_wheel_and_when_it_stands_still(clock: Clock) -> None:
+    counter = wpilib.Counter(FIRST)
+    assert (counter.getStopped(), counter.getPeriod(), counter.getRate()) == (True, math.inf, 0.0)
+    write(FIRST, 0, 1, 0, 1, clock=clock, seconds=0.02)
+    assert not counter.getStopped()
+    assert counter.getPeriod() == pytest.approx(0.04)
+    assert counter.getRate() == pytest.approx(25.0)
+    clock.now += 0.6
+    assert (counter.getStopped(), counter.getPeriod(), counter.getRate()) == (True, math.inf, 0.0)
+
+
+def test_up_and_down_and_in_reverse(clock: Clock) -> None:
+    up, down = wpilib.DigitalInput(FIRST + 1), wpilib.DigitalInput(FIRST + 2)
+    counter = wpilib.Counter()
+    counter.setUpSource(up)
+    counter.setDownSource(source=down)
+    counter.setDownSourceEdge(True, False)
+    write(FIRST + 1, 0, 1, 0, 1)
+    write(FIRST + 2, 0, 1)
+    assert (counter.get(), counter.getDirection()) == (1, False)
+    counter.setReverseDirection(True)
+    write(FIRST + 1, 0, 1)
+    assert (counter.get(), counter.getDirection()) == (0, False)
+
+
+def test_the_direction_from_an_input_and_the_length_of_a_pulse(clock: Clock) -> None:
+    counter = wpilib.Counter(wpilib.Counter.Mode.kExternalDirection)
+    counter.setUpSource(FIRST + 1)
+    counter.setDownSource(FIRST + 2)
+    write(FIRST + 1, 0, 1, 0, 1)
+    write(FIRST + 2, 0)
+    write(FIRST + 1, 0, 1)
+    assert counter.get() == 1
+    pulses = wpilib.Counter(FIRST + 3)
+    pulses.setSemiPeriodMode(True)
+    write(FIRST + 3, 0, 1, 0, clock=clock, seconds=0.03)
+    assert pulses.getPeriod() == pytest.approx(0.03)
+
+
+def test_a_subclass_and_wrong_arguments(clock: Clock) -> None:
+    class Balls(wpilib.Counter):
+        def __init__(self) -> None:
+            super().__init__(channel=FIRST + 4)
+
+        def get(self) -> int:
+            return 10 + super().get()
+
+    balls = Balls()
+    balls.setMaxPeriod(1.0)
+    write(FIRST + 4, 0, 1)
+    assert balls.get() == 11
+    balls.reset()
+    assert balls.get() == 10
+    with pytest.raises(TypeError):
+        wpilib.Counter("three")  # type: ignore[call-overload]
+    with pytest.raises(TypeError):
+        balls.setUpSourceEdge(True)  # type: ignore[call-arg]
