@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 from types import FunctionType
 from typing import Any
@@ -59,6 +60,18 @@ KINDS = {
         "self.pose = self.network.getStructTopic('/vision/pose', Pose2d).subscribe(Pose2d())",
         "if self.pose.get().x > 8: raise ValueError",
     ),
+    "a pose that is not a number": (
+        "self.pose = self.network.getStructTopic('/vision/pose', Pose2d).subscribe(Pose2d())",
+        "round(self.pose.get().x)",
+    ),
+    "a latency that jumps": (
+        "self.history = list(range(100))",
+        "self.history[-1 - int(self.camera.getNumber('tl', 0.0) / 20)]",
+    ),
+    "pulses that are counted": (
+        "self.balls = wpilib.Counter(3)",
+        "if self.balls.get() > 1: raise ValueError",
+    ),
     "a preference, read once": (
         "self.demo = Preferences.getBoolean('demo', False)",
         "if self.demo: raise ValueError",
@@ -101,7 +114,7 @@ KINDS = {
 
 #: Kinds that are met in longer matches only, and those that are met in few matches.
 RARE = {"an absolute encoder that begins again"}
-SELDOM = {"a joystick with few axes", "a button that most joysticks lack"}
+SELDOM = {"a joystick with few axes", "a button that most joysticks lack", "a pose that is not a number"}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -168,6 +181,25 @@ def test_what_a_camera_measures_has_its_limits() -> None:
     tags = drawn(NetworkRead("/limelight/tid", "int"), -1, False)
     assert all(isinstance(tag, int) and 1 <= tag <= 32 for tag in tags)
     assert NetworkValues(random.Random(1), UNKNOWN).without_target(NetworkRead("/limelight/tid", "int", -1)) == -1
+
+
+def test_a_pose_that_a_camera_cannot_compute_is_not_a_number() -> None:
+    assert ("nan",) * 3 in drawn(NetworkRead("/vision/robot", "struct:Pose2d"), None, False)
+    assert ("nan",) * 6 in drawn(NetworkRead("/vision/botpose", "double[]"), [0.0] * 6, False)
+    for name, type_name, setting in (
+        ("/limelight/botpose", "double[]", False),
+        ("/vision/corners", "double[]", False),
+        ("/vision/speeds", "struct:ChassisSpeeds", False),
+        ("/SmartDashboard/pose", "double[]", True),
+    ):
+        found = drawn(NetworkRead(name, type_name), [1.0] * 3, setting)
+        assert not any("nan" in value for value in found)
+
+
+def test_a_latency_jumps() -> None:
+    found = drawn(NetworkRead("/limelight/tl", "double"), 11.0, False)
+    assert sum(value <= 100 for value in found) > 240
+    assert max(found) == 5000.0
 
 
 def test_lists_are_empty_short_and_long() -> None:
@@ -241,6 +273,7 @@ def test_entries_have_the_type_that_the_target_names() -> None:
         ("nt:double[]:/typed/pose", (), "double[]"),
         ("nt:string[]:/typed/names", ["a"], "string[]"),
         ("nt:struct:Pose2d:/typed/at", [1.0, 2.0, 0.5], "struct:Pose2d"),
+        ("nt:double[]:/typed/unknown", ["nan", 1.0], "double[]"),
         ("nt:/typed/plain", 3, "double"),
     ):
         targets.write(target, value, 0)
@@ -248,6 +281,7 @@ def test_entries_have_the_type_that_the_target_names() -> None:
         assert network.getTopic(name).getTypeString() == type_name
         assert named in ("", type_name)
         assert entry_target(name, named) == target
+    assert math.isnan(network.getEntry("/typed/unknown").getDoubleArray([])[0])
     with pytest.raises(UsageError, match=r"/typed/id is int, and cannot be 'x'"):
         targets.write("nt:int:/typed/id", "x", 0)
     with pytest.raises(UsageError, match="NetworkTables has no type 'whole'"):

@@ -2,7 +2,7 @@
 
 There are two kinds of entries. A *setting* has a value from the robot, or belongs to a dashboard: a user changes it
 within reason, so a positive number stays positive or becomes 0. The others are *measured* outside the robot, by a
-camera or a coprocessor, and take any value.
+camera or a coprocessor, and take any value; of a pose, all numbers may be NaN.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import math
 import random
 import re
 
+from ..runtime.scripts.network_entries import NOT_A_NUMBER
 from .network_reads import STRUCTS, NetworkRead
 from .robot_constants import RobotConstants
 from .values import Value
@@ -30,6 +31,15 @@ _MEASURED: tuple[tuple[str, float, float], ...] = (
 SEES_TARGET = re.compile(r"^tv$|has_?targets?$|target_?visible|sees_?target", re.IGNORECASE)
 _TAG = re.compile(r"^tid$|tag_?id|fiducial_?id", re.IGNORECASE)
 _TAGS = 32
+
+#: A time that a camera's measurement needs now and then, in milliseconds: its computer was busy with something else.
+_LATENCY = re.compile(r"^t[lc]$|latency", re.IGNORECASE)
+_DELAYS = (250.0, 1000.0, 5000.0)
+_DELAYED = 0.1
+
+#: A pose that a camera may fail to compute, and how often; a Limelight then sends zeros.
+_POSE = re.compile(r"(?!.*limelight).*(pose|transform|translation|rotation)[^/]*$", re.IGNORECASE)
+_NOT_COMPUTED = 0.06
 
 _DIGITS = 3
 _FACTORS = (0.5, 0.5, 2.0, 2.0, 1.1, 0.9, 1.0, 10.0)
@@ -57,7 +67,7 @@ class NetworkValues:
         """
         element, is_list = read.type_name.removesuffix("[]"), read.type_name.endswith("[]")
         if element.startswith("struct:"):
-            return self._structs(element.removeprefix("struct:"), is_list)
+            return self._structs(read.name, element.removeprefix("struct:"), is_list, setting)
         if not is_list:
             return self._one(read.name, element, before, setting)
         values = tuple(before) if isinstance(before, list | tuple) else ()
@@ -67,6 +77,8 @@ class NetworkValues:
         length = len(values) or self._rng.choice((1, 2, 3, 6))
         if how < 0.35:
             length = max(1, length + self._rng.choice((-1, 1, 5)))
+        if not setting and element in ("float", "double") and self._is_not_computed(read.name):
+            return (NOT_A_NUMBER,) * length
         padded = (*values, *[_zero(element)] * length)[:length]
         return tuple(self._one(read.name, element, each, setting) for each in padded)
 
@@ -82,10 +94,15 @@ class NetworkValues:
             return -1 if element == "int" else -1.0
         return _zero(element)
 
-    def _structs(self, name: str, is_list: bool) -> tuple[float, ...]:
+    def _structs(self, entry: str, name: str, is_list: bool, setting: bool) -> tuple[float | str, ...]:
         count = self._rng.choice((0, 1, 1, 2)) if is_list else 1
         spans = STRUCTS[name] * count
+        if not setting and self._is_not_computed(f"{entry} {name}"):
+            return (NOT_A_NUMBER,) * len(spans)
         return tuple(round(self._rng.uniform(low, high), _DIGITS) for low, high in spans)
+
+    def _is_not_computed(self, name: str) -> bool:
+        return _POSE.match(name) is not None and self._rng.random() < _NOT_COMPUTED
 
     def _one(self, name: str, element: str, before: object, setting: bool) -> bool | int | float | str:
         if element == "boolean":
@@ -121,6 +138,8 @@ class NetworkValues:
             return float(how < 0.7)
         if _TAG.search(name):
             return rng.randint(1, _TAGS)
+        if how > 1 - _DELAYED and _LATENCY.search(name):
+            return rng.choice(_DELAYS)
         for pattern, low, high in _MEASURED:
             if re.search(pattern, name, re.IGNORECASE):
                 if 0.3 < how < 0.5:  # a small step

@@ -2,11 +2,13 @@
 
 ``nt:/SmartDashboard/x`` has the type of its value, and a number is a double. Where that is not so, the target names the
 type as NetworkTables does: ``nt:int:/vision/id``, ``nt:double[]:/limelight/botpose`` (also for an empty list),
-``nt:struct:Pose2d:/vision/pose``, whose value is a list of the struct's numbers (structs of doubles only).
+``nt:struct:Pose2d:/vision/pose``, whose value is a list of the struct's numbers (structs of doubles only). In lists of
+doubles and in structs, ``"nan"`` is not a number: JSON has no word for it.
 """
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -17,7 +19,11 @@ from ...errors import UsageError
 
 NETWORK = "nt:"
 
+#: What cameras send for a pose that they could not compute.
+NOT_A_NUMBER = "nan"
+
 _STRUCT = "struct:"
+_DOUBLES = ("float[]", "double[]")
 
 #: How to make a value of each type that a target can name.
 MAKE_VALUE: dict[str, Callable[[Any], ntcore.Value]] = {
@@ -85,7 +91,7 @@ def _writer(name: str, type_name: str, at_end: Callable[[Callable[[], object]], 
 
         def write_struct(value: Sequence[float]) -> None:
             try:
-                publisher.set(struct.pack(f"<{len(value)}d", *value))
+                publisher.set(struct.pack(f"<{len(value)}d", *map(_number, value)))
             except (TypeError, struct.error):
                 raise UsageError(f"{name} is a struct, written as a list of its numbers, not {value!r}") from None
 
@@ -100,12 +106,19 @@ def _writer(name: str, type_name: str, at_end: Callable[[Callable[[], object]], 
 
     def write_typed(value: object) -> None:
         try:
-            made = make(list(value) if isinstance(value, list | tuple) else value)
+            if isinstance(value, list | tuple):
+                made = make([_number(each) if type_name in _DOUBLES else each for each in value])
+            else:
+                made = make(value)
         except TypeError:
             raise UsageError(f"{name} is {type_name}, and cannot be {value!r}") from None
         _set(entry, made, value)
 
     return write_typed
+
+
+def _number(value: Any) -> Any:
+    return math.nan if value == NOT_A_NUMBER else value
 
 
 def _write_plain(entry: ntcore.NetworkTableEntry, value: Any) -> None:
