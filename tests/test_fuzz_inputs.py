@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from pathlib import Path
 from types import FunctionType
 from typing import Any
 
@@ -126,6 +127,13 @@ def test_each_kind_of_input_is_varied(kind: str, make_project: Any) -> None:
     assert result.code == 1, result.output
     (file,) = (project.path / "tests/fuzz").glob("*.jsonl")  # it has failed again in a replay
     assert sum(len(step.writes) for step in load_script(file).steps) <= 5
+
+
+def test_pulses_and_poses_do_not_matter_to_a_correct_robot(make_project: Any) -> None:
+    robot = (Path(__file__).parents[1] / "benchmarks/fuzz_exam/correct/counted_pulses/robot.py").read_text("utf-8")
+    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
+    result = project.run("fuzz", "--seed", "1", "--runs", "8")
+    assert (result.code, "100% of the robot's lines" in result.stdout) == (0, True), result.output
 
 
 def test_tunables_are_varied(make_project: Any) -> None:
