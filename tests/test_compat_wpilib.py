@@ -256,6 +256,16 @@ print(flags.take(), flags.take())
 value.reset()
 other.set(1.0)
 print(flags.take())
+flags.keep([1])
+value.set(4.0)
+other.set(2.0)
+other.set(3.0)
+print(flags.take(), flags.take())
+flags.keep([])  # it has been written before this
+value.set(5.0)
+print(flags.take())
+other.set(4.0)
+print(flags.take())
 flags.close()
 value.set(3.0)
 print(flags.take())
@@ -263,7 +273,7 @@ del device, value
 gc.collect()
 print(list(notes.take()))
 """
-    expected = ["True [7] False", "[8]", "[]", "[0] []", "[0, 1]", "[]", "[7]"]
+    expected = ["True [7] False", "[8]", "[]", "[0] []", "[0, 1]", "[0] []", "[0]", "[1]", "[]", "[7]"]
     assert said_by(program) == expected, wpilib_private.NATIVE_HAL.gone
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import math
 import sys
 from collections.abc import Iterator
 from typing import Any
@@ -111,6 +112,25 @@ def test_a_value_that_was_constant_for_long_is_found_when_it_changes(tree: HalDa
     assert repr(found(changes.look())) == "{'CAN[\"Motor[0]\"].v3': -0.0}"
     values[3].reset()
     assert repr(found(changes.look())) == "{'CAN[\"Motor[0]\"].v3': 0.0}"
+    del devices
+
+
+def test_values_that_are_written_in_most_packets_and_values_that_stop(tree: HalData) -> None:
+    devices, values = make(2)
+    changes = after_many_looks(tree)
+    begins = {0: 0, 1: 0, 2: 30, 3: 90, 30: 3}  # the first look before which each is written
+    for number in range(4 * LOOKS):
+        expected = {}
+        for position, begin in begins.items():
+            if begin <= number < begin + 2 * LOOKS and (position != 1 or number % 3):
+                value = (number // 2 + position) * (-1.0) ** (position == 2)  # in half of the looks as before
+                value = math.nan if value == 40 else -0.0 if value == 41 else 0.0 if value == 42 else value
+                before = values[position].get()
+                values[position].set(value)
+                if repr(before) != repr(value):
+                    expected[f'CAN["Motor[{position // 25}]"].v{position % 25}'] = value
+        assert repr(found(changes.look())) == repr(expected)
+    assert dict(tree.leaves()) == dict(HalData().leaves())
     del devices
 
 

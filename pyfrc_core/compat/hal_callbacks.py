@@ -9,9 +9,10 @@ from __future__ import annotations
 import atexit
 import ctypes
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from itertools import compress, count
+from operator import ne
 from typing import Any, NamedTuple
 
 from .wpilib_private import NATIVE_HAL
@@ -95,7 +96,10 @@ class WriteFlags:
     def __init__(self, values: Sequence[int]) -> None:
         self._flags = (ctypes.c_size_t * max(1, len(values)))()
         self._view = memoryview(self._flags).cast("B").cast("P")
-        self._none = bytes(self._flags)
+        #: The flags at the last look, of which only those of `_kept` are set.
+        self._before = bytearray(self._flags)
+        self._words = memoryview(self._before).cast("P")
+        self._kept: frozenset[int] = frozenset()
         begin, size, callback = ctypes.addressof(self._flags), ctypes.sizeof(ctypes.c_size_t), _strtod()
         _FLAGS[begin] = self._flags
         #: What is registered, and the address of its flag.
@@ -106,13 +110,28 @@ class WriteFlags:
 
     def take(self) -> list[int]:
         """Return the positions of the values that were written since the last call; read the values after it."""
-        if self._view.tobytes() == self._none:
+        now = self._view.tobytes()
+        if now == self._before:
             return []
-        flags = self._view
-        written = list(compress(count(), flags.tolist()))
-        for position in written:  # not all: another one may have been set meanwhile
-            flags[position] = 0
+        flags, words, kept = self._view, self._words, self._kept
+        found = memoryview(now).cast("P")
+        written = []
+        for position in compress(count(), map(ne, found, words)):
+            if position in kept:
+                words[position] = found[position]  # always the same, so this is its first write since `keep`
+            else:
+                flags[position] = 0  # not all: another one may have been set meanwhile
+                written.append(position)
         return written
+
+    def keep(self, positions: Iterable[int]) -> None:
+        """Leave only these out of what `take` returns, until the next call. Read them at each look.
+
+        So values that are written all the time need no flags, which would have to be found and cleared.
+        """
+        for position in self._kept:
+            self._words[position] = self._view[position] = 0
+        self._kept = frozenset(positions)
 
     def close(self) -> None:
         """End the HAL's reports."""

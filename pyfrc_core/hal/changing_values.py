@@ -1,6 +1,7 @@
 """Reads many values of the HAL, in a time that depends on how many of them are written.
 
-A value of a SimDevice is read only after the HAL has reported a write, which takes less time than a read.
+A value of a SimDevice is read only after the HAL has reported a write, which takes less time than a read. Those that
+are written in most packets are read in all, so that their reports need not be found and cleared.
 
 The other devices' values are read at each look. Their number is limited by the roboRIO, and their callbacks are lost
 without a sign when code resets their data.
@@ -16,6 +17,9 @@ from operator import ne
 from typing import Any, NamedTuple
 
 from ..compat.hal_callbacks import WriteFlags
+
+#: How many looks decide which values of SimDevices are written often, and for how many looks this holds: a second.
+_CHOOSING_LOOKS, _LOOKS_BETWEEN = 3, 50
 
 
 class Leaf(NamedTuple):
@@ -55,15 +59,18 @@ class ChangingValues:
         for position, leaf in enumerate(leaves):
             if leaf.handle:
                 positions.setdefault(leaf.handle, []).append(position)
-        self._reported = [[(position, leaves[position].read) for position in each] for each in positions.values()]
+        self._leaves = leaves
+        self._reported = list(positions.values())
         self._flags = WriteFlags(list(positions))
-        self._others = [position for position, leaf in enumerate(leaves) if not leaf.handle]
-        self._reads = [leaves[position].read for position in self._others]
-        self._converts = [leaves[position].convert for position in self._others]
         found = [leaf.read() for leaf in leaves]
-        #: What was last read of the values that are read at each look.
-        self._last = [found[position] for position in self._others]
-        self._packed = marshal.dumps(self._last, 2)
+        self._others = _Polled([(at, leaf, found[at]) for at, leaf in enumerate(leaves) if not leaf.handle])
+        #: The values that are often written, and how many more looks these are. They are chosen again now and then, so
+        #: that values which are no longer written take no time.
+        self._often = _Polled([])
+        self._looks_left = 0
+        #: What was written in the looks in which they are chosen, and how many of these looks follow.
+        self._chosen: set[int] = set()
+        self._choosing = _CHOOSING_LOOKS
         self.values = [
             value if leaf.convert is None else leaf.convert(value) for leaf, value in zip(leaves, found, strict=True)
         ]
@@ -71,44 +78,79 @@ class ChangingValues:
     def look(self) -> list[int]:
         """Read what may have changed; return the positions of the changed values, in order."""
         changed = self._read_written()
-        others = self._read_others()
-        return sorted([*changed, *others]) if changed or others else changed
+        changed += self._others.read(self.values)
+        changed.sort()
+        return changed
 
     def _read_written(self) -> list[int]:
-        values, reported = self.values, self._reported
-        changed = []
-        for number in self._flags.take():
-            for position, read in reported[number]:
-                old, new = values[position], read()
-                if (old != new and new == new) or not same(old, new):  # NaN differs from itself
-                    values[position] = new
-                    changed.append(position)
+        looks_left, flags, changed = self._looks_left, self._flags, []
+        if looks_left:
+            self._looks_left -= 1
+            if looks_left == 1:
+                flags.keep(())
+        written = flags.take()
+        if looks_left:
+            changed = self._often.read(self.values)
+        if written:
+            values, leaves, reported = self.values, self._leaves, self._reported
+            for number in written:
+                for position in reported[number]:
+                    old, new = values[position], leaves[position].read()
+                    if (old != new and new == new) or not same(old, new):  # NaN differs from itself
+                        values[position] = new
+                        changed.append(position)
+            if not looks_left:
+                self._choose(written)
         return changed
 
-    def _read_others(self) -> list[int]:
-        found, last = [read() for read in self._reads], self._last
-        places = []
-        for place in compress(count(), map(ne, last, found)):
-            old, new = last[place], found[place]
-            last[place] = new
-            if (type(new) is float and new == new) or not same(old, new):  # NaN differs from itself
-                places.append(place)
-        # What is left may be equal and not the same, such as 0.0 and -0.0. Version 2 of the format does not depend on
-        # which objects are shared.
-        packed = marshal.dumps(found, 2)
-        if packed != (marshal.dumps(last, 2) if places else self._packed):
-            places = sorted(
-                {*places, *(place for place, pair in enumerate(zip(last, found, strict=True)) if not same(*pair))}
-            )
-            last[:] = found
-        self._packed = packed
-        changed = []
-        for place in places:
-            position, convert, value = self._others[place], self._converts[place], found[place]
-            self.values[position] = value if convert is None else convert(value)
-            changed.append(position)
-        return changed
+    def _choose(self, written: list[int]) -> None:
+        """Choose which values are read at each of the next looks, after some looks with values that were written."""
+        self._chosen.update(written)
+        self._choosing -= 1
+        if not self._choosing:
+            often = sorted(position for number in self._chosen for position in self._reported[number])
+            self._often = _Polled([(at, self._leaves[at], self.values[at]) for at in often])
+            self._flags.keep(self._chosen)
+            self._chosen, self._choosing, self._looks_left = set(), _CHOOSING_LOOKS, _LOOKS_BETWEEN
 
     def close(self) -> None:
         """End the HAL's reports."""
         self._flags.close()
+
+
+class _Polled:
+    """Values that are read at each look.
+
+    :param leaves: the position, the leaf, and what it was last read as
+    """
+
+    def __init__(self, leaves: Sequence[tuple[int, Leaf, Any]]) -> None:
+        self._positions = [position for position, _, _ in leaves]
+        self._reads = [leaf.read for _, leaf, _ in leaves]
+        self._converts = [leaf.convert for _, leaf, _ in leaves]
+        self._last = [value for _, _, value in leaves]
+        self._packed = marshal.dumps(self._last, 2)
+
+    def read(self, values: list[Any]) -> list[int]:
+        """Update `values`; return the positions of those that have changed."""
+        found, last, positions, converts = [read() for read in self._reads], self._last, self._positions, self._converts
+        changed = []
+        for place in compress(count(), map(ne, last, found)):
+            old, new = last[place], found[place]
+            last[place] = new
+            if (type(new) is float and new == new) or not same(old, new):  # NaN differs from itself
+                position, convert = positions[place], converts[place]
+                values[position] = new if convert is None else convert(new)
+                changed.append(position)
+        # What is left may be equal and not the same, such as 0.0 and -0.0. Version 2 of the format does not depend on
+        # which objects are shared.
+        packed = marshal.dumps(found, 2)
+        if packed != (marshal.dumps(last, 2) if changed else self._packed):
+            for place, (old, new) in enumerate(zip(last, found, strict=True)):
+                if not same(old, new):
+                    position, convert = positions[place], converts[place]
+                    values[position] = new if convert is None else convert(new)
+                    changed.append(position)
+            self._last = found
+        self._packed = packed
+        return changed
