@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import math
+import random
 from typing import Any
 
 from pyfrc_core.hal.change_reader import ChangeReader
@@ -126,3 +127,13 @@ def test_lines_are_as_json_has_them() -> None:
             change |= {"gone": gone} if gone else {}
             change |= {"real_time": marked} if marked else {}
             assert lines.format(0.02, some, gone, marked) == json.dumps(change, sort_keys=True)
+
+
+def test_floats_are_written_as_python_writes_them() -> None:
+    chance = random.Random(7)
+    some = [chance.uniform(-1, 1) * 10.0 ** chance.randrange(-20, 25) for _ in range(2000)]
+    some += [sign * 10.0**exponent * near for exponent in range(-8, 24) for near in (1, 1 - 1e-16) for sign in (1, -1)]
+    some += [2.0**exponent for exponent in range(-1074, 1024)]
+    values: dict[str, object] = {f"p{number}": value for number, value in enumerate(some)}
+    line = TraceLines().format(0.02, values, [], {})
+    assert line == json.dumps({"set": values, "t": 0.02}, sort_keys=True)
