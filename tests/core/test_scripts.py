@@ -353,6 +353,32 @@ def test_before_packets_with_only_the_match_time_nothing_else_is_recorded(run: R
     published.close()
 
 
+def test_values_that_come_and_go_while_only_the_match_time_is_recorded(run: RobotRun) -> None:
+    network = ntcore.NetworkTableInstance.getDefault()
+    entries = [network.getDoubleTopic(f"/{name}").publish() for name in "zyx"]
+    for entry in entries:
+        entry.set(1.0)
+    recorder = Recorder(run)
+    run.construct(Robot)
+    run.start()
+    for _ in range(60):
+        recorder.begin_outside(stepping=True, only_time=True)
+        recorder.end_outside(stepping=True, only_time=True)
+    entries.pop(1).close()
+    entries[0].set(2.0)
+    entries.append(network.getDoubleTopic("/a").publish())
+    entries[-1].set(2.0)
+    recorder.begin_outside()
+    entries.append(network.getDoubleTopic("/y").publish())
+    for entry in reversed(entries):
+        entry.set(3.0)
+    recorder.end_outside()
+    steps = [list(step.writes.items()) for step in recorder.steps_from(0) if step.writes]
+    assert steps == [[(f"{NETWORK}/{name}", 3.0) for name in "zxay"]]
+    for entry in entries:
+        entry.close()
+
+
 def test_a_script_that_does_not_fit_the_robot_names_its_line(run: RobotRun) -> None:
     run.construct(Robot)
     with pytest.raises(ScriptError) as caught:

@@ -28,8 +28,8 @@ _TOLD_OTHERWISE = {"control.enabled", "control.autonomous", "control.test"}
 #: The types that entries of NetworkTables have for people; structs and the like are written by robots.
 _PLAIN = (bool, int, float, str)
 
-#: How many packets' values of NetworkTables are read together.
-_PACKETS_AT_ONCE = 50
+#: How many packets in a row, of which only the match time is recorded, end the reports from NetworkTables.
+_PACKETS_HEARD = 50
 
 
 class Recorder:
@@ -237,14 +237,19 @@ class _Network:
 
     def __init__(self) -> None:
         self._news = ntcore.NetworkTableListenerPoller(ntcore.NetworkTableInstance.getDefault())
-        flags = ntcore.EventFlags
-        self._news.addListener([""], flags.kValueAll | flags.kUnpublish | flags.kImmediate)
         self._found: dict[str, Any] = {}
         #: The packets whose values have not been read.
         self._waiting = 0
+        self._listen()
+
+    def _listen(self) -> None:
+        flags = ntcore.EventFlags
+        self._listener = self._news.addListener([""], flags.kValueAll | flags.kUnpublish | flags.kImmediate)
 
     def look(self) -> list[Change]:
         """Return the entries that have changed since the last look, in the order in which they were first heard of."""
+        if self._waiting >= _PACKETS_HEARD:
+            self.skip()
         before: dict[str, Any] = {}
         for target, value in self._heard():
             before.setdefault(target, self._found.get(target, MISSING))
@@ -261,15 +266,27 @@ class _Network:
 
     def skip(self) -> None:
         """Look without finding what has changed."""
+        paused = self._waiting >= _PACKETS_HEARD
         self._waiting = 0
+        if not paused:
+            for target, value in self._heard():
+                self._hear(target, value)
+            return
+        before, self._found = self._found, {}
+        self._listen()  # reports all current values
         for target, value in self._heard():
             self._hear(target, value)
+        self._found = {target: self._found[target] for target in before if target in self._found} | self._found
 
     def skip_later(self) -> None:
-        """Skip now or with one of the next calls: many values at once take less time. Call `skip` before `look`."""
+        """Skip with one of the next calls. Call `skip` before `look`.
+
+        After many of these calls, nothing is heard until then: to hear each value takes longer than to get all once.
+        """
         self._waiting += 1
-        if self._waiting == _PACKETS_AT_ONCE:
-            self.skip()
+        if self._waiting == _PACKETS_HEARD:
+            self._news.removeListener(self._listener)
+            self._news.readQueue()
 
     def _heard(self) -> Iterator[tuple[str, Any]]:
         """Return the news since the last look: targets, with their plain values or `MISSING`."""
