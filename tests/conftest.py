@@ -48,8 +48,8 @@ settings.register_profile(
 )
 settings.load_profile("suite")
 
-#: Seconds that one test may take, its fixtures included: only a test that hangs takes so long. The slowest has reached 300 s
-#: on a machine whose two cores some thirty processes wanted.
+#: Seconds that one test may take, its fixtures included: only a test that hangs takes so long. The slowest has reached
+#: 300 s on a machine whose two cores some thirty processes wanted.
 TEST_LIMIT = 900.0
 
 _STDERR = pytest.StashKey[int]()
