@@ -70,6 +70,8 @@ def command(
         write_replay_page(project, file, page, result)
         hint(f"wrote {page}")
     hint(f"replayed {result.seconds:.2f} s of robot time")
+    if trace is not None and result.starts > 1:
+        hint(f"The script starts the robot program {result.starts} times: the trace is that of the last start.")
     if result.failure is not None:
         click.secho(f"then {result.failure}", fg="red")
     if result.real_time:

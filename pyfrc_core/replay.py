@@ -43,6 +43,7 @@ class ReplayResult:
     :param equal: whether the trace equals the recorded one; None when the recording has no hash
     :param difference: the first difference, if the recording has a trace
     :param real_time: the devices that do not repeat, as `compat.real_time_devices` names them
+    :param starts: how many times the script starts the robot program; the trace is that of the last one
     """
 
     seconds: float
@@ -51,6 +52,7 @@ class ReplayResult:
     equal: bool | None
     difference: Difference | None
     real_time: tuple[str, ...] = ()
+    starts: int = 1
 
 
 def replay(project: Project, file: Path, *, until: float | None = None, trace: Path | None = None) -> ReplayResult:
@@ -111,7 +113,7 @@ def _replay_boots(project: Project, script: InputScript, until: float | None, tr
         replay_in_subprocess(project, replace(script, end_us=end_us), trace)
     except RobotCodeError as error:
         failure = error
-    return ReplayResult(end_us / 1_000_000, failure, "", None, None)
+    return ReplayResult(end_us / 1_000_000, failure, "", None, None, starts=len(boots_of(script)))
 
 
 @contextmanager

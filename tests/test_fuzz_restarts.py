@@ -89,8 +89,14 @@ def test_a_replay_without_failure(make_project: Any) -> None:
         """
     third = SCRIPT + '{"t": 1.5, "set": {"restart": true, "control.fmsAttached": true}}\n'
     project = make_project({"robot.py": code, "script.jsonl": third})
-    replayed = project.run("replay", "script.jsonl")
-    assert (replayed.code, replayed.stdout.strip()) == (0, "replayed 2.00 s of robot time"), replayed.output
+    replayed = project.run("replay", "script.jsonl", "--trace", "trace.jsonl")
+    assert (replayed.code, replayed.stdout.splitlines()) == (
+        0,
+        [
+            "replayed 2.00 s of robot time",
+            "The script starts the robot program 3 times: the trace is that of the last start.",
+        ],
+    ), replayed.output
 
 
 def test_fuzz_starts_the_program_again(make_project: Any) -> None:
