@@ -122,12 +122,39 @@ def _number(value: Any) -> Any:
 
 
 def _write_plain(entry: ntcore.NetworkTableEntry, value: Any) -> None:
-    is_whole = isinstance(value, int) and not isinstance(value, bool)
-    if is_whole and entry.getType() != ntcore.NetworkTableType.kInteger:
-        value = float(value)  # JSON does not tell 1 from 1.0, and dashboards write doubles
-    _set(entry, value, value)
+    if isinstance(value, list | tuple):
+        _write_list(entry, list(value))
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        _set(entry, _number(entry.getType(), value), value)
+    else:
+        _set(entry, value, value)
+
+
+def _number(kind: ntcore.NetworkTableType, value: float) -> ntcore.Value:
+    if kind == ntcore.NetworkTableType.kInteger and isinstance(value, int):
+        return ntcore.Value.makeInteger(value)
+    if kind == ntcore.NetworkTableType.kFloat:
+        return ntcore.Value.makeFloat(value)
+    return ntcore.Value.makeDouble(value)  # JSON does not tell 1 from 1.0, and dashboards write doubles
+
+
+def _write_list(entry: ntcore.NetworkTableEntry, value: list[Any]) -> None:
+    """Write numbers as the type that the entry has, and as doubles where it has none; other lists as they are."""
+    type_name = entry.getTopic().getTypeString()
+    numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in value)
+    if numbers and type_name not in ("int[]", "float[]") and (value or type_name not in MAKE_VALUE):
+        type_name = "double[]"
+    try:
+        _set(entry, MAKE_VALUE[type_name](value) if numbers else value, value)
+    except (TypeError, RuntimeError):  # numbers that are not whole in an int[], or a list of several kinds
+        raise _wrong(entry, value) from None
 
 
 def _set(entry: ntcore.NetworkTableEntry, made: Any, value: Any) -> None:
     if not entry.setValue(made):
-        raise UsageError(f"{entry.getName()} is {entry.getTopic().getTypeString()}, and cannot be {value!r}")
+        raise _wrong(entry, value)
+
+
+def _wrong(entry: ntcore.NetworkTableEntry, value: Any) -> UsageError:
+    type_name = entry.getTopic().getTypeString()
+    return UsageError(f"{entry.getName()} {f'is {type_name}, and ' if type_name else ''}cannot be {value!r}")
