@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -12,7 +13,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from pyfrc_core.errors import UsageError
+from pyfrc_core.sim.ui.web.access import Access
 from pyfrc_core.sim.ui.web.forwarding import forwarded_origins
+from pyfrc_core.sim.ui.web.server import Server, WebOptions
 
 QUIET = {
     "robot.py": """
@@ -235,3 +238,37 @@ def test_addresses_differ_from_start_to_start(make_project) -> None:
         two = second.address, second.viewing_address
     tokens = {urlsplit(address).query for address in (*one, *two)}
     assert len(tokens) == 4
+
+
+class _Delays:
+    """An application that notes whether its connection may hold back what is sent."""
+
+    def __init__(self) -> None:
+        self.found: list[bool] = []
+        self.server = Server(WebOptions(), Access())
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        (connection,) = self.server._server.server_state.connections
+        accepted = connection.transport.get_extra_info("socket")
+        self.found.append(not accepted.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+        await send({"type": "http.response.start", "status": 204, "headers": []})
+        await send({"type": "http.response.body"})
+
+    async def close_pages(self) -> None:
+        """There are none."""
+
+    def close(self) -> None:
+        """There is nothing to do."""
+
+
+def test_what_is_sent_to_a_page_leaves_at_once() -> None:
+    """Otherwise a second message waits until the page has acknowledged the first one, up to 40 ms."""
+    app = _Delays()
+    app.server.start(app)
+    try:
+        with socket.create_connection(("127.0.0.1", app.server.port), PATIENCE) as page:
+            page.sendall(b"GET / HTTP/1.0\r\n\r\n")
+            assert page.recv(1)
+    finally:
+        app.server.close()
+    assert app.found == [False]

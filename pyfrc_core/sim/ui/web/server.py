@@ -47,7 +47,8 @@ class Server:
     def __init__(self, options: WebOptions, access: Access) -> None:
         self._access = access
         address = "127.0.0.1" if options.share is None else "0.0.0.0"
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        # With its protocol named, asyncio has what is sent leave at once; otherwise small messages wait for others.
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._socket.bind((address, options.port))
