@@ -1,10 +1,34 @@
 // Canvases with sharp lines on dense screens.
 import { color } from "./settings.js";
 
+// An element's size without its borders, in pixels of the page. Asking the element itself in each drawing would have the
+// browser lay out the page at once, and again before it paints.
+export class ElementSize {
+  width = 0;
+  height = 0;
+
+  // Call `changed` when the size is known, and after each change.
+  constructor(element, changed) {
+    this.observer = new ResizeObserver(() => {
+      this.width = element.clientWidth;
+      this.height = element.clientHeight;
+      changed();
+    });
+    this.observer.observe(element);
+  }
+
+  disconnect() {
+    this.observer.disconnect();
+  }
+}
+
+let rootScale = null; // of the page's texts; asking for it in each drawing would compute styles at once
+addEventListener("resize", () => (rootScale = null));
+
 // The font of texts in canvases, in pixels of an ordinary screen: larger on huge ones, like all texts of the page.
 export function font(pixels, style = "") {
-  const scale = parseFloat(getComputedStyle(document.documentElement).fontSize) / 13;
-  return `${style}${pixels * scale}px ${color("font")}`;
+  rootScale ??= parseFloat(getComputedStyle(document.documentElement).fontSize) / 13;
+  return `${style}${pixels * rootScale}px ${color("font")}`;
 }
 
 // Give a canvas this size in pixels of the page, clear it, and return its context.

@@ -14,7 +14,7 @@ const ICON = document.querySelector("link[rel=icon]").href;
 const MODES = [["teleop", "Teleop"], ["autonomous", "Auto"], ["test", "Test"]];
 
 export class StationBar extends Live {
-  parts = ["station", "status", "shown", "hello", "connection", "settings", "clients", "hint"];
+  parts = ["station", "shown", "hello", "connection", "settings", "clients", "hint"];
 
   render() {
     const { station } = model.shown;

@@ -1,5 +1,5 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
-import { font, sizeCanvas } from "./canvas.js";
+import { ElementSize, font, sizeCanvas } from "./canvas.js";
 import { clock } from "./format.js";
 import { model } from "./model.js";
 import { length, live, look, lookBy, lookByPackets } from "./past.js";
@@ -24,11 +24,12 @@ export class Timeline extends Live {
   componentDidMount() {
     super.componentDidMount();
     this.modes = watch("sim.mode");
-    this.draw();
+    this.size = new ElementSize(this.canvas.current.parentElement, () => this.draw());
   }
 
   componentWillUnmount() {
     super.componentWillUnmount();
+    this.size.disconnect();
     unwatch("sim.mode");
   }
 
@@ -54,6 +55,10 @@ export class Timeline extends Live {
 
   // -- drawing
 
+  get width() {
+    return this.size.width;
+  }
+
   get whole() {
     return Math.max(length(), SHORTEST);
   }
@@ -64,9 +69,8 @@ export class Timeline extends Live {
 
   draw() {
     const canvas = this.canvas.current;
-    if (!canvas || !this.modes) return;
-    const context = sizeCanvas(canvas, canvas.parentElement.clientWidth, HEIGHT);
-    this.width = canvas.parentElement.clientWidth;
+    if (!canvas || !this.size?.width) return;
+    const context = sizeCanvas(canvas, this.width, HEIGHT);
     this.drawModes(context);
     this.drawMarks(context);
     this.drawTicks(context);

@@ -56,9 +56,20 @@ function Group({ title, rows, pins, closed, toggle }) {
   return html`<section class="group">
     <h3><button class=${classes({ fold: true, closed })} aria-expanded=${!closed} onClick=${toggle} disabled=${!toggle}>
       ${toggle && html`<${Icon} name="chevron" />`}${title}</button></h3>
-    ${!closed && rows.map((row) => html`<${DeviceRow} key=${rowKey(row)} row=${row} pinned=${pins.has(rowKey(row))}
-      named=${title === "Pinned"} pin=${() => togglePin(rowKey(row))} />`)}
+    ${!closed && byDevice(rows).map((some) => html`<div class="device" key=${rowKey(some[0])}>
+      ${some.map((row) => html`<${DeviceRow} key=${rowKey(row)} row=${row} pinned=${pins.has(rowKey(row))}
+        named=${title === "Pinned"} pin=${() => togglePin(rowKey(row))} />`)}</div>`)}
   </section>`;
+}
+
+// The rows in parts, each of which begins with the heading of a device or has none.
+function byDevice(rows) {
+  const parts = [];
+  for (const row of rows) {
+    if (row.isHeading || !parts.length) parts.push([]);
+    parts.at(-1).push(row);
+  }
+  return parts;
 }
 
 function togglePin(key) {

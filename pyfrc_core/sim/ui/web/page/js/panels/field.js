@@ -1,5 +1,5 @@
 // The field: the season's picture, the robot, its path, and what robot code publishes. The wheel zooms, dragging moves.
-import { font, sizeCanvas } from "../canvas.js";
+import { ElementSize, font, sizeCanvas } from "../canvas.js";
 import { command } from "../connection.js";
 import { numberText } from "../format.js";
 import * as draw from "../field/draw.js";
@@ -31,16 +31,14 @@ export class FieldPanel extends Live {
   componentDidMount() {
     super.componentDidMount();
     this.view = new Viewport(model.hello.field);
-    this.sizes = new ResizeObserver(() => this.draw());
-    this.sizes.observe(this.canvas.current.parentElement);
+    this.size = new ElementSize(this.canvas.current.parentElement, () => this.draw());
     this.canvas.current.addEventListener("wheel", this.wheel, { passive: false });
     this.loadImage();
-    this.draw();
   }
 
   componentWillUnmount() {
     super.componentWillUnmount();
-    this.sizes.disconnect();
+    this.size.disconnect();
   }
 
   componentDidUpdate() {
@@ -61,8 +59,8 @@ export class FieldPanel extends Live {
   render() {
     const pose = model.shown.robot;
     const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));
-    const objects = fieldObjects(model.shown.values, model.hello.field).map(({ path, name }) => this.layer(path, name));
-    if (objects.length) layers.push({ separator: true }, ...objects);
+    this.objects = fieldObjects(model.shown.values, model.hello.field);
+    if (this.objects.length) layers.push({ separator: true }, ...this.objects.map(({ path, name }) => this.layer(path, name)));
     layers.push({ separator: true }, { text: "Turn the field round", checked: Boolean(this.view?.turned), act: this.turnRound });
     return html`<div class="field">
       <div class="field-canvas" tabindex="0" role="application" aria-label="Field. Arrow keys move the robot, with Shift they turn it"
@@ -96,14 +94,13 @@ export class FieldPanel extends Live {
 
   draw() {
     const canvas = this.canvas.current;
-    if (!canvas || !this.view) return;
-    const { clientWidth, clientHeight } = canvas.parentElement;
-    if (!clientWidth || !clientHeight) return;
-    const context = sizeCanvas(canvas, clientWidth, clientHeight);
+    const { width, height } = this.size ?? {};
+    if (!canvas || !width || !height) return;
+    const context = sizeCanvas(canvas, width, height);
     const { view } = this;
     const { field } = model.hello;
     view.field = field;
-    view.resize(clientWidth, clientHeight);
+    view.resize(width, height);
     draw.drawCarpet(context, view, field, this.image);
     if (this.shows("tags")) draw.drawTags(context, view, field.tags);
     if (this.shows("former")) draw.drawTrail(context, view, model.formerTrail, "former", 2, [7, 5]);
@@ -119,7 +116,7 @@ export class FieldPanel extends Live {
   }
 
   drawObjects(context, field) {
-    fieldObjects(model.shown.values, field).forEach((object, index) => {
+    this.objects.forEach((object, index) => {
       if (!this.shows(object.path)) return;
       const name = `curve-${(index + 2) % 8}`;
       if (object.isPath) draw.drawTrail(context, this.view, object.poses, name, 2);

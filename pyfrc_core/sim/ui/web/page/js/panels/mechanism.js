@@ -1,5 +1,5 @@
 // The Mechanism2d drawings that robot code publishes.
-import { font, sizeCanvas } from "../canvas.js";
+import { ElementSize, font, sizeCanvas } from "../canvas.js";
 import { plain } from "../format.js";
 import { model } from "../model.js";
 import { color } from "../settings.js";
@@ -11,14 +11,12 @@ export class MechanismPanel extends Live {
 
   componentDidMount() {
     super.componentDidMount();
-    this.sizes = new ResizeObserver(() => this.draw());
-    this.sizes.observe(this.canvas.current.parentElement);
-    this.draw();
+    this.size = new ElementSize(this.canvas.current.parentElement, () => this.draw());
   }
 
   componentWillUnmount() {
     super.componentWillUnmount();
-    this.sizes.disconnect();
+    this.size.disconnect();
   }
 
   componentDidUpdate() {
@@ -33,19 +31,18 @@ export class MechanismPanel extends Live {
 
   draw() {
     const canvas = this.canvas.current;
-    if (!canvas) return;
-    const { clientWidth, clientHeight } = canvas.parentElement;
-    if (!clientWidth) return;
-    const context = sizeCanvas(canvas, clientWidth, clientHeight);
+    const { width, height } = this.size ?? {};
+    if (!canvas || !width) return;
+    const context = sizeCanvas(canvas, width, height);
     const found = mechanisms(model.shown.values);
     const columns = Math.ceil(Math.sqrt(found.length)) || 1;
     const rows = Math.ceil(found.length / columns) || 1;
     found.forEach((mechanism, index) => {
       const box = {
-        x: ((index % columns) * clientWidth) / columns + 10,
-        y: (Math.floor(index / columns) * clientHeight) / rows + 10,
-        width: clientWidth / columns - 20,
-        height: clientHeight / rows - 20,
+        x: ((index % columns) * width) / columns + 10,
+        y: (Math.floor(index / columns) * height) / rows + 10,
+        width: width / columns - 20,
+        height: height / rows - 20,
       };
       drawMechanism(context, mechanism, box);
     });

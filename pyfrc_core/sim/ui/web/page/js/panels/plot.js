@@ -1,6 +1,6 @@
 // Values over time. Curves are added by "+" or by dragging a value here; dragging in the plot zooms, a double click follows again.
 import uPlot from "../../vendor/uplot/uPlot.esm.js";
-import { font } from "../canvas.js";
+import { ElementSize, font } from "../canvas.js";
 import { compared } from "../compare.js";
 import { ask } from "../connection.js";
 import { clockTick, valueText } from "../format.js";
@@ -31,14 +31,13 @@ export class PlotPanel extends Live {
 
   componentDidMount() {
     super.componentDidMount();
-    this.sizes = new ResizeObserver(() => this.resize());
-    this.sizes.observe(this.area.current);
+    this.size = new ElementSize(this.area.current, () => this.resize());
     this.update();
   }
 
   componentWillUnmount() {
     super.componentWillUnmount();
-    this.sizes.disconnect();
+    this.size.disconnect();
     for (const path of this.watched.keys()) unwatch(path);
     this.plot?.destroy();
     this.plot = null;
@@ -155,14 +154,14 @@ export class PlotPanel extends Live {
     const curves = this.config.curves.filter(({ path }) => this.isNumber(path));
     if (!curves.length) return;
     this.lines = [...curves, ...(compared.id === null ? [] : curves.map((curve) => ({ ...curve, other: true })))];
-    const { clientWidth, clientHeight } = this.area.current;
+    const { width, height } = this.size;
     const hasLeft = curves.some((curve) => curve.axis === "left");
     const hasRight = curves.some((curve) => curve.axis === "right");
     const axis = { stroke: color("muted"), font: font(11), grid: { stroke: color("grid"), width: 1 }, ticks: { stroke: color("grid"), width: 1, size: 4 } };
     this.plot = new uPlot(
       {
-        width: Math.max(clientWidth, 80),
-        height: Math.max(clientHeight, 60),
+        width: Math.max(width, 80),
+        height: Math.max(height, 60),
         legend: { show: false },
         cursor: { y: false, sync: { key: sync.key, setSeries: false }, drag: { x: true, y: false, setScale: false }, points: { size: 7 }, bind: { dblclick: () => () => this.follow(this.config.seconds) } },
         scales: { x: { time: false, auto: false }, left: { range: padded }, right: { range: padded } },
@@ -186,7 +185,7 @@ export class PlotPanel extends Live {
           draw: [(plot) => this.drawMoment(plot)],
         },
       },
-      aligned(this.lines.map((line) => this.seriesOf(line)), this.range()[0], Math.min(this.range()[1], length()), clientWidth),
+      aligned(this.lines.map((line) => this.seriesOf(line)), this.range()[0], Math.min(this.range()[1], length()), width),
       this.area.current,
     );
     this.plot.over.addEventListener("wheel", this.wheel, { passive: false });
@@ -194,8 +193,8 @@ export class PlotPanel extends Live {
   }
 
   resize() {
-    const { clientWidth, clientHeight } = this.area.current;
-    if (this.plot && clientWidth > 40 && clientHeight > 40) this.plot.setSize({ width: clientWidth, height: clientHeight });
+    const { width, height } = this.size;
+    if (this.plot && width > 40 && height > 40) this.plot.setSize({ width, height });
     this.drawBands();
   }
 
@@ -256,11 +255,11 @@ export class PlotPanel extends Live {
 
   drawBands() {
     const canvas = this.bands.current;
-    if (!canvas) return;
+    if (!canvas || !this.size.width) return;
     const curves = this.config.curves.filter(({ path }) => !this.isNumber(path));
     canvas.style.display = curves.length ? "block" : "none";
     if (!curves.length) return;
-    const width = this.area.current.clientWidth;
+    const { width } = this.size;
     const inside = this.plot ? { left: this.plot.bbox.left / devicePixelRatio, width: this.plot.bbox.width / devicePixelRatio } : { left: 8, width: width - 16 };
     const bands = curves.map((curve) => ({ ...curve, series: this.seriesOf(curve) }));
     drawBands(canvas, bands, { width, inside, band: BAND, range: this.range(), now: length(), past: model.past?.t });
