@@ -27,6 +27,7 @@ from .output_log import OutputCursor, OutputLog
 from .pending import PendingCommands
 from .processes import RobotProcesses
 from .recording import Recording
+from .report_signal import ReportSignal
 from .scene import Pose, Tag
 from .snapshot import Failure, Snapshot, Status
 from .snapshot_builder import SnapshotBuilder, status_after, status_at_start
@@ -52,7 +53,8 @@ class Simulation(Controls):
         self.options.check()
         self.project = project
         self.field = field_of(project)
-        self._changed = threading.Condition()
+        #: Notified of everything that a front end may show.
+        self.reports = self._changed = ReportSignal()
         self._status = Status(speed=self.options.speed)
         self._snapshot: Snapshot | None = None
         self._recording = Recording(self._first_script())

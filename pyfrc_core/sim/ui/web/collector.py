@@ -73,6 +73,8 @@ class Collector:
         self._rows = DeviceRows(simulation.project.sim_config)
         self._network_values: Mapping[str, Any] = {}
         self._network_changed = False
+        #: Whether the last look has left changes for the next one.
+        self._has_more = False
         self._run = (0, 0.0)
         self._overruns = self._starts = 0
         self._failure: Failure | None = None
@@ -104,14 +106,15 @@ class Collector:
         self._announced.append(text)
 
     def _follow(self) -> None:
+        reports = self._simulation.reports
         while not self._over.is_set():
-            began = time.monotonic()
+            began, seen = time.monotonic(), reports.count
             if self.look():
                 self._changed()
-            else:
-                woken = iter((False, True))  # by the next report
-                self._simulation.wait_for(lambda: next(woken, True), _LONGEST)  # noqa: B023
-            self._over.wait(max(began + _SHORTEST - time.monotonic(), 0.0))
+            if not self._has_more:
+                reports.wait_after(seen, _LONGEST)
+            if (rest := began + _SHORTEST - time.monotonic()) > 0:
+                self._over.wait(rest)
 
     def look(self) -> bool:
         """Read what is new, and return whether there is anything."""
@@ -141,7 +144,8 @@ class Collector:
             self.runs.take("hal", hal, self._look_at_hal)
             self.runs.take("network", network, self._look_at_network)
             found = found or bool(hal or network)
-            if len(hal) < _MOST_CHANGES and len(network) < _MOST_CHANGES:
+            self._has_more = len(hal) == _MOST_CHANGES or len(network) == _MOST_CHANGES
+            if not self._has_more:
                 break
         return found
 

@@ -54,7 +54,7 @@ class History:
         self._now: dict[str, Any] = {}
 
     @property
-    def now(self) -> Mapping[str, Any]:
+    def now(self) -> MappingProxyType[str, Any]:
         """All values after the last change."""
         return MappingProxyType(self._now)
 

@@ -58,13 +58,15 @@ class PageClient:
         """Send what has changed, as fast as the page takes it, until it has gone."""
         await self._send({**self._hello(), **self._builder.update(self._clients())})
         loop = asyncio.get_running_loop()
+        began = loop.time()
         while True:
             await self.news.wait()
+            if (rest := began + _INTERVAL - loop.time()) > 0:
+                await asyncio.sleep(rest)
             self.news.clear()
             began = loop.time()
             if update := self._builder.update(self._clients()):
                 await self._send({"type": "update", **update})
-            await asyncio.sleep(max(began + _INTERVAL - loop.time(), 0.0))
 
     async def receive(self, text: str) -> None:
         """Carry out one message of the page."""
