@@ -51,6 +51,8 @@ class History(Generic[Item]):
 
     def __init__(self) -> None:
         self._blocks: list[_Block] = []
+        #: The number of entries in the blocks.
+        self._written = 0
         self._recent: list[tuple[int, Item]] = []
         self._file: _File | None = None
         self._most = 2 * _BLOCK
@@ -74,11 +76,12 @@ class History(Generic[Item]):
             self._most *= 2
             return
         self._blocks.append(_Block(self._file, offset, entries[-1][0], len(entries)))
+        self._written += len(entries)
         del self._recent[:-_BLOCK]
         self._most = 2 * _BLOCK
 
     def __len__(self) -> int:
-        return sum(block.count for block in self._blocks) + len(self._recent)
+        return self._written + len(self._recent)
 
     def __iter__(self) -> Iterator[tuple[int, Item]]:
         return self.since(0)
@@ -86,11 +89,12 @@ class History(Generic[Item]):
     def since(self, number: int) -> Iterator[tuple[int, Item]]:
         """Yield the entries from the one with this number on; they count from 0."""
         before = 0
-        for block in self._blocks:
-            if number < before + block.count:
-                yield from self._read(block)[max(number - before, 0) :]
-            before += block.count
-        yield from self._recent[max(number - before, 0) :]
+        if number < self._written:  # not for readers that follow: they take no longer in a long run
+            for block in self._blocks:
+                if number < before + block.count:
+                    yield from self._read(block)[max(number - before, 0) :]
+                before += block.count
+        yield from self._recent[max(number - self._written, 0) :]
 
     @property
     def last(self) -> Item | None:
@@ -106,6 +110,7 @@ class History(Generic[Item]):
         part._recent = list(takewhile(lambda entry: entry[0] <= time_us, after))
         if not part._recent and part._blocks:
             part._recent = self._read(part._blocks.pop())
+        part._written = sum(block.count for block in part._blocks)
         return part
 
     @staticmethod

@@ -4,6 +4,7 @@
 // the past while `model.past` is set. Changes are announced once per frame of the screen.
 
 const MOST_LINES = 2000;
+const MOST_MARKS = 2000; // and no limit for the person's own
 
 class Model {
   connection = "connecting";
@@ -124,7 +125,7 @@ class Model {
     if (message.former_trail) this.formerTrail = message.former_trail;
     if (message.console) this.console = this.console.concat(message.console).slice(-MOST_LINES);
     if (message.console_dropped) this.dropped += message.console_dropped;
-    if (message.marks) this.marks = this.marks.concat(message.marks);
+    if (message.marks) this.marks = limited(this.marks.concat(message.marks));
     for (const part of ["panels", "robot", "drawings", "targets", "choosers", "branches", "clients"]) {
       if (part in message) this[part] = message[part];
     }
@@ -152,6 +153,12 @@ class Model {
     for (const listener of this.#sampleListeners) listener("run", run.t);
     this.announce("marks");
   }
+}
+
+// The marks without the oldest of too many.
+function limited(marks) {
+  let excess = marks.length - MOST_MARKS;
+  return excess > 0 ? marks.filter((mark) => mark.kind === "own" || excess-- <= 0) : marks;
 }
 
 export const model = new Model();

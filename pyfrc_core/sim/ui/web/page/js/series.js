@@ -5,6 +5,9 @@ import { model } from "./model.js";
 import { indexAfter } from "./times.js";
 
 const FIRST_POINTS = 4000; // of the history, when a path begins to be watched
+// A longer series keeps these newest points, and what is older in as many points as at first: memory does not grow.
+const MOST_POINTS = 40000;
+const NEWEST_POINTS = 20000;
 
 const LATEST = 1e9; // seconds: whatever the newest moment is when the server answers
 
@@ -36,13 +39,13 @@ function subscribe() {
   ask("subscribe", { paths: [...series.keys()] }).catch(() => {});
 }
 
-async function load(one) {
+async function load(one, until = LATEST) {
   try {
-    const answer = await ask("plot", { paths: [one.path], from: 0, to: LATEST, points: FIRST_POINTS, branch: null });
+    const answer = await ask("plot", { paths: [one.path], from: 0, to: until, points: FIRST_POINTS, branch: null });
     const past = answer.series[one.path];
     if (!past) return;
-    // What came while the answer was on its way follows it.
-    const last = past.t.length ? past.t[past.t.length - 1] : -1;
+    // What is newer than the answer follows it.
+    const last = until < LATEST ? until : (past.t[past.t.length - 1] ?? -1);
     const newer = one.t.findIndex((t) => t > last);
     one.t = past.t.concat(newer < 0 ? [] : one.t.slice(newer));
     one.v = past.v.concat(newer < 0 ? [] : one.v.slice(newer));
@@ -70,8 +73,16 @@ function append(samples) {
       one.v.push(list[index + 1]);
     }
     one.kind = kindOfAll(one);
+    if (one.t.length > MOST_POINTS) shorten(one);
   }
   model.announce("series");
+}
+
+async function shorten(one) {
+  if (one.isLoading) return;
+  one.isLoading = true;
+  await load(one, one.t[one.t.length - NEWEST_POINTS]);
+  one.isLoading = false;
 }
 
 // Another run goes on from a moment: what came later is forgotten.
