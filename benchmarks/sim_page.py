@@ -33,20 +33,47 @@ MOTOR = (
 )
 PRESSES, MOMENTS, SECONDS = 40, 60, 5.0
 
-#: Press and release a key, and wait until the motor's number is drawn: milliseconds of each.
-KEY_TO_MOTOR = """async (presses) => {
-  const number = () => document.querySelector("[data-path='pwm[19].value'] .number").textContent;
-  const frame = () => new Promise(requestAnimationFrame);
+#: A promise of the end of the frame that is being made: its task runs after the browser has painted.
+PAINTED = """const painted = () => new Promise((resolve) => {
+    const after = new MessageChannel();
+    after.port1.onmessage = resolve;
+    after.port2.postMessage(null);
+  });"""
+
+#: Press and release a key, and wait until the motor's number is painted: milliseconds of each.
+KEY_TO_MOTOR = f"""async (presses) => {{
+  {PAINTED}
+  const number = document.querySelector("[data-path='pwm[19].value'] .number");
+  const shows = (wanted) => new Promise((resolve) => {{
+    const observer = new MutationObserver(() => number.textContent === wanted && (observer.disconnect(), resolve()));
+    observer.observe(number, {{ childList: true, characterData: true, subtree: true }});
+  }});
   const found = [];
-  for (let press = 0; press < presses; press++) {
+  for (let press = 0; press < presses; press++) {{
     await new Promise((resolve) => setTimeout(resolve, 130 + 40 * Math.random()));
     const [kind, wanted] = press % 2 ? ["keyup", "0.00"] : ["keydown", "1.00"];
+    const shown = shows(wanted);
     const began = performance.now();
-    dispatchEvent(new KeyboardEvent(kind, { key: "w", code: "KeyW", bubbles: true }));
-    do await frame(); while (number() !== wanted && performance.now() - began < 3000);
+    dispatchEvent(new KeyboardEvent(kind, {{ key: "w", code: "KeyW", bubbles: true }}));
+    await shown;
+    await painted();
     found.push(performance.now() - began);
-  }
+  }}
   return found;
+}}"""
+
+#: Count the values that come in some seconds: those of one update in the median.
+CHANGED = """async (seconds) => {
+  const { model } = await import("/static/js/model.js");
+  const { take } = model;
+  const counts = [];
+  model.take = (message) => {
+    if (message.values) counts.push(Object.keys(message.values).length);
+    take.call(model, message);
+  };
+  await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+  model.take = take;
+  return counts.sort((one, other) => one - other)[counts.length >> 1];
 }"""
 
 #: Count frames for some seconds: frames a second, and the longest, in milliseconds.
@@ -68,24 +95,25 @@ PLOT = """(paths) => import("/static/js/plotting.js").then(({ addToPlot }) => {
   paths.forEach((path, index) => addToPlot(path, index % 2 ? "plot:1" : "plot:2"));
 })"""
 
-#: Look at moments of the whole run at random, until every panel has its values: milliseconds of each.
-SEEK = """async (moments) => {
-  const { model } = await import("/static/js/model.js");
-  const { look, length } = await import("/static/js/past.js");
+#: Look at moments of the whole run at random, until every panel has painted its values: milliseconds of each.
+SEEK = f"""async (moments) => {{
+  {PAINTED}
+  const {{ model }} = await import("/static/js/model.js");
+  const {{ look, length }} = await import("/static/js/past.js");
   const found = [];
-  for (let index = 0; index < moments; index++) {
+  for (let index = 0; index < moments; index++) {{
     const t = Math.round(Math.random() * length() / 0.02) * 0.02;
     const began = performance.now();
-    const shown = new Promise((resolve) => {
+    const shown = new Promise((resolve) => {{
       const stop = model.listen(() => model.past && Math.abs(model.past.t - t) < 1e-6 && (stop(), resolve()));
-    });
+    }});
     look(t);
     await shown;
-    await new Promise(requestAnimationFrame);
+    await painted();
     found.push(performance.now() - began);
-  }
+  }}
   return found;
-}"""
+}}"""
 
 MODEL = "import('/static/js/model.js').then(({ model }) => [model.t, model.values.size])"
 
@@ -151,9 +179,10 @@ def main() -> None:
             before = processor_seconds(process.pid)
             frames, longest = page.evaluate(FRAMES, SECONDS)
             share = (processor_seconds(process.pid) - before) / SECONDS
-            values = page.evaluate(MODEL)[1]
+            values, changed = page.evaluate(MODEL)[1], page.evaluate(CHANGED, 1)
             print(f"{'frames while 8 values are plotted':46} {frames:6.1f} a second, the longest {longest:.0f} ms")
-            print(f"{f'server, {values} values':46} {100 * share:6.1f} % of a core", flush=True)
+            what = f"server, {values} values, {changed} in an update"
+            print(f"{what:46} {100 * share:6.1f} % of a core", flush=True)
         with serving(robot, "--speed", "0") as (process, address):
             page = opened(browser, address, "Driving")
             page.get_by_role("button", name="Practice", exact=True).click()
