@@ -125,12 +125,12 @@ def _write_plain(entry: ntcore.NetworkTableEntry, value: Any) -> None:
     if isinstance(value, list | tuple):
         _write_list(entry, list(value))
     elif isinstance(value, int | float) and not isinstance(value, bool):
-        _set(entry, _number(entry.getType(), value), value)
+        _set(entry, _as_type(entry.getType(), value), value)
     else:
         _set(entry, value, value)
 
 
-def _number(kind: ntcore.NetworkTableType, value: float) -> ntcore.Value:
+def _as_type(kind: ntcore.NetworkTableType, value: float) -> ntcore.Value:
     if kind == ntcore.NetworkTableType.kInteger and isinstance(value, int):
         return ntcore.Value.makeInteger(value)
     if kind == ntcore.NetworkTableType.kFloat:
