@@ -226,6 +226,10 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
             goal: objects.find(({ name }) => name === "goal").poses[0],
             swerve: swerveStates(model.values)[0].states[0],
             mechanism: mechanisms(model.values).map(({ name }) => name),
+            alike: mechanisms(new Map([
+              ["nt:/Elevator/Drawing/.type", "Mechanism2d"],
+              ["nt:/Arm/Drawing/.type", "Mechanism2d"],
+            ])).map(({ name }) => name),
           };
         }"""
     )
@@ -237,6 +241,18 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
     assert found["goal"] == pytest.approx([8 / 0.3048, height - 5.5 / 0.3048, -0.5])
     assert found["swerve"] == pytest.approx({"speed": 1.0, "angle": 0.7})
     assert found["mechanism"] == ["Arm"]
+    assert found["alike"] == ["Elevator/Drawing", "Arm/Drawing"]
+
+
+def test_names_on_the_field_do_not_cover_each_other(person: Seen) -> None:
+    placed = person.page.evaluate(
+        """async () => {
+          const { placeLabel } = await import("/static/js/field/labels.js");
+          const placed = [];
+          return [[100, 50], [104, 52], [200, 50], [96, 38]].map(([x, y]) => placeLabel(placed, x, y, 40, 12));
+        }"""
+    )
+    assert placed == [50, 38, 50, 26]  # the second name stands above the first, the last one above both
 
 
 def test_nothing_of_the_robot_is_ever_html(person: Seen) -> None:

@@ -421,6 +421,10 @@ def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
                     ".map(([text]) => text)"
                 )
                 assert outside == [], (size, layout)
+                rows = page.locator(".station > button, .station > .menu").evaluate_all(
+                    "all => all.map((each) => each.getBoundingClientRect()).map((box) => (box.top + box.bottom) / 2)"
+                )
+                assert max(rows) - min(rows) < 5, (size, layout)  # one row
         assert page.evaluate(CONTRASTS) == []
 
 

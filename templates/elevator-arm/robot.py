@@ -27,8 +27,8 @@ class MyRobot(wpilib.TimedRobot):
 
     def create_picture(self) -> None:
         """Create a drawing for the dashboard: a line as long as the elevator's height, with the arm at its end."""
-        self.picture = wpilib.Mechanism2d(2.0, 2.5)  # metres wide and high
-        self.elevator_line = self.picture.getRoot("elevator", 1.0, 0.2).appendLigament("carriage", 0.3, 90)
+        self.picture = wpilib.Mechanism2d(2.0, 2.7)  # metres wide and high
+        self.elevator_line = self.picture.getRoot("elevator", 1.0, 0.4).appendLigament("carriage", 0.3, 90)
         self.arm_line = self.elevator_line.appendLigament("arm", 0.6, -90)
         wpilib.SmartDashboard.putData("Mechanism", self.picture)
 

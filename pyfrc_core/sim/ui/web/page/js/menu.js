@@ -26,7 +26,7 @@ export class Menu extends Component {
     return html`<div class="menu" ref=${this.element} onKeyDown=${this.key}>
       <button class="quiet" aria-haspopup="menu" aria-expanded=${open} title=${title} disabled=${disabled}
         onClick=${() => this.setState({ open: !open })}>
-        ${icon && html`<${Icon} name=${icon} />`}${label}<i class="caret"></i></button>
+        ${icon && html`<${Icon} name=${icon} />`}<span>${label}</span><i class="caret"></i></button>
       ${open && html`<ul class="menu-list" popover="manual" role="menu">
         ${items.map((item, index) => item.separator
           ? html`<li key=${index} class="menu-separator" role="separator"></li>`

@@ -93,14 +93,14 @@ function LayoutMenu() {
     act: () => settings.set("layout", name),
   }));
   items.push({ separator: true }, { text: "Reset this layout", act: () => settings.resetTree() });
-  return html`<${Menu} label=${PRESETS[chosen]?.title ?? "Layout"} title="Layout" items=${items} />`;
+  return html`<${Menu} label=${PRESETS[chosen]?.title ?? "Layout"} icon="layout" title="Layout" items=${items} />`;
 }
 
 function PanelsMenu() {
   const open = new Set(panelsOf(settings.tree));
   const ids = Object.keys(PANELS).filter((kind) => !(isRecorded && PANELS[kind].drives)).flatMap((kind) => (kind === "plot" ? plotIds(open) : [kind]));
   const items = ids.map((id) => ({ text: panelTitle(id), checked: open.has(id), act: () => toggle(id) }));
-  return html`<${Menu} label="Panels" title="Open and close panels" items=${items} />`;
+  return html`<${Menu} label="Panels" icon="panels" title="Open and close panels" items=${items} />`;
 }
 
 function plotIds(open) {

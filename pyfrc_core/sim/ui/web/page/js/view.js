@@ -48,6 +48,8 @@ export function classes(conditions) {
 
 // The drawings of the icons, on a square of 16.
 const ICONS = {
+  layout: "M2 2h12v12H2zM3.5 3.5v9h3v-9zM8 3.5v4h4.5v-4zM8 9v3.5h4.5V9z",
+  panels: "M2 3.5h12v1.7H2zM2 7.2h12v1.7H2zM2 10.8h12v1.7H2z",
   play: "M4.5 2.8v10.4l9-5.2z",
   pause: "M4 2.5h3v11H4zM9 2.5h3v11H9z",
   step: "M3 2.8v10.4L10 8zM11 3h2.2v10H11z",

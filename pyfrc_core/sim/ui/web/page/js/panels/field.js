@@ -3,6 +3,7 @@ import { ElementSize, font, sizeCanvas } from "../canvas.js";
 import { command } from "../connection.js";
 import { numberText } from "../format.js";
 import * as draw from "../field/draw.js";
+import { placeLabel } from "../field/labels.js";
 import { fieldObjects, swerveStates } from "../field/published.js";
 import { Viewport } from "../field/viewport.js";
 import { Menu } from "../menu.js";
@@ -116,6 +117,7 @@ export class FieldPanel extends Live {
   }
 
   drawObjects(context, field) {
+    const labels = [];
     this.objects.forEach((object, index) => {
       if (!this.shows(object.path)) return;
       const name = `curve-${(index + 2) % 8}`;
@@ -129,8 +131,15 @@ export class FieldPanel extends Live {
       context.font = font(11);
       context.textAlign = "center";
       context.textBaseline = "bottom";
-      const half = context.measureText(object.name).width / 2 + 2;
-      context.fillText(object.name, Math.min(Math.max(x, half), this.view.width - half), y - above);
+      const { width, fontBoundingBoxAscent: ascent, fontBoundingBoxDescent: descent } = context.measureText(object.name);
+      const half = width / 2 + 2;
+      const middle = Math.min(Math.max(x, half), this.view.width - half);
+      const bottom = placeLabel(labels, middle, y - above, 2 * half, ascent + descent);
+      context.strokeStyle = color("carpet"); // lines and tags behind it would make it hard to read
+      context.lineWidth = 3;
+      context.lineJoin = "round";
+      context.strokeText(object.name, middle, bottom);
+      context.fillText(object.name, middle, bottom);
     });
   }
 

@@ -49,15 +49,21 @@ export class MechanismPanel extends Live {
   }
 }
 
-// Every Mechanism2d as a tree of its folder: { name, tree }.
+// Every Mechanism2d as a tree of its folder: { folder, name, tree }.
 export function mechanisms(values) {
   const found = [];
   for (const [path, type] of values) {
     if (type !== "Mechanism2d" || !path.startsWith("nt:/") || !path.endsWith("/.type")) continue;
     const folder = path.slice(0, -"/.type".length);
-    found.push({ name: folder.split("/").pop(), tree: treeOf(values, folder) });
+    found.push({ folder, name: lastParts(folder, 1), tree: treeOf(values, folder) });
   }
-  return found;
+  const names = found.map(({ name }) => name);
+  const isOne = (name) => names.indexOf(name) === names.lastIndexOf(name);
+  return found.map((each) => (isOne(each.name) ? each : { ...each, name: lastParts(each.folder, 2) }));
+}
+
+function lastParts(folder, count) {
+  return folder.split("/").slice(-count).join("/");
 }
 
 function treeOf(values, folder) {
@@ -89,8 +95,12 @@ function drawMechanism(context, { name, tree }, box) {
     for (const child of Object.values(root.children)) drawLigament(context, child, at, 0, scale);
     context.beginPath();
     context.arc(...at, 4, 0, 2 * Math.PI);
-    context.fillStyle = color("robot-front");
+    // The background is the robot code's own colour, in both themes.
+    context.fillStyle = "#fff";
+    context.strokeStyle = "#000";
+    context.lineWidth = 1;
     context.fill();
+    context.stroke();
   }
   context.restore();
   context.fillStyle = color("muted");
