@@ -98,6 +98,35 @@ def test_one_packet_is_a_fiftieth_of_a_second(simulation: Simulation) -> None:
     wait(simulation, lambda: simulation.snapshot.time == 1.0 and simulation.status.state == "paused")
 
 
+def test_a_button_that_is_pressed_for_less_than_a_packet_is_seen_in_one(simulation: Simulation) -> None:
+    def after_a_packet() -> tuple[bool, int]:
+        then = simulation.snapshot.time + 0.02
+        simulation.step()
+        wait(simulation, lambda: simulation.snapshot.time == pytest.approx(then))
+        return simulation.snapshot.values["joysticks[0].buttons"][3], simulation.snapshot.values["joysticks[0].povs"][0]
+
+    simulation.enable()
+    after_a_packet()
+    for pressed, angle in ((True, 90), (False, -1)):
+        simulation.set_button(0, 3, pressed)
+        simulation.set_pov(0, 0, angle)
+    assert after_a_packet() == (True, 90)
+    assert after_a_packet() == (False, -1)
+    # One that is pressed again at once stays pressed, and one that is held for packets is released at once.
+    for pressed in (True, False, True):
+        simulation.set_button(0, 3, pressed)
+    assert [after_a_packet()[0] for _ in range(3)] == [True, True, True]
+    simulation.set_button(0, 3, False)
+    assert not after_a_packet()[0]
+    # The recording has the press and the release, in packets that follow each other.
+    changes = [
+        step.writes["joysticks[0].buttons[3]"]
+        for step in simulation.script().steps
+        if "joysticks[0].buttons[3]" in step.writes
+    ]
+    assert changes == [True, False, True, False]
+
+
 def test_autonomous_goes_by_the_chooser(simulation: Simulation) -> None:
     (chooser,) = simulation.snapshot.choosers
     assert (chooser.name, chooser.options, chooser.default) == (

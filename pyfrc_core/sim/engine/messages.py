@@ -21,10 +21,13 @@ class StationState:
 
     :param practice_since_us: when the current practice match began
     :param sticks: the state of the joysticks' controls, by target, whether or not the robot receives it
+    :param taps: the controls that were released before a packet had shown the robot that they were pressed, with the
+        number of packets until they are released for the robot
     """
 
     practice_since_us: int | None = None
     sticks: Mapping[str, Any] = field(default_factory=dict)
+    taps: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,8 @@ class Station:
         self.state = state
         #: Whether this class sets the match time: until one packet after the practice match.
         self._keeps_time = state.practice_since_us is not None
+        #: The buttons and POVs that were pressed since the last packet.
+        self._pressed: set[str] = set()
 
     def take_over(self) -> None:
         """Control the match from the next packet on; until now, the replayed script has done so."""
@@ -74,15 +76,23 @@ class Station:
         self.state = replace(self.state, practice_since_us=self._run.clock.next_packet_us)
 
     def put(self, target: str, value: object) -> None:
-        """Write an input. A joystick's control is written when the robot receives its data."""
+        """Write an input. A joystick's control is written when the robot receives its data.
+
+        A button that is pressed and released before the next packet is pressed for one packet, or the robot would miss
+        a short press, and all the more in slow motion.
+        """
         control = _CONTROL.fullmatch(target)
         if control is None:
             self._write(target, value)
             return
-        if self._delivers(modes.mode_name()):
+        taps = {each: packets for each, packets in self.state.taps.items() if each != target}
+        if control[1] != "axes" and value == _NEUTRAL[control[1]] and target in self._pressed:
+            taps[target] = 1
+        elif self._delivers(modes.mode_name()):
             self._write(target, value)
+            self._pressed.add(target)
         # Kept after the write, which fails for a wrong value; a value that is not delivered now is checked later.
-        self.state = replace(self.state, sticks={**self.state.sticks, target: value})
+        self.state = replace(self.state, sticks={**self.state.sticks, target: value}, taps=taps)
 
     def _disable(self) -> None:
         self._end_practice()
@@ -109,6 +119,9 @@ class Station:
             self.state = replace(self.state, practice_since_us=None)
 
     def _on_packet(self, now: float) -> None:
+        self._pressed.clear()
+        if self.state.taps:
+            self._release_taps()
         since = self.state.practice_since_us
         if since is None and not self._keeps_time:
             return
@@ -126,3 +139,16 @@ class Station:
             self._end_practice()
         if recorder is not None:
             recorder.end_outside(stepping=True)
+
+    def _release_taps(self) -> None:
+        """Release the controls that the robot has seen pressed in the last packet."""
+        recorder = self._run.recorder
+        if recorder is not None:
+            recorder.begin_outside(stepping=True)
+        for target, packets in self.state.taps.items():
+            control = _CONTROL.fullmatch(target)
+            if packets == 0 and control is not None and self._delivers(modes.mode_name()):
+                self._write(target, _NEUTRAL[control[1]])
+        if recorder is not None:
+            recorder.end_outside(stepping=True)
+        self.state = replace(self.state, taps={each: 0 for each, packets in self.state.taps.items() if packets})
