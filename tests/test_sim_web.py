@@ -12,6 +12,12 @@ from sim_robots import FILES
 from web_pages import Page, served
 from websockets.exceptions import ConnectionClosed
 
+from pyfrc_core.project import find_project
+from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.ui.web.front_end import WebFrontEnd
+from pyfrc_core.sim.ui.web.runs import Runs
+from pyfrc_core.sim.ui.web.server import WebOptions
+
 DASHBOARD = {
     "robot.py": """
         import math
@@ -355,6 +361,13 @@ def test_a_mistake_of_pyfrcs_own_is_printed_and_ends_one_connection(make_project
         with server.page() as again:
             again.run_for(0.1)
     assert "a mistake" in capsys.readouterr().err
+
+
+def test_a_mistake_of_pyfrcs_own_that_would_stop_all_pages_ends_the_simulation(make_project, monkeypatch) -> None:
+    monkeypatch.setattr(Runs, "take", lambda *_: 1 / 0)
+    simulation = Simulation(find_project(make_project(FILES).path), SimOptions(paused=True, network_values=True))
+    with pytest.raises(ZeroDivisionError):
+        WebFrontEnd(lambda _: None, WebOptions(opens_browser=False)).run(simulation)
 
 
 def test_a_flood_of_output_leaves_the_page_alive(make_project) -> None:

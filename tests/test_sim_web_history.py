@@ -8,7 +8,7 @@ from time import thread_time
 
 import pytest
 
-from pyfrc_core.sim.engine.changes import Change, RunBegan
+from pyfrc_core.sim.engine.changes import Change, RunBegan, frozen
 from pyfrc_core.sim.ui.web import history as history_module
 from pyfrc_core.sim.ui.web.columns import MISSING
 from pyfrc_core.sim.ui.web.console import MOST_LINES, Console
@@ -172,6 +172,20 @@ def test_memory_is_limited_and_everything_is_still_there() -> None:
     assert curve["v"][-1] == 19_999
     assert curve["v"] == sorted(curve["v"])
     assert runs.first_difference(2, ["t"]) is not None
+
+
+def test_structs_are_part_of_the_limit_and_come_back() -> None:
+    def pose(packet: int) -> object:
+        place = {"x": float(packet), "y": [1.0, {"z": 2.0}]}
+        return frozen({"$": "struct", "type": "Pose2d", "value": {"translation": place}})
+
+    runs = Runs(most_bytes=1_000_000)
+    runs.take("network", [RunBegan(1, 0.0, {"nt:/pose": pose(0)})], lambda event: None)
+    changes = [Change(packet * 0.02, {"nt:/pose": pose(packet)}) for packet in range(5000)]
+    runs.take("network", changes, lambda event: None)
+    assert 500_000 < runs.size < 1_500_000  # all of them are 6 MB
+    for packet in (0, 1, 4999):
+        assert (runs.values_at(packet * 0.02) or {})["nt:/pose"] == pose(packet)
 
 
 def test_space_on_the_disk_is_limited_by_forgetting_former_runs_and_the_oldest_values() -> None:

@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+import io
 import os
 import pickle
 from array import array
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping
 from tempfile import TemporaryFile
+from types import MappingProxyType
 from typing import Any
 
 from .columns import MISSING, Column
 
 #: About the size of a value in the list of those at a chunk's beginning, in bytes.
 _BASE_SIZE = 130
+
+
+class _Pickler(pickle.Pickler):
+    """Also pickles the unchangeable dicts that structs are."""
+
+    def reducer_override(self, item: Any) -> Any:
+        return (_unchangeable, (dict(item),)) if isinstance(item, MappingProxyType) else NotImplemented
+
+
+def _unchangeable(values: dict[str, Any]) -> Mapping[str, Any]:
+    return MappingProxyType(values)  # a type without a name that pickle could find
 
 
 class ChunkFile:
@@ -30,7 +43,9 @@ class ChunkFile:
         :raises OSError: when the disk is full
         """
         place = self._io.seek(0, os.SEEK_END)
-        data = memoryview(pickle.dumps(item, pickle.HIGHEST_PROTOCOL))
+        pickled = io.BytesIO()
+        _Pickler(pickled, pickle.HIGHEST_PROTOCOL).dump(item)
+        data = pickled.getbuffer()
         while data:
             data = data[self._io.write(data) :]
         self.size = self._io.tell()

@@ -83,7 +83,9 @@ class Collector:
         #: The numbers of lines and marks at the last look.
         self._shown = (0, 0)
         self._over = threading.Event()
-        self._thread = threading.Thread(target=self._follow, name="pyfrc sim: web collector", daemon=True)
+        #: A mistake of pyfrc's own, after which the page would stand still without a word.
+        self.mistake: Exception | None = None
+        self._thread = threading.Thread(target=self._run_thread, name="pyfrc sim: web collector", daemon=True)
         self.state = self._state_of(simulation.snapshot, simulation.status)
 
     @property
@@ -104,6 +106,12 @@ class Collector:
     def announce(self, text: str) -> None:
         """Show an event among the robot's output. May be called from any thread."""
         self._announced.append(text)
+
+    def _run_thread(self) -> None:
+        try:
+            self._follow()
+        except Exception as mistake:
+            self.mistake = mistake
 
     def _follow(self) -> None:
         reports = self._simulation.reports

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_left, bisect_right
+from collections.abc import Mapping
 from typing import Any
 
 
@@ -17,8 +18,10 @@ class _Missing:
 #: A value that a path has not, or no longer.
 MISSING: Any = _Missing()
 
-#: About the size of an object in a column, and of a column without changes, in bytes.
-_OBJECT_SIZE, _COLUMN_SIZE = 120, 400
+#: About the size of an object in a column, of a dict in it, and of a column without changes, in bytes.
+_OBJECT_SIZE, _DICT_SIZE, _COLUMN_SIZE = 120, 280, 400
+#: After how many objects their size is estimated again.
+_SIZED = 64
 
 
 def _storage_of(value: Any) -> str:
@@ -33,6 +36,15 @@ def _storage_of(value: Any) -> str:
     return "object"
 
 
+def _size_of(value: Any) -> int:
+    """Return about how many bytes an object takes, such as a struct, which has dicts in dicts."""
+    if isinstance(value, Mapping):
+        return _DICT_SIZE + sum(map(_size_of, value.values()))
+    if isinstance(value, tuple):
+        return _OBJECT_SIZE + sum(map(_size_of, value))
+    return _OBJECT_SIZE if isinstance(value, str) else 24
+
+
 class Column:
     """The changes of one value, in the order of packets. Packets are given by their numbers within a chunk."""
 
@@ -43,6 +55,7 @@ class Column:
         #: Of a vector: where each value ends among the numbers.
         self._ends = array("I")
         self._objects: list[Any] = []
+        self._object_size = 0
 
     def append(self, packet: int, value: Any) -> None:
         """Add a change."""
@@ -53,6 +66,7 @@ class Column:
             return
         if storage != _storage_of(value) and storage != "object":
             self._objects = [self.value(number) for number in range(len(self.packets))]
+            self._object_size = _size_of(value)
             self._storage = storage = "object"
             self._numbers, self._ends = array("d"), array("I")
         self.packets.append(packet)
@@ -60,6 +74,8 @@ class Column:
             self._numbers.extend(value)
             self._ends.append(len(self._numbers))
         elif storage == "object":
+            if not len(self._objects) % _SIZED:
+                self._object_size = max(self._object_size, _size_of(value), _OBJECT_SIZE)
             self._objects.append(value)
         else:
             self._numbers.append(value)
@@ -71,7 +87,7 @@ class Column:
     def size(self) -> int:
         """About how many bytes it takes."""
         arrays = 4 * len(self.packets) + 8 * len(self._numbers) + 4 * len(self._ends)
-        return _COLUMN_SIZE + arrays + _OBJECT_SIZE * len(self._objects)
+        return _COLUMN_SIZE + arrays + self._object_size * len(self._objects)
 
     def value(self, number: int) -> Any:
         """Return the value after the change with this number."""
@@ -102,6 +118,6 @@ class Column:
             return None
         part = Column(self.value(0))
         part._storage, part.packets = self._storage, self.packets[:end]
-        part._ends, part._objects = self._ends[:end], self._objects[:end]
+        part._ends, part._objects, part._object_size = self._ends[:end], self._objects[:end], self._object_size
         part._numbers = self._numbers[: self._ends[end - 1] if self._ends else end]
         return part

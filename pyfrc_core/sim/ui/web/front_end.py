@@ -55,7 +55,8 @@ class WebFrontEnd(FrontEnd):
             self._announce(server, access)
             simulation.start()
             while not self._over.wait(_LOOK_SECONDS):
-                pass
+                if collector.mistake is not None:
+                    raise collector.mistake
         finally:
             collector.close()
             server.close()
