@@ -47,3 +47,11 @@ def test_a_match_passes_quietly_and_repeats(project: RobotProject, request: pyte
         first, second = hashes(project.path / "first"), hashes(project.path / "second")
         assert first == second
         assert len(first) == 1
+
+
+@pytest.mark.parametrize("project", ["rev_swerve"], indirect=True)
+def test_a_passing_test_without_isolation_ends_with_success(project: RobotProject) -> None:
+    # REV's library ended the process by SIGABRT when the interpreter destroyed the robot's objects.
+    result = project.run("test", "--no-isolation", "-q", "--", "-k", "test_practice", cold=True)
+    assert (result.code, result.stderr) == (0, "")
+    assert "1 passed" in result.stdout

@@ -10,6 +10,7 @@ here, as everywhere in pytest.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import gc
 import itertools
@@ -55,6 +56,9 @@ class IsolatedTests:
     @pytest.hookimpl
     def pytest_runtestloop(self, session: pytest.Session) -> bool | None:
         if self._left_to_others(session):
+            # At the end of this process, the collector would destroy the robot's objects, in any order and when the
+            # interpreter is half gone: libraries such as REV's then end the process by SIGABRT.
+            atexit.register(gc.freeze)
             return None
         if session.testsfailed and not session.config.option.continue_on_collection_errors:
             problems = session.testsfailed
