@@ -196,6 +196,11 @@ class Seen:
         """Wait until the driver station shows this."""
         self.page.locator(".state b", has_text=text).wait_for()
 
+    def pause(self) -> None:
+        """Press the key that pauses, and wait until the simulation does."""
+        self.page.keyboard.press("F5")
+        self.until(lambda: self.simulation.status.state == "paused")
+
     def drag(self, place: Locator, start: tuple[float, float], end: tuple[float, float], **options: Any) -> None:
         """Drag from a place in an element to another one, each as a share of its width and height."""
         box = place.bounding_box()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from pyfrc_core.sim import Simulation
 
@@ -115,3 +115,14 @@ def run(simulation: Simulation, seconds: float) -> None:
             )
         ),
     )
+
+
+def lines_until(stdout: Iterable[str] | None, *texts: str) -> list[str]:
+    """Read what a command prints, up to a line that has one of these texts."""
+    assert stdout is not None
+    shown = []
+    for line in stdout:
+        shown.append(line)
+        if any(text in line for text in texts):
+            break
+    return shown

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 from browsers import NO_BROWSER
-from sim_robots import FILES, PATIENCE
+from sim_robots import FILES, PATIENCE, lines_until
 
 from pyfrc_core import browser
 from pyfrc_core.browser import open_in_browser, why_no_browser
@@ -130,13 +130,9 @@ def test_a_person_without_a_browser_gets_the_address(make_project) -> None:
         text=True,
     ) as running:
         try:
-            assert running.stdout is not None
-            lines = []
-            for line in running.stdout:
-                lines.append(line)
-                if line.startswith("No browser is opened"):
-                    break
+            lines = lines_until(running.stdout, "No browser is opened")
             assert lines[0].startswith("The simulator is at http://127.0.0.1:"), lines
+            assert lines[-1].startswith("No browser is opened")
             assert "this is an SSH session" in lines[-1]
             assert running.poll() is None
         finally:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject, RobotProject
-from sim_robots import PATIENCE
+from sim_robots import PATIENCE, lines_until
 from virtual_display import VirtualDisplay, virtual_display
 
 from pyfrc_core.interruption import ending_like_ctrl_c
@@ -52,13 +52,7 @@ def simulated(project: RobotProject, display: VirtualDisplay) -> Iterator[tuple[
         text=True,
     ) as running:
         try:
-            assert running.stdout is not None
-            shown = []
-            for line in running.stdout:
-                shown.append(line)
-                if "ten packets" in line or "failed at" in line:
-                    break
-            yield running, shown
+            yield running, lines_until(running.stdout, "ten packets", "failed at")
         finally:
             running.kill()
 

@@ -14,7 +14,7 @@ from websockets.sync.client import connect
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.sim.ui.web.access import Access
-from pyfrc_core.sim.ui.web.forwarding import forwarded_origins
+from pyfrc_core.sim.ui.web.forwarding import allowed_origins
 from pyfrc_core.sim.ui.web.server import Server, WebOptions
 
 QUIET = {
@@ -145,7 +145,7 @@ def test_a_host_that_the_user_allows(make_project) -> None:
 )
 def test_what_is_no_host(host: str) -> None:
     with pytest.raises(UsageError, match="this is no host"):
-        forwarded_origins([host], 8080)
+        allowed_origins([host])
 
 
 def test_a_second_user_on_the_network_is_refused(make_project) -> None:

@@ -103,9 +103,13 @@ def server_of_many_devices(make_shared_project):
         yield server
 
 
-def pause(person: Seen) -> None:
-    person.page.keyboard.press("F5")
-    person.until(lambda: person.simulation.status.state == "paused")
+def plot_motor(person: Seen) -> None:
+    """Plot the motor's speed."""
+    person.tab("Plot 1").click()
+    person.button("Add value").click()
+    person.page.get_by_label("Search all values").fill("pwm 0")
+    person.page.keyboard.press("Enter")
+    person.page.locator(".curve-name").first.wait_for()
 
 
 def script_writes(person: Seen, path: str) -> list[Any]:
@@ -177,7 +181,7 @@ def test_joysticks_by_keys(browser, server) -> None:
         person.until(lambda: person.value("joysticks[0].axes")[1] == 1)
         axis.dblclick()
         person.until(lambda: person.value("joysticks[0].axes")[1] == 0)
-        # Two of the same name are told apart; a joystick of another kind has its axes and buttons as they are.
+        # Two of the same name can be chosen separately. A gamepad without a standard layout keeps its own numbers.
         assert choice.locator("option").all_inner_texts() == [
             *("Automatic: no gamepad", "Keyboard and mouse only"),
             *("Twin Pad", "Twin Pad", "Old Stick"),
@@ -332,7 +336,7 @@ def test_the_past_by_keys_buttons_and_the_console(person: Seen) -> None:
     page = person.page
     person.button("Enable").click()
     person.until(lambda: person.simulation.snapshot.time > 2.5)
-    pause(person)
+    person.pause()
     timeline = page.get_by_role("slider", name="Timeline")
     clock = page.locator(".clock")
     timeline.focus()
@@ -369,14 +373,10 @@ def test_the_past_by_keys_buttons_and_the_console(person: Seen) -> None:
 
 def test_a_plot_is_zoomed_by_the_wheel_and_leads_to_its_moment(person: Seen) -> None:
     page = person.page
-    person.tab("Plot 1").click()
-    person.button("Add value").click()
-    page.get_by_label("Search all values").fill("pwm 0")
-    page.keyboard.press("Enter")
-    page.locator(".curve-name").first.wait_for()
+    plot_motor(person)
     person.button("Enable").click()
     person.until(lambda: person.simulation.snapshot.time > 2)
-    pause(person)
+    person.pause()
     person.button("All").first.click()
     over = page.locator(".u-over").first
     over.hover()
@@ -391,16 +391,13 @@ def test_a_plot_is_zoomed_by_the_wheel_and_leads_to_its_moment(person: Seen) -> 
 
 def test_another_run_is_compared_in_plots_and_at_its_first_difference(person: Seen) -> None:
     page = person.page
-    person.tab("Plot 1").click()
-    person.button("Add value").click()
-    page.get_by_label("Search all values").fill("pwm 0")
-    page.keyboard.press("Enter")
+    plot_motor(person)
     person.button("Enable").click()
     page.keyboard.down("w")
     person.until(lambda: person.value("pwm[0].value") == 1)
     page.keyboard.up("w")
     person.until(lambda: person.simulation.snapshot.time > 2)
-    pause(person)
+    person.pause()
     timeline = page.get_by_role("slider", name="Timeline")
     timeline.focus()
     page.keyboard.press("Home")

@@ -58,8 +58,7 @@ def drive(person: Seen, seconds: float = 1.0) -> None:
     person.until(lambda: person.simulation.snapshot.time >= since + seconds)
     person.page.keyboard.up("w")
     person.until(lambda: person.value("pwm[0].value") == 0)
-    person.page.keyboard.press("F5")
-    person.until(lambda: person.simulation.status.state == "paused")
+    person.pause()
 
 
 def plotted(person: Seen, panel: str = "plot:1") -> list[str]:

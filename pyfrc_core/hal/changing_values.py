@@ -134,23 +134,20 @@ class _Polled:
     def read(self, values: list[Any]) -> list[int]:
         """Update `values`; return the positions of those that have changed."""
         found, last, positions, converts = [read() for read in self._reads], self._last, self._positions, self._converts
-        changed = []
+        places = []
         for place in compress(count(), map(ne, last, found)):
             old, new = last[place], found[place]
             last[place] = new
             if (type(new) is float and new == new) or not same(old, new):  # NaN differs from itself
-                position, convert = positions[place], converts[place]
-                values[position] = new if convert is None else convert(new)
-                changed.append(position)
+                places.append(place)
         # What is left may be equal and not the same, such as 0.0 and -0.0. Version 2 of the format does not depend on
         # which objects are shared.
         packed = marshal.dumps(found, 2)
-        if packed != (marshal.dumps(last, 2) if changed else self._packed):
-            for place, (old, new) in enumerate(zip(last, found, strict=True)):
-                if not same(old, new):
-                    position, convert = positions[place], converts[place]
-                    values[position] = new if convert is None else convert(new)
-                    changed.append(position)
+        if packed != (marshal.dumps(last, 2) if places else self._packed):
+            places += [place for place, pair in enumerate(zip(last, found, strict=True)) if not same(*pair)]
             self._last = found
         self._packed = packed
-        return changed
+        for place in places:
+            convert, new = converts[place], found[place]
+            values[positions[place]] = new if convert is None else convert(new)
+        return [positions[place] for place in places]

@@ -141,6 +141,13 @@ class EdgeCounter:
 _counters: WeakKeyDictionary[wpilib.Counter, EdgeCounter] = WeakKeyDictionary()
 
 
+def _edge_counter_of(counter: wpilib.Counter) -> EdgeCounter:
+    found = _counters.get(counter)
+    if found is None:
+        found = _counters[counter] = EdgeCounter()
+    return found
+
+
 def counted_channels() -> frozenset[int]:
     """Return the channels of the digital inputs whose edges counters of the robot count."""
     if not _counters:
@@ -185,7 +192,7 @@ def patches() -> list[Patch]:
 
 def _getter(read: Callable[[EdgeCounter], Any]) -> Callable[..., Any]:
     def get(self: wpilib.Counter) -> Any:
-        return read(_counters.setdefault(self, EdgeCounter()))
+        return read(_edge_counter_of(self))
 
     return get
 
@@ -197,10 +204,7 @@ def _setter(name: str, change: Callable[..., None]) -> Callable[..., Any]:
     def set_(self: wpilib.Counter, *args: Any, **kwargs: Any) -> None:
         if name not in _VIRTUAL:
             call(self, *args, **kwargs)  # refuses wrong arguments
-        if name == "__init__":
-            _counters[self] = EdgeCounter()
-        counter = _counters.setdefault(self, EdgeCounter())
-        change(counter, *args, **kwargs)
+        change(_edge_counter_of(self), *args, **kwargs)
 
     return set_
 

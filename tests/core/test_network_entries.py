@@ -79,6 +79,7 @@ def test_numbers_of_a_new_entry_are_doubles_and_a_mixed_list_is_an_error(network
     entries = NetworkEntries()
     entries.write("nt:/values/new", [1, 2.5])
     assert network.getEntry("/values/new").getTopic().getTypeString() == "double[]"
-    with pytest.raises(UsageError, match=r"^/values/other cannot be"):
-        entries.write("nt:/values/other", [1, "a"])
+    for value in ([1, "a"], [[1]]):
+        with pytest.raises(UsageError, match=r"^/values/other cannot be"):
+            entries.write("nt:/values/other", value)
     entries.close()

@@ -122,31 +122,22 @@ def _number(value: Any) -> Any:
 
 
 def _write_plain(entry: ntcore.NetworkTableEntry, value: Any) -> None:
-    if isinstance(value, list | tuple):
-        _write_list(entry, list(value))
-    elif isinstance(value, int | float) and not isinstance(value, bool):
-        _set(entry, _as_type(entry.getType(), value), value)
-    else:
-        _set(entry, value, value)
+    """Write numbers as the type that the entry has, and as doubles where it has none; other values as they are.
 
-
-def _as_type(kind: ntcore.NetworkTableType, value: float) -> ntcore.Value:
-    if kind == ntcore.NetworkTableType.kInteger and isinstance(value, int):
-        return ntcore.Value.makeInteger(value)
-    if kind == ntcore.NetworkTableType.kFloat:
-        return ntcore.Value.makeFloat(value)
-    return ntcore.Value.makeDouble(value)  # JSON does not tell 1 from 1.0, and dashboards write doubles
-
-
-def _write_list(entry: ntcore.NetworkTableEntry, value: list[Any]) -> None:
-    """Write numbers as the type that the entry has, and as doubles where it has none; other lists as they are."""
-    type_name = entry.getTopic().getTypeString()
-    numbers = all(isinstance(each, int | float) and not isinstance(each, bool) for each in value)
-    if numbers and type_name not in ("int[]", "float[]") and (value or type_name not in MAKE_VALUE):
-        type_name = "double[]"
+    JSON does not tell 1 from 1.0, and dashboards write doubles.
+    """
+    is_list = isinstance(value, list | tuple)
+    made = list(value) if is_list else value
+    items = made if is_list else [made]
     try:
-        _set(entry, MAKE_VALUE[type_name](value) if numbers else value, value)
-    except (TypeError, RuntimeError):  # numbers that are not whole in an int[], or a list of several kinds
+        if all(isinstance(each, int | float) and not isinstance(each, bool) for each in items):
+            brackets = "[]" if is_list else ""
+            type_name = entry.getTopic().getTypeString()
+            # An empty list is one of any type.
+            fits = type_name in MAKE_VALUE if not items else type_name in (f"int{brackets}", f"float{brackets}")
+            made = MAKE_VALUE[type_name if fits else f"double{brackets}"](made)
+        _set(entry, made, value)
+    except (TypeError, ValueError, RuntimeError):  # 0.5 in an int[], a list of several kinds, a list of lists
         raise _wrong(entry, value) from None
 
 

@@ -54,7 +54,7 @@ class Simulation(Controls):
         self.project = project
         self.field = field_of(project)
         #: Notified of everything that a front end may show.
-        self.reports = self._changed = ReportSignal()
+        self.reports = ReportSignal()
         self._status = Status(speed=self.options.speed)
         self._snapshot: Snapshot | None = None
         self._recording = Recording(self._first_script())
@@ -72,7 +72,7 @@ class Simulation(Controls):
         self._sending = threading.RLock()
         #: The moment that the robot's process replays to before it goes on.
         self._forward_us = 0
-        self._streams = ChangeStreams(self._recording, self._changed, self.options.network_values)
+        self._streams = ChangeStreams(self._recording, self.reports, self.options.network_values)
         self._output = OutputLog()
         self._taken = self._output.cursor()
         #: Called with all that robots print, and with their tracebacks, from this object's threads.
@@ -97,13 +97,13 @@ class Simulation(Controls):
     @property
     def wants_to_run(self) -> bool:
         """Whether the commands so far want robot time to go on; also known while the robot starts or has failed."""
-        with self._changed:
+        with self.reports:
             return not self._time_wanted.paused
 
     @property
     def recordings(self) -> tuple[InputScript, ...]:
         """What was recorded before each time that the user went back in time or restarted the robot; latest first."""
-        with self._changed:
+        with self.reports:
             return tuple(each.script() for each in self._older)
 
     def output_cursor(self, from_start: bool = True) -> OutputCursor:
@@ -128,7 +128,7 @@ class Simulation(Controls):
 
     def take_output(self) -> str:
         """Return what the robot has printed since the last call, by whatever caller. `output_cursor` is for several."""
-        with self._changed:
+        with self.reports:
             return self._taken.read()
 
     def wait_for(self, condition: Callable[[], bool], timeout: float | None = None) -> bool:
@@ -137,8 +137,8 @@ class Simulation(Controls):
         :param condition: evaluated whenever something has changed
         :param timeout: in wall seconds
         """
-        with self._changed:
-            return self._changed.wait_for(condition, timeout)
+        with self.reports:
+            return self.reports.wait_for(condition, timeout)
 
     # -- beginning and end ----------------------------------------------------------------------------------------
 
@@ -154,9 +154,9 @@ class Simulation(Controls):
 
     def close(self) -> None:
         """End the robot's process, whatever it is doing."""
-        with self._changed:
+        with self.reports:
             self._status = replace(self._status, state="closed")
-            self._changed.notify_all()
+            self.reports.notify_all()
         if self._processes is not None:
             self._processes.close()
 
@@ -179,13 +179,13 @@ class Simulation(Controls):
         if not self.options.recording:
             self._note("Going back is impossible: this simulation is not recorded.")
             return
-        with self._sending, self._changed:
+        with self._sending, self.reports:
             to = max(0, min(to_us(seconds), self._moment_us)) // PACKET_US * PACKET_US
             self._keep_and_begin(self._recording.until(to), to, self._time_wanted.continued_at(to))
 
     def restart(self) -> None:
         """Start the robot again, at time 0. What was recorded is kept in `recordings`."""
-        with self._sending, self._changed:
+        with self._sending, self.reports:
             to = to_us(self.options.start_at)
             self._keep_and_begin(Recording(self._first_script()), to, self._time_wanted.continued_at(to))
 
@@ -194,7 +194,7 @@ class Simulation(Controls):
         if not self.options.recording:
             self.restart()
             return
-        with self._sending, self._changed:
+        with self._sending, self.reports:
             project = replace(self.project)
             try:
                 self.field = field_of(project)
@@ -222,7 +222,7 @@ class Simulation(Controls):
 
     def script(self) -> InputScript:
         """Return the robot's inputs from its start until now, with the hash of what it did."""
-        with self._changed:
+        with self.reports:
             return self._recording.script()
 
     def save(self, file: Path) -> None:
@@ -231,7 +231,7 @@ class Simulation(Controls):
         :raises UsageError: when this simulation is not recorded
         """
         self._check_recorded()
-        with self._changed:
+        with self.reports:
             self._recording.save(file)
 
     def save_all(self, file: Path) -> list[Path]:
@@ -241,7 +241,7 @@ class Simulation(Controls):
         """
         self.save(file)
         files = [file]
-        with self._changed:
+        with self.reports:
             for number, older in enumerate(reversed(self._older), 1):
                 files.append(file.with_name(f"{file.stem}-{number}{file.suffix}"))
                 older.save(files[-1])
@@ -279,7 +279,7 @@ class Simulation(Controls):
             network_values=options.network_values,
             reports_replay=recording.is_open,
         )
-        with self._sending, self._changed:
+        with self._sending, self.reports:
             self._recording = recording
             self._forward_us = forward_to_us
             self._time, self._pending = time, PendingCommands(commands)
@@ -289,11 +289,11 @@ class Simulation(Controls):
             if options.recording:
                 self._streams.begin_run(self._status.starts, recording)
             self._launch = self._processes.launch(job)
-            self._changed.notify_all()
+            self.reports.notify_all()
 
     def _send(self, command: Command) -> None:
         with self._sending:
-            with self._changed:
+            with self.reports:
                 if self._processes is None or self._status.state == "closed":
                     return
                 failed = self._status.state == "failed"
@@ -311,7 +311,7 @@ class Simulation(Controls):
         return max(self._recording.length_us, self._forward_us)
 
     def _on_message(self, launch: int, message: Message) -> None:
-        with self._changed:
+        with self.reports:
             if launch != self._launch or self._status.state == "closed":
                 return
             self._reported_at = monotonic()
@@ -331,12 +331,12 @@ class Simulation(Controls):
                 self._fail(message.failure)
             else:
                 self._status = replace(self._status, state="closed")
-            self._changed.notify_all()
+            self.reports.notify_all()
         if isinstance(message, Failed):
             self._echo_failure(message.failure)
 
     def _on_exit(self, launch: int, status: int, report: bytes) -> None:
-        with self._changed:
+        with self.reports:
             if launch != self._launch or self._status.state in ("failed", "closed"):
                 return
             text = describe_exit(report, status, self.project.files, "while it was simulated")
@@ -345,13 +345,13 @@ class Simulation(Controls):
             seconds = self._recording.length_us / 1_000_000 if moment is None else moment.seconds
             failure = Failure(headline, details, seconds)
             self._fail(failure)
-            self._changed.notify_all()
+            self.reports.notify_all()
         self._echo_failure(failure)
 
     def _on_output(self, text: str) -> None:
         self._output.append(text)
-        with self._changed:
-            self._changed.notify_all()
+        with self.reports:
+            self.reports.notify_all()
         self.echo(text)
 
     def _fail(self, failure: Failure) -> None:
@@ -362,9 +362,9 @@ class Simulation(Controls):
         self.echo(f"{details}failed at {failure.time:.2f} s: {failure.headline}\n")
 
     def _note(self, note: str) -> None:
-        with self._changed:
+        with self.reports:
             self._status = replace(self._status, note=note)
-            self._changed.notify_all()
+            self.reports.notify_all()
 
     def _follow_replay(self, replayed: Replayed) -> None:
         self._recording.add_lines(replayed.lines, replayed.network_lines)

@@ -48,7 +48,7 @@ class Snapshot:
     time: float
     mode: str
     scene: Scene
-    values: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    values: MappingProxyType[str, Any] = field(default_factory=lambda: MappingProxyType({}))
     choosers: tuple[Chooser, ...] = ()
     emergency_stopped: bool = False
     station_attached: bool = True

@@ -46,8 +46,6 @@ class SnapshotBuilder:
 
     def __init__(self) -> None:
         self._last: Snapshot | None = None
-        #: Its values; a copy of a dict takes a tenth of the time of one of `Snapshot.values`.
-        self._values: dict[str, Any] = {}
         self._trail = _Trail()
 
     @property
@@ -58,7 +56,7 @@ class SnapshotBuilder:
     def snapshot_after(self, update: Update, field: Field) -> Snapshot:
         """Return the snapshot after an update."""
         before = self._last or Snapshot(0.0, "disabled", Scene(field))
-        values = self._values = _values(self._values, update)
+        values = _values(before, update)
         if update.trail:
             self._trail.add(update.trail)
         since = update.station.practice_since_us
@@ -84,10 +82,10 @@ class SnapshotBuilder:
         return self._last
 
 
-def _values(before: dict[str, Any], update: Update) -> dict[str, Any]:
+def _values(before: Snapshot, update: Update) -> dict[str, Any]:
     if update.base is not None:
         return {path: frozen(value) for path, value in update.base.items()}
-    values = before.copy()
+    values = before.values.copy()  # takes a tenth of the time of dict()
     for change in map(change_of, update.lines):
         values.update(change.values)
         for path in change.gone:

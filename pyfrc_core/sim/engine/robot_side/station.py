@@ -86,11 +86,13 @@ class Station:
             self._write(target, value)
             return
         taps = {each: packets for each, packets in self.state.taps.items() if each != target}
-        if control[1] != "axes" and value == _NEUTRAL[control[1]] and target in self._pressed:
+        is_neutral = value == _NEUTRAL[control[1]]
+        if is_neutral and target in self._pressed:
             taps[target] = 1
         elif self._delivers(modes.mode_name()):
             self._write(target, value)
-            self._pressed.add(target)
+            if not is_neutral and control[1] != "axes":
+                self._pressed.add(target)
         # Kept after the write, which fails for a wrong value; a value that is not delivered now is checked later.
         self.state = replace(self.state, sticks={**self.state.sticks, target: value}, taps=taps)
 
@@ -120,15 +122,29 @@ class Station:
 
     def _on_packet(self, now: float) -> None:
         self._pressed.clear()
-        if self.state.taps:
-            self._release_taps()
-        since = self.state.practice_since_us
-        if since is None and not self._keeps_time:
+        practises = self.state.practice_since_us is not None or self._keeps_time
+        if not practises and not self.state.taps:
             return
-        self._keeps_time = since is not None
         recorder = self._run.recorder
         if recorder is not None:
             recorder.begin_outside(stepping=True)
+        self._release_taps()
+        if practises:
+            self._go_on_with_practice()
+        if recorder is not None:
+            recorder.end_outside(stepping=True)
+
+    def _release_taps(self) -> None:
+        """Release the controls that the robot has seen pressed in the last packet."""
+        for target, packets in self.state.taps.items():
+            control = _CONTROL.fullmatch(target)
+            if packets == 0 and control is not None and self._delivers(modes.mode_name()):
+                self._write(target, _NEUTRAL[control[1]])
+        self.state = replace(self.state, taps={each: 0 for each, packets in self.state.taps.items() if packets})
+
+    def _go_on_with_practice(self) -> None:
+        since = self.state.practice_since_us
+        self._keeps_time = since is not None
         period = None if since is None else self._periods.at(self._run.clock.now_us - since)
         mode, left = period or ("disabled", 0.0)
         if since is not None:
@@ -137,18 +153,3 @@ class Station:
             modes.set_match_time(left)
         if period is None:
             self._end_practice()
-        if recorder is not None:
-            recorder.end_outside(stepping=True)
-
-    def _release_taps(self) -> None:
-        """Release the controls that the robot has seen pressed in the last packet."""
-        recorder = self._run.recorder
-        if recorder is not None:
-            recorder.begin_outside(stepping=True)
-        for target, packets in self.state.taps.items():
-            control = _CONTROL.fullmatch(target)
-            if packets == 0 and control is not None and self._delivers(modes.mode_name()):
-                self._write(target, _NEUTRAL[control[1]])
-        if recorder is not None:
-            recorder.end_outside(stepping=True)
-        self.state = replace(self.state, taps={each: 0 for each, packets in self.state.taps.items() if packets})

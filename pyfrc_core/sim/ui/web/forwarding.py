@@ -9,14 +9,12 @@ from urllib.parse import urlsplit
 from ....errors import UsageError
 
 
-def forwarded_origins(allowed: Sequence[str], port: int) -> tuple[str, ...]:
-    """Return the origins (scheme, host and port) of the page besides this computer's own.
+def allowed_origins(hosts: Sequence[str]) -> tuple[str, ...]:
+    """Return the origins (scheme, host and port) of the page at the hosts that the user allows.
 
-    :param allowed: the hosts that the user allows
-    :param port: the port on this computer
-    :raises UsageError: when one of `allowed` is no host
+    :raises UsageError: when one of them is no host
     """
-    return (*map(_origin_of, allowed), *_codespace_origin(port))
+    return tuple(map(_origin_of, hosts))
 
 
 def name_of(origin: str) -> str:
@@ -43,8 +41,8 @@ def _origin_of(host: str) -> str:
     return f"{parts.scheme}://{shown}" if port in (None, usual) else f"{parts.scheme}://{shown}:{port}"
 
 
-def _codespace_origin(port: int) -> tuple[str, ...]:
-    """Return the origin at which GitHub forwards this port, in a Codespace."""
+def codespace_origins(port: int) -> tuple[str, ...]:
+    """Return the origin at which GitHub forwards a port of this computer, if it is a Codespace."""
     name = os.environ.get("CODESPACE_NAME")
     domain = os.environ.get("GITHUB_CODESPACES_PORT_FORWARDING_DOMAIN")
     return (f"https://{name}-{port}.{domain}".lower(),) if name and domain else ()

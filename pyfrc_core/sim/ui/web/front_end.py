@@ -9,13 +9,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ....browser import open_in_browser, why_no_browser
-from ....errors import UsageError
 from .. import FrontEnd
 from .access import Access
 from .app import WebApp
 from .collector import Collector
 from .commands import Commands
-from .forwarding import forwarded_origins
+from .forwarding import allowed_origins, codespace_origins
 from .server import Server, WebOptions
 
 if TYPE_CHECKING:
@@ -32,11 +31,13 @@ class WebFrontEnd(FrontEnd):
 
     :param say: prints to the terminal
     :param quiet: print addresses only
+    :raises UsageError: when one of the hosts that the options allow is no host
     """
 
     def __init__(self, say: Callable[[str], object], options: WebOptions, quiet: bool = False) -> None:
         self._say, self._options, self._quiet = say, options, quiet
         self._access = Access(options.share)
+        self._allowed = allowed_origins(options.allowed_hosts)
         self._over = threading.Event()
         self.server: Server | None = None
         #: What keeps the whole history of the simulation.
@@ -44,12 +45,7 @@ class WebFrontEnd(FrontEnd):
 
     def run(self, simulation: Simulation) -> int:
         self.server = server = Server(self._options, self._access)
-        try:
-            origins = forwarded_origins(self._options.allowed_hosts, server.port)
-        except UsageError:
-            server.close()
-            raise
-        access = replace(self._access, origins=origins)
+        access = replace(self._access, origins=(*self._allowed, *codespace_origins(server.port)))
         self.collector = collector = Collector(simulation, server.wake)
         commands = Commands(simulation, collector, self.close)
         switch_seconds = sys.getswitchinterval()
