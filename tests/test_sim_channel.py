@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 import threading
 from collections.abc import Callable, Iterator
@@ -20,6 +21,8 @@ from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine import processes
+from pyfrc_core.sim.engine.host import Hosting
+from pyfrc_core.sim.engine.host_process import start_host
 from pyfrc_core.sim.engine.messages import Failed
 
 FAILS = """
@@ -177,6 +180,18 @@ def test_a_child_holds_the_connection_of_a_robot_that_dies_open(make_project: Ma
         assert dead.status.failure is not None
         assert dead.status.failure.headline.startswith("robot.py:18: the robot's process ended itself with exit code 3")
         assert "the last words" in dead.take_output()
+
+
+def test_a_host_that_finds_no_simulation_leaves_without_a_word(tmp_path: Path) -> None:
+    left = tmp_path / "pyfrc-sim"
+    left.mkdir()
+    address = str(left / "listener") if os.name == "posix" else r"\\.\pipe\pyfrc-no-simulation"
+    with (tmp_path / "output").open("w+b") as output:
+        host = start_host(Hosting(address, b"key", FORK_IS_SAFE, str(left)), output.fileno())
+        assert host.wait(PATIENCE) == 0
+        output.seek(0)
+        assert output.read() == b""
+    assert not left.exists()
 
 
 @only_forked

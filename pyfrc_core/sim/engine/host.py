@@ -91,8 +91,10 @@ def main(hosting: Hosting) -> None:
     from ...measure.processes import measure_here
 
     measure_here()
-    connection = Client(hosting.address, authkey=hosting.key)
-    connection.send("host")
+    connection = _connect(hosting, "host")
+    if connection is None:
+        shutil.rmtree(hosting.temporary, ignore_errors=True)
+        return
     # Ends with the simulation, and not by Ctrl-C in its terminal.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     from .robot_side import robot_process  # noqa: F401 - what every robot needs, imported before it is needed
@@ -102,6 +104,18 @@ def main(hosting: Hosting) -> None:
     else:
         with suppress(EOFError):
             _become_the_robot(hosting, connection.recv())
+
+
+def _connect(hosting: Hosting, who: str | int) -> Connection | None:
+    """Connect to the simulation; return None if it was closed or killed meanwhile.
+
+    :param who: ``host``, or the number of a robot's launch
+    """
+    with suppress(OSError, EOFError):
+        connection = Client(hosting.address, authkey=hosting.key)
+        connection.send(who)
+        return connection
+    return None
 
 
 class _Forks:
@@ -183,8 +197,9 @@ def _run_robot(hosting: Hosting, launch: Launch, log: CrashLog) -> None:
     from .robot_side.robot_process import run_robot
 
     signal.signal(signal.SIGTERM, _end_robot)
-    connection = Client(hosting.address, authkey=hosting.key)
+    connection = _connect(hosting, launch.number)
+    if connection is None:
+        return
     close_in_forks(connection)
-    connection.send(launch.number)
     run_robot(pickle.loads(launch.job), connection, log)
     end_of_output(connection)
