@@ -14,10 +14,10 @@ from typing import NamedTuple
 from wpilib.simulation import SimDeviceSim
 
 from ..hal import HalData, format_path
+from ..hal.counters import counted_channels
 from ..hal.devices import KINDS
 from ..hal.modules import Modules
 from ..hal.sim_device_list import Signature
-from ..runtime.counters import counted_channels
 from .gamepads import TRIGGERS
 from .robot_constants import UNKNOWN, RobotConstants
 from .values import InputKind

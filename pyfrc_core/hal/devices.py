@@ -11,6 +11,7 @@ from wpilib import simulation as sim
 
 from ..compat import hal_callbacks, wpilib_private
 from .containers import NOT_SET, Raw
+from .counters import COUNTERS, CounterSim
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind
 from .kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
 
@@ -234,11 +235,13 @@ KINDS = (
     DeviceKind("filter", 3, None, (F("enabled", default=False), F("period", default=0))),
     DeviceKind(
         "counter",
-        8,
-        None,
+        COUNTERS,
+        CounterSim,
         (
-            *(F(name, default=False) for name in ("initialized", "has_source", "direction")),
-            F("count", default=0),
+            INITIALIZED,
+            HAS_SOURCE,
+            F("count", "Count", INT32),
+            F("direction", "Direction", BOOL),
             F("period", default=0.0),
             F("max_period", default=0.0),
             F("mode", default=0),

@@ -9,8 +9,9 @@ import pytest
 import wpilib
 from wpilib.simulation import DIOSim
 
-from pyfrc_core.runtime import counters
-from pyfrc_core.runtime.counters import counted_channels
+from pyfrc_core.hal import HalData, counters
+from pyfrc_core.hal.counters import counted_channels
+from pyfrc_core.runtime.counters import patches
 from pyfrc_core.runtime.patch_table import patched
 
 #: The first of some channels that no other test uses.
@@ -27,7 +28,8 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[Clock]:
     """Counters that measure with this clock."""
     clock = Clock()
     monkeypatch.setattr(counters, "_now", lambda: clock.now)
-    with patched(counters.patches()):
+    monkeypatch.setattr(counters, "_not_in_use", {})  # what other tests of this process have written
+    with patched(patches()):
         yield clock
 
 
@@ -112,3 +114,34 @@ def test_a_subclass_and_wrong_arguments(clock: Clock) -> None:
         wpilib.Counter("three")  # type: ignore[call-overload]
     with pytest.raises(TypeError):
         balls.setUpSourceEdge(True)  # type: ignore[call-arg]
+
+
+def test_hal_data_has_the_counters_of_the_robot(clock: Clock) -> None:
+    tree = HalData()
+    changes = tree.changes()
+    changes.look()
+    entry = tree["counter"][0]
+    entry["count"] = 5  # as tests do before the robot's code runs
+    assert not entry["initialized"]
+    counter = wpilib.Counter(FIRST)
+    assert (entry["initialized"], counter.get()) == (True, 5)
+    write(FIRST, 0, 1)
+    assert entry["count"] == 6
+    entry["count"] = 40
+    assert counter.get() == 40
+    found = {path: new for path, _, new in changes.look().changed}
+    assert found["counter[0].count"] == 40
+    second = wpilib.Counter(FIRST + 1)
+    assert "counter[1].count" in {path for path, _, _ in changes.look().changed}
+    assert second.get() == tree["counter"][1]["count"] == 0
+    del counter, second
+    assert [each["initialized"] for each in tree["counter"]] == [False] * 8
+    assert wpilib.Counter(FIRST).get() == 0
+
+
+def test_a_ninth_counter_is_an_error_as_on_the_roborio(clock: Clock) -> None:
+    counters = [wpilib.Counter() for _ in range(8)]
+    with pytest.raises(RuntimeError, match="no more than 8 counters"):
+        wpilib.Counter()
+    counters.pop()
+    assert wpilib.Counter().get() == 0
