@@ -24,7 +24,7 @@ def server(says: bytes) -> Iterator[Address]:
     with socket.create_server(("127.0.0.1", 0)) as listener:
 
         def serve() -> None:
-            with listener.accept()[0] as connected, suppress(ConnectionError):
+            with listener.accept()[0] as connected, suppress(OSError):  # the client may be gone
                 connected.sendall(says)
                 connected.shutdown(socket.SHUT_WR)
                 while connected.recv(4096):
