@@ -70,10 +70,12 @@ class Source:
 class EdgeCounter:
     """What one counter has counted.
 
+    :param index: its place in `hal_data`
     :param count: what it begins with
     """
 
-    def __init__(self, count: int = 0) -> None:
+    def __init__(self, index: int, count: int = 0) -> None:
+        self.index = index
         self.count = count
         self.forward = True
         self.reverse = False
@@ -167,7 +169,7 @@ def take_counter() -> EdgeCounter:
     if index is None:
         raise RuntimeError(f"the roboRIO has no more than {COUNTERS} counters, and all are in use")
     before = _not_in_use.pop(index, None)
-    counter = _in_use[index] = EdgeCounter(before.count if before else 0)
+    counter = _in_use[index] = EdgeCounter(index, before.count if before else 0)
     for watch in list(_watches):
         watch.call()
     return counter
@@ -192,7 +194,7 @@ class CounterSim:
     @property
     def counter(self) -> EdgeCounter:
         """The robot's counter; what its first values will be, while the robot has none."""
-        return _in_use.get(self._index) or _not_in_use.setdefault(self._index, EdgeCounter())
+        return _in_use.get(self._index) or _not_in_use.setdefault(self._index, EdgeCounter(self._index))
 
     def getInitialized(self) -> bool:
         return self._index in _in_use

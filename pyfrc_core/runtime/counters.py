@@ -32,6 +32,7 @@ def patches() -> list[Patch]:
     """Return the functions of `wpilib.Counter` to replace."""
     getters: dict[str, Callable[[EdgeCounter], Any]] = {
         "get": lambda counter: counter.count,
+        "getFPGAIndex": lambda counter: counter.index,
         "getDirection": lambda counter: counter.forward,
         "getStopped": lambda counter: counter.stopped,
         "getPeriod": lambda counter: counter.period,

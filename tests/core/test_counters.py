@@ -133,7 +133,7 @@ def test_hal_data_has_the_counters_of_the_robot(clock: Clock) -> None:
     assert found["counter[0].count"] == 40
     second = wpilib.Counter(FIRST + 1)
     assert "counter[1].count" in {path for path, _, _ in changes.look().changed}
-    assert second.get() == tree["counter"][1]["count"] == 0
+    assert (second.getFPGAIndex(), second.get(), tree["counter"][1]["count"]) == (1, 0, 0)
     del counter, second
     assert [each["initialized"] for each in tree["counter"]] == [False] * 8
     assert wpilib.Counter(FIRST).get() == 0
