@@ -97,6 +97,22 @@ PADS = """
 """
 
 
+#: Finds where the field's canvas shows the robot: the middle one of the places at which the pointer would be a hand. A
+#: real mouse at each of these thousands of places would take a minute.
+PLACE_OF_ROBOT = """(canvas) => {
+    const box = canvas.getBoundingClientRect();
+    const found = [];
+    for (let y = 10; y < box.height; y += 12) {
+        for (let x = 10; x < box.width; x += 12) {
+            const place = { clientX: box.left + x, clientY: box.top + y, bubbles: true };
+            canvas.dispatchEvent(new PointerEvent("pointermove", place));
+            if (canvas.style.cursor === "grab") found.push([x, y]);
+        }
+    }
+    return found[Math.floor(found.length / 2)];
+}"""
+
+
 @pytest.fixture(scope="module", name="server")
 def server_of_many_devices(make_shared_project):
     with served(make_shared_project(ROBOT), speed=1, paused=False) as server:
@@ -307,13 +323,8 @@ def test_the_field_is_moved_zoomed_and_turned_round(person: Seen) -> None:
         page.mouse.move(box["x"] + x, box["y"] + y)
         return field.evaluate("element => element.style.cursor")
 
-    def find_robot() -> tuple[float, float]:
-        places = [(x, y) for y in range(10, int(box["height"]), 12) for x in range(10, int(box["width"]), 12)]
-        found = [place for place in places if robot_at(*place) == "grab"]
-        assert found
-        return found[len(found) // 2]
-
-    x, y = find_robot()
+    x, y = field.evaluate(PLACE_OF_ROBOT)
+    assert robot_at(x, y) == "grab"
     robot = person.simulation.snapshot.scene.robot
     page.mouse.move(box["x"] + x + 80, box["y"] + y + 60)  # beside the robot
     page.mouse.down()
