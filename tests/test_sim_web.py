@@ -412,5 +412,11 @@ def test_the_pages_files_are_served_with_their_types(make_project) -> None:
                 assert headers["content-type"].startswith(kind)
                 assert headers["cache-control"] == "no-cache"
                 assert headers["x-content-type-options"] == "nosniff"
+        status, headers, content = server.get("/static/page.js")
+        assert (status, headers["content-type"]) == (200, "text/javascript; charset=utf-8")
+        assert (headers["cache-control"], headers["x-content-type-options"]) == ("no-cache", "nosniff")
+        assert b"js/model.js" in content
+        again = server.get("/static/page.js", {"If-None-Match": headers["etag"]})
+        assert (again[0], again[2]) == (304, b"")
         assert server.get("/static/../app.py")[0] == 404
         assert server.get("/static/%2e%2e/app.py")[0] == 404

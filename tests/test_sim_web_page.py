@@ -211,9 +211,9 @@ def test_gains_are_changed_on_the_dashboard(person: Seen) -> None:
 def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> None:
     found = person.page.evaluate(
         """async () => {
-          const { model } = await import("/static/js/model.js");
-          const { fieldObjects, swerveStates } = await import("/static/js/field/published.js");
-          const { mechanisms } = await import("/static/js/panels/mechanism.js");
+          const { model } = (await import("/static/page.js")).modules["js/model.js"];
+          const { fieldObjects, swerveStates } = (await import("/static/page.js")).modules["js/field/published.js"];
+          const { mechanisms } = (await import("/static/page.js")).modules["js/panels/mechanism.js"];
           const objects = fieldObjects(model.values, model.hello.field);
           // The physics' field has another name if robot code shows one of its own as "Field".
           const both = ["Field", "Field (physics)"].flatMap((name) => [
@@ -247,7 +247,7 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
 def test_names_on_the_field_do_not_cover_each_other(person: Seen) -> None:
     placed = person.page.evaluate(
         """async () => {
-          const { placeLabel } = await import("/static/js/field/labels.js");
+          const { placeLabel } = (await import("/static/page.js")).modules["js/field/labels.js"];
           const placed = [];
           return [[100, 50], [104, 52], [200, 50], [96, 38]].map(([x, y]) => placeLabel(placed, x, y, 40, 12));
         }"""

@@ -42,7 +42,7 @@ def test_the_page_needs_no_network_no_build_and_makes_no_html_of_texts() -> None
     index = (PAGE / "index.html").read_text("utf-8")
     assert "<style" not in index
     assert " style=" not in index
-    assert re.findall(r"<script(.*?)>(.*?)</script>", index) == [(' type="module" src="/static/js/main.js"', "")]
+    assert re.findall(r"<script(.*?)>(.*?)</script>", index) == [(' type="module" src="/static/page.js"', "")]
     # Each module imports files that exist, by relative paths, and names that they export.
     for file in (PAGE / "js").rglob("*.js"):
         imports = re.findall(r'^(?:import|export)\b([^"]*?)from "([^"]+)"', file.read_text("utf-8"), re.MULTILINE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import hashlib
 import mimetypes
 import traceback
 from concurrent.futures import ThreadPoolExecutor
@@ -20,7 +21,7 @@ from .access import Access, Guard, Receive, Scope, Send
 from .commands import Commands
 from .greeting import greeting
 from .page_client import PageClient
-from .single_file import PAGE
+from .single_file import PAGE, served_script
 from .updates import UpdateBuilder
 
 if TYPE_CHECKING:
@@ -48,6 +49,15 @@ class _PageFiles(StaticFiles):
         return response
 
 
+async def _script(request: Request) -> Response:
+    """Send the page's modules as one script, unless the browser has it."""
+    content = served_script()
+    headers = {"Cache-Control": "no-cache", "ETag": f'"{hashlib.sha256(content).hexdigest()}"'}
+    if request.headers.get("if-none-match") == headers["ETag"]:
+        return Response(status_code=304, headers=headers)
+    return Response(content, media_type="text/javascript", headers=headers)
+
+
 class WebApp:
     """Serves the pages of one simulation.
 
@@ -66,6 +76,7 @@ class WebApp:
             Route("/", self._index),
             Route("/field-image", self._image),
             WebSocketRoute("/ws", self._page),
+            Route("/static/page.js", _script),
             Mount("/static", _PageFiles(directory=PAGE)),
         ]
         self._guarded = Guard(Starlette(routes=routes), access)

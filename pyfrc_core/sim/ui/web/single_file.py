@@ -1,9 +1,10 @@
 """The page as one HTML file: its modules, styles, fonts and pictures are in it, so that it needs no server.
 
-A browser does not let a page from disk import modules from other files. So all modules become one script: each is a
-function, in the order in which they import each other. An imported name is a variable of the importing module, which is
-set before its code runs and again when all modules are there, since modules may import each other. The page's code is
-not changed otherwise. The Content-Security-Policy names this one script and the styles by their hashes.
+A browser does not let a page from disk import modules from other files, and asks a server for each of fifty modules. So
+all modules become one script: each is a function, in the order in which they import each other. An imported name is a
+variable of the importing module, which is set before its code runs and again when all modules are there, since modules
+may import each other. The page's code is not changed otherwise. The Content-Security-Policy names this one script and
+the styles by their hashes.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path, PurePosixPath
 
 #: The page's files.
@@ -34,7 +35,7 @@ def single_file(title: str, data: bytes) -> str:
     :param title: plain ASCII text of pyfrc's own
     :param data: the run, as `js/recorded.js` reads it
     """
-    script, styles = _script(), _styles()
+    script, styles = _script(_newest_module()), _styles()
     policy = (
         f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(styles)}'; img-src data: blob:; "
         "font-src data:; base-uri 'none'; form-action 'none'"
@@ -48,7 +49,7 @@ def single_file(title: str, data: bytes) -> str:
         ),
         ("<title>pyfrc sim</title>", f"<title>{title}</title>"),
         ('href="/static/icon.svg"', f'href="{data_url(PAGE / "icon.svg")}"'),
-        ('    <script type="module" src="/static/js/main.js"></script>\n', f"    <style>{styles}</style>\n"),
+        ('    <script type="module" src="/static/page.js"></script>\n', f"    <style>{styles}</style>\n"),
         (
             "  </body>",
             f'    <script type="application/gzip" id="run">{run}</script>\n'
@@ -59,6 +60,14 @@ def single_file(title: str, data: bytes) -> str:
         assert text.count(place) == 1, place
         text = text.replace(place, new)
     return text
+
+
+def served_script() -> bytes:
+    """Return the script that a server sends: all modules as their files are now.
+
+    It exports `modules`: tests and benchmarks look at their names.
+    """
+    return _script(_newest_module()).encode() + b"export { pyfrcModules as modules };\n"
 
 
 def data_url(file: Path) -> str:
@@ -98,9 +107,17 @@ def _checked(text: str, end: str) -> str:
     return text
 
 
-@cache
-def _script() -> str:
-    """Return all modules as one script."""
+def _newest_module() -> int:
+    """Return when a module was last changed."""
+    return max(file.stat().st_mtime_ns for file in PAGE.rglob("*.js"))
+
+
+@lru_cache(maxsize=1)
+def _script(changed: int) -> str:
+    """Return all modules as one script.
+
+    :param changed: when a module was last changed
+    """
     order: list[PurePosixPath] = []
     _add_module(_MAIN, order, set())
     *others, main = (f"{_module(name)}\n" for name in order)
