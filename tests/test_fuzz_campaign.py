@@ -58,14 +58,27 @@ def kept(project: Any) -> dict[str, bytes]:
 # -- what is found ---------------------------------------------------------------------------------------------------
 
 
-def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(make_project) -> None:
-    project = copy_of("buggy/chord", make_project, seconds=4.0)
-    result = project.run("fuzz", "--seed", "1", "--runs", "32")
+#: More than one batch: the second goes on from where the first has come to.
+CAMPAIGN = ("--seed", "1", "--runs", "36")
+
+
+@pytest.fixture(scope="module")
+def campaign(make_shared_project) -> tuple[Any, Any]:
+    """A project in which one process has played a campaign that finds a bug, and what it printed."""
+    project = copy_of("buggy/chord", make_shared_project, seconds=4.0)
+    result = project.run("fuzz", *CAMPAIGN, "-j", "1")
     assert result.code == 1, result.output
+    return project, result
+
+
+def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(campaign, make_project) -> None:
+    played, result = campaign
+    project = make_project({})
+    project.copy(played.path)
     place = project.place("robot.py", "# the bug")
     assert f"{place}: IndexError: tuple index out of range\n" in result.stdout
     assert re.search(
-        r"^32 matches, 0\.\d\d h of robot time, 100% of the robot's lines, 1 failure$", result.stdout, re.M
+        r"^36 matches, 0\.\d\d h of robot time, 100% of the robot's lines, 1 failure$", result.stdout, re.M
     )
     file = "tests/fuzz/indexerror-robot-pull.jsonl"
     assert f"pyfrc replay {file}\n" in result.stdout
@@ -96,16 +109,14 @@ def test_a_bug_is_found_kept_and_gone_when_it_is_repaired(make_project) -> None:
     assert project.run("test").code == 0
 
 
-def test_the_same_campaign_writes_the_same_files_in_however_many_processes(make_shared_project) -> None:
-    found = []
-    for jobs in ("1", "2"):
-        project = copy_of("buggy/chord", make_shared_project, seconds=4.0)
-        # More than one batch: the second goes on from where the first has come to.
-        result = project.run("fuzz", "--seed", "1", "--runs", "36", "-j", jobs)
-        assert result.code == 1, result.output
-        found.append((result.stdout.splitlines()[-1], kept(project)))
-    assert found[0] == found[1]
-    assert "fuzz/indexerror-robot-pull.jsonl" in found[0][1]
+def test_the_same_campaign_writes_the_same_files_in_however_many_processes(campaign, make_project) -> None:
+    in_one, by_one = campaign
+    in_two = copy_of("buggy/chord", make_project, seconds=4.0)
+    by_two = in_two.run("fuzz", *CAMPAIGN, "-j", "2")
+    assert by_two.code == 1, by_two.output
+    assert by_two.stdout.splitlines()[-1] == by_one.stdout.splitlines()[-1]
+    assert kept(in_two) == kept(in_one)
+    assert "fuzz/indexerror-robot-pull.jsonl" in kept(in_one)
 
 
 def test_in_a_robot_without_a_fault_nothing_is_found(make_project) -> None:
