@@ -406,6 +406,7 @@ def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
 def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
     with page_of(browser, server, color_scheme=scheme) as person:
         page = person.page
+        person.simulation.set_speed(0.1)  # painting fifty updates a second would take most of the time
         assert page.locator("html").get_attribute("data-theme") == scheme
         for size in ((1366, 768), (3840, 2160), (820, 1180)):
             page.set_viewport_size({"width": size[0], "height": size[1]})
