@@ -1,14 +1,16 @@
 """An exam for `pyfrc fuzz`: thirty planted bugs, and correct robots that must not get a finding.
 
-    python benchmarks/fuzz_exam.py [NAME]... [--time SECONDS] [--seed N] [--replays N]
+    python benchmarks/fuzz_exam.py [NAME]... [--time SECONDS] [--seed N] [--replays N] [--until-found]
     python benchmarks/fuzz_exam.py --correct [NAME]... [--runs N]
 
 The bugs in fuzz_exam/bugs.toml were planted without knowledge of fuzz's code: do not tune it to them. Each is a patch
 to a template or to a robot in tests/robots, and needs two things to come together. fuzz_exam/witnesses has a test for
 each that fails with the patch only. The first form plays a campaign on each and prints whether and when the bug was
-found, how many writes its script has, and how many replays fail in the same way. The second form plays matches on the
-robots in fuzz_exam/correct.toml and prints each finding: a false alarm, or a fault after all. It needs Python 3.11 or
-newer, an environment with pyfrc's development requirements, the program patch, and an idle machine.
+found, how many writes its script has, and how many replays fail in the same way. With --until-found, a campaign ends
+when its bug was printed, which takes a tenth of the time; other findings that would come later are not seen. The second
+form plays matches on the robots in fuzz_exam/correct.toml and prints each finding: a false alarm, or a fault after all.
+It needs Python 3.11 or newer, an environment with pyfrc's development requirements, the program patch, a POSIX system,
+and an idle machine.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ import argparse
 import json
 import re
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
@@ -51,6 +54,10 @@ class Finding:
     lines: list[str]
     script: str
 
+    def has(self, pattern: str) -> bool:
+        """Return whether one of the lines matches."""
+        return any(re.search(pattern, line) for line in self.lines)
+
 
 @dataclass
 class Answer:
@@ -70,6 +77,7 @@ def main() -> None:
     parser.add_argument("--time", type=float, default=120, help="seconds for each bug (default: 120)")
     parser.add_argument("--runs", type=int, default=1000, help="matches for each correct robot (default: 1000)")
     parser.add_argument("--replays", type=int, default=100, help="replays of each script (default: 100)")
+    parser.add_argument("--until-found", action="store_true", help="end each campaign when its bug was printed")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     entries = read("correct.toml")["robot"] if options.correct else read("bugs.toml")["bug"]
@@ -133,8 +141,9 @@ def examine_bug(bug: dict[str, Any], options: argparse.Namespace) -> Answer:
     with tempfile.TemporaryDirectory(prefix="fuzz-exam-", ignore_cleanup_errors=True) as directory:
         project = make_project(bug["robot"], Path(directory))
         plant(bug["name"], project)
-        for finding in fuzz(project, "--seed", str(options.seed), "--time", f"{options.time:g}", "-j", "2"):
-            if answer.found is None and any(re.search(bug["finding"], line) for line in finding.lines):
+        campaign = "--seed", str(options.seed), "--time", f"{options.time:g}", "-j", "2"
+        for finding in fuzz(project, *campaign, ends_with=bug["finding"] if options.until_found else None):
+            if answer.found is None and finding.has(bug["finding"]):
                 answer.found = finding
             else:
                 answer.others.append(finding)
@@ -161,8 +170,12 @@ def examine_correct_robots(robots: list[dict[str, Any]], options: argparse.Names
     print(f"{alarms} of {len(robots)} robots with findings")
 
 
-def fuzz(project: Path, *options: str) -> list[Finding]:
-    """Play a campaign; return its findings in the order in which they are printed."""
+def fuzz(project: Path, *options: str, ends_with: str | None = None) -> list[Finding]:
+    """Play a campaign; return its findings in the order in which they are printed.
+
+    :param ends_with: what the finding has that ends the campaign
+    """
+    ended = False
     begin = time.monotonic()
     found: list[Finding] = []
     lines: list[str] = []
@@ -180,7 +193,10 @@ def fuzz(project: Path, *options: str) -> list[Finding]:
             if script := _REPLAY.match(line):
                 found.append(Finding(time.monotonic() - begin, lines, script[1]))
                 lines = []
-    if process.returncode not in (0, 1):
+                if ends_with is not None and not ended and found[-1].has(ends_with):
+                    ended = True
+                    process.send_signal(signal.SIGINT)
+    if process.returncode not in (0, 1) and not ended:
         sys.exit(f"error: {' '.join(command)} in {project}:\n" + "\n".join(lines))
     return found
 
