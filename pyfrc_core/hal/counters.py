@@ -175,6 +175,11 @@ def take_counter() -> EdgeCounter:
     return counter
 
 
+def forget_written_counts() -> None:
+    """Forget what was written for counters that the robot's code does not have."""
+    _not_in_use.clear()
+
+
 def counted_channels() -> frozenset[int]:
     """Return the channels of the digital inputs whose edges counters of the robot count."""
     sources = [source for counter in _in_use.values() for source in (counter.up, counter.down)]
@@ -192,7 +197,7 @@ class CounterSim:
         self._index = index
 
     @property
-    def counter(self) -> EdgeCounter:
+    def _counter(self) -> EdgeCounter:
         """The robot's counter; what its first values will be, while the robot has none."""
         return _in_use.get(self._index) or _not_in_use.setdefault(self._index, EdgeCounter(self._index))
 
@@ -205,13 +210,13 @@ class CounterSim:
         return watch
 
     def getCount(self) -> int:
-        return self.counter.count
+        return self._counter.count
 
     def setCount(self, count: int) -> None:
-        self.counter.count = count
+        self._counter.count = count
 
     def getDirection(self) -> bool:
-        return self.counter.forward
+        return self._counter.forward
 
     def setDirection(self, forward: bool) -> None:
-        self.counter.forward = forward
+        self._counter.forward = forward

@@ -15,14 +15,19 @@ from hal.simulation import (
     stepTiming,
 )
 
+from .counters import forget_written_counts
+
 #: Advance HAL time by this many microseconds; wake the notifiers of C++ code that become due.
 step_us = stepTiming
 
 #: Deliver the driver station's current data to the robot as the next packet.
 deliver_packet = notifyDriverStationNewData
 
-#: Reset all sensors and outputs to their initial values.
-forget_inputs = resetAllSimData
+
+def forget_inputs() -> None:
+    """Reset all sensors and outputs to their initial values."""
+    resetAllSimData()
+    forget_written_counts()
 
 
 def stop_and_zero() -> None:

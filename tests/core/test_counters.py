@@ -11,6 +11,7 @@ from wpilib.simulation import DIOSim
 
 from pyfrc_core.hal import HalData, counters
 from pyfrc_core.hal.counters import counted_channels
+from pyfrc_core.hal.timing import forget_inputs
 from pyfrc_core.runtime.counters import patches
 from pyfrc_core.runtime.patch_table import patched
 
@@ -137,6 +138,13 @@ def test_hal_data_has_the_counters_of_the_robot(clock: Clock) -> None:
     del counter, second
     assert [each["initialized"] for each in tree["counter"]] == [False] * 8
     assert wpilib.Counter(FIRST).get() == 0
+
+
+def test_a_count_that_one_test_writes_is_forgotten_before_the_next(clock: Clock) -> None:
+    tree = HalData()
+    tree["counter"][0]["count"] = 5
+    forget_inputs()
+    assert (tree["counter"][0]["count"], wpilib.Counter(FIRST).get()) == (0, 0)
 
 
 def test_a_ninth_counter_is_an_error_as_on_the_roborio(clock: Clock) -> None:
