@@ -10,7 +10,7 @@ found, how many writes its script has, and how many replays fail in the same way
 when its bug was printed, which takes a tenth of the time; other findings that would come later are not seen. The second
 form plays matches on the robots in fuzz_exam/correct.toml and prints each finding: a false alarm, or a fault after all.
 It needs Python 3.11 or newer, an environment with pyfrc's development requirements, the program patch, a POSIX system,
-and an idle machine.
+and an idle machine. Two replays run at once.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -150,11 +151,15 @@ def examine_bug(bug: dict[str, Any], options: argparse.Namespace) -> Answer:
         if answer.found is not None:
             steps = map(json.loads, (project / answer.found.script).read_text("utf-8").splitlines())
             answer.writes = sum(len(step.get("set", ())) for step in steps)
-            for _ in range(options.replays):
-                command = [*PYFRC, "replay", answer.found.script]
-                output = subprocess.run(command, cwd=project, capture_output=True, text=True, check=False).stdout
-                answer.replays += re.search(bug["finding"], output) is not None
+            with ThreadPoolExecutor(2) as replays:
+                outputs = replays.map(replay, [project] * options.replays, [answer.found.script] * options.replays)
+                answer.replays = sum(re.search(bug["finding"], output) is not None for output in outputs)
     return answer
+
+
+def replay(project: Path, script: str) -> str:
+    """Replay a script in a process of its own; return what is printed."""
+    return subprocess.run([*PYFRC, "replay", script], cwd=project, capture_output=True, text=True, check=False).stdout
 
 
 def examine_correct_robots(robots: list[dict[str, Any]], options: argparse.Namespace) -> None:

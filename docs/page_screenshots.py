@@ -57,7 +57,8 @@ def choose_layout(page: Page, name: str) -> None:
 def plot(page: Page, panel: str, *paths: str) -> None:
     """Plot values, as dragging them to the plot does."""
     page.evaluate(
-        "([panel, paths]) => import('/static/js/plotting.js').then((m) => paths.forEach((p) => m.addToPlot(p, panel)))",
+        "([panel, paths]) => import('/static/page.js').then(({ modules: { 'js/plotting.js': { addToPlot } } }) => "
+        "paths.forEach((path) => addToPlot(path, panel)))",
         [panel, list(paths)],
     )
 

@@ -404,12 +404,14 @@ def test_the_pages_files_are_served_with_their_types(make_project) -> None:
         assert b"<script" not in content or b'src="/static/' in content
         page = Path(__file__).parents[1] / "pyfrc_core" / "sim" / "ui" / "web" / "page"
         for file in page.rglob("*"):
-            if file.suffix in (".js", ".css"):
-                status, headers, content = server.get(f"/static/{file.relative_to(page).as_posix()}")
+            address = f"/static/{file.relative_to(page).as_posix()}"
+            if file.suffix in (".js", ".mjs"):
+                assert server.get(address)[0] == 404, "modules are in the one script"
+            if file.suffix == ".css":
+                status, headers, content = server.get(address)
                 assert status == 200
                 assert content == file.read_bytes()
-                kind = "text/css" if file.suffix == ".css" else "text/javascript"
-                assert headers["content-type"].startswith(kind)
+                assert headers["content-type"].startswith("text/css")
                 assert headers["cache-control"] == "no-cache"
                 assert headers["x-content-type-options"] == "nosniff"
         status, headers, content = server.get("/static/page.js")

@@ -150,6 +150,46 @@ def test_the_robot_is_dragged_turned_and_moved_by_keys(person: Seen) -> None:
     person.page.get_by_role("menuitemcheckbox", name="AprilTags").click()
 
 
+#: Counts how often each canvas is painted, by the class of the element around it.
+PAINTINGS = """
+    window.paintings = {};
+    const clear = CanvasRenderingContext2D.prototype.clearRect;
+    CanvasRenderingContext2D.prototype.clearRect = function (...box) {
+      const around = this.canvas.parentElement?.className;
+      window.paintings[around] = (window.paintings[around] ?? 0) + 1;
+      return clear.apply(this, box);
+    };
+"""
+
+#: Whether the page has shown ten moments, one after the other, for which it did not paint a picture.
+STAYS_THE_SAME = """
+    (picture) => {
+      const { painted } = window.last ?? {};
+      if (painted !== window.paintings[picture]) window.last = { painted: window.paintings[picture], times: new Set() };
+      return painted && window.last.times.add(window.model.t).size > 10;
+    }
+"""
+
+
+def test_a_picture_that_stays_the_same_is_painted_once(browser, server) -> None:
+    """A robot at rest takes next to nothing of a laptop without a graphics processor."""
+    with page_of(browser, server, script=PAINTINGS) as person:
+        page = person.page
+        page.evaluate("import('/static/page.js').then(({ modules }) => (window.model = modules['js/model.js'].model))")
+        for layout, picture in (("Mechanism", "mechanism"), ("Driving", "field-canvas")):
+            person.choose("Layout", layout)
+            page.wait_for_function(STAYS_THE_SAME, arg=picture)
+        field = page.locator(".field-canvas")
+        for change in (
+            lambda: field.press("ArrowRight"),
+            lambda: person.choose("What is drawn", "AprilTags"),
+            lambda: person.choose("What is drawn", "Turn the field round"),
+        ):
+            before = page.evaluate("window.paintings")["field-canvas"]
+            change()
+            page.wait_for_function("before => window.paintings['field-canvas'] > before", arg=before)
+
+
 def test_devices_are_found_set_and_pinned(person: Seen) -> None:
     page = person.page
     page.get_by_label("Search devices").fill("range")

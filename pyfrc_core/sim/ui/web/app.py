@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import mimetypes
+import os
 import traceback
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
     from ...engine.simulation import Simulation
     from .collector import Collector
 
-#: Types that some systems have wrong, in the Windows registry for example: browsers refuse modules of another type.
-_TYPES = {".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
+#: Types that some systems have wrong, in the Windows registry for example: browsers refuse styles of another type.
+_TYPES = {".css": "text/css", ".svg": "image/svg+xml"}
 
 _NO_KEY = "This address lacks its key. Open the address that pyfrc sim has printed.\n"
 #: The codes that close a connection: it sent something other than text; pyfrc has a mistake.
@@ -41,7 +42,13 @@ _GONE = (WebSocketDisconnect, RuntimeError, OSError)
 
 
 class _PageFiles(StaticFiles):
-    """The page's files, which a browser asks for again each time: a changed file is there after a reload."""
+    """The page's files, which a browser asks for again each time: a changed file is there after a reload.
+
+    Modules are not among them: they are in the one script, and one that was loaded beside it would be there twice.
+    """
+
+    def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
+        return ("", None) if path.endswith((".js", ".mjs")) else super().lookup_path(path)
 
     def file_response(self, *arguments: Any, **named: Any) -> Response:
         response = super().file_response(*arguments, **named)

@@ -1,5 +1,5 @@
 // Canvases with sharp lines on dense screens.
-import { color } from "./settings.js";
+import { color, isDark } from "./settings.js";
 
 // An element's size without its borders, in pixels of the page. Asking the element itself in each drawing would have the
 // browser lay out the page at once, and again before it paints.
@@ -19,6 +19,19 @@ export class ElementSize {
 
   disconnect() {
     this.observer.disconnect();
+  }
+}
+
+// What a canvas shows. Most updates bring only a later time, for which nothing has to be painted again.
+export class Picture {
+  #parts = [];
+
+  // Whether a part of what is drawn is another one than at the last call. What changes in its place is given as text.
+  changes(...parts) {
+    const given = [...parts, isDark(), devicePixelRatio];
+    const isOther = given.some((part, index) => part !== this.#parts[index]);
+    this.#parts = given;
+    return isOther;
   }
 }
 

@@ -1,5 +1,5 @@
 // The field: the season's picture, the robot, its path, and what robot code publishes. The wheel zooms, dragging moves.
-import { ElementSize, font, sizeCanvas } from "../canvas.js";
+import { ElementSize, Picture, font, sizeCanvas } from "../canvas.js";
 import { command } from "../connection.js";
 import { numberText } from "../format.js";
 import * as draw from "../field/draw.js";
@@ -28,6 +28,7 @@ const TURN = 15; // degrees by an arrow key
 export class FieldPanel extends Live {
   parts = ["t", "robot", "shown", "values", "trail", "former_trail", "drawings", "targets", "hello", "field", "settings", "window", "compared", "compared-series"];
   canvas = createRef();
+  picture = new Picture();
 
   componentDidMount() {
     super.componentDidMount();
@@ -44,7 +45,9 @@ export class FieldPanel extends Live {
 
   componentDidUpdate() {
     this.loadImage();
-    this.draw();
+    const { trail, formerTrail, drawings, targets, hello } = model;
+    const moving = JSON.stringify([this.robots, this.swerve, this.objects, this.view.turned]);
+    if (this.picture.changes(moving, trail, formerTrail, drawings, targets, hello, settings.get("fieldLayers"))) this.draw();
   }
 
   shows(layer) {
@@ -58,9 +61,16 @@ export class FieldPanel extends Live {
   }
 
   render() {
-    const pose = model.shown.robot;
+    const { robot: pose, values, station } = model.shown;
+    this.robots = {
+      robot: pose,
+      now: model.past && model.robot, // behind the robot of the moment that is shown
+      compared: compared.poseAt(model.past?.t ?? model.t),
+      alliance: station.alliance ?? model.station.alliance ?? "",
+    };
+    this.swerve = pose ? swerveStates(values) : [];
     const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));
-    this.objects = fieldObjects(model.shown.values, model.hello.field);
+    this.objects = fieldObjects(values, model.hello.field);
     if (this.objects.length) layers.push({ separator: true }, ...this.objects.map(({ path, name }) => this.layer(path, name)));
     layers.push({ separator: true }, { text: "Turn the field round", checked: Boolean(this.view?.turned), act: this.turnRound });
     return html`<div class="field">
@@ -124,7 +134,7 @@ export class FieldPanel extends Live {
       if (object.isPath) draw.drawTrail(context, this.view, object.poses, name, 2);
       else if (object.poses.length > MOST_ROBOTS) for (const pose of object.poses) draw.drawPlace(context, this.view, pose, name);
       else for (const pose of object.poses) draw.drawRobot(context, this.view, field, pose, { body: name, alpha: 0.8, outline: true });
-      if (this.view.scale < LEAST_NAMED || isUnderRobot(object, model.shown.robot, field)) return;
+      if (this.view.scale < LEAST_NAMED || isUnderRobot(object, this.robots.robot, field)) return;
       const [x, y] = this.view.toScreen(object.poses[0]);
       const above = object.isPath || object.poses.length > MOST_ROBOTS ? 8 : (Math.hypot(field.robot_length, field.robot_width) / 2) * this.view.scale + 2;
       context.fillStyle = color(name);
@@ -144,15 +154,13 @@ export class FieldPanel extends Live {
   }
 
   drawRobots(context, field) {
-    const { robot, values, station } = model.shown;
-    const ghost = compared.poseAt(model.past?.t ?? model.t);
-    if (ghost) draw.drawRobot(context, this.view, field, ghost, { body: "own", alpha: 0.75 });
-    if (model.past && model.robot) draw.drawRobot(context, this.view, field, model.robot, { body: "muted", alpha: 0.35 });
+    const { robot, now, compared, alliance } = this.robots;
+    if (compared) draw.drawRobot(context, this.view, field, compared, { body: "own", alpha: 0.75 });
+    if (now) draw.drawRobot(context, this.view, field, now, { body: "muted", alpha: 0.35 });
     if (!robot) return;
-    const body = (station.alliance ?? model.station.alliance ?? "").startsWith("red") ? "alliance-red" : "blue";
-    draw.drawRobot(context, this.view, field, robot, { body });
+    draw.drawRobot(context, this.view, field, robot, { body: alliance.startsWith("red") ? "alliance-red" : "blue" });
     if (!this.shows("swerve")) return;
-    for (const { states, wanted } of swerveStates(values)) {
+    for (const { states, wanted } of this.swerve) {
       draw.drawSwerve(context, this.view, field, robot, states, wanted ? "swerve-wanted" : "swerve");
     }
   }

@@ -1,5 +1,5 @@
 // The Mechanism2d drawings that robot code publishes.
-import { ElementSize, font, sizeCanvas } from "../canvas.js";
+import { ElementSize, Picture, font, sizeCanvas } from "../canvas.js";
 import { plain } from "../format.js";
 import { model } from "../model.js";
 import { color } from "../settings.js";
@@ -8,6 +8,7 @@ import { Live, createRef, html } from "../view.js";
 export class MechanismPanel extends Live {
   parts = ["values", "paths", "shown", "settings", "window", "hello"];
   canvas = createRef();
+  picture = new Picture();
 
   componentDidMount() {
     super.componentDidMount();
@@ -20,13 +21,13 @@ export class MechanismPanel extends Live {
   }
 
   componentDidUpdate() {
-    this.draw();
+    if (this.picture.changes(JSON.stringify(this.found))) this.draw();
   }
 
   render() {
-    const found = mechanisms(model.shown.values);
-    return html`<div class="mechanism"><canvas ref=${this.canvas} role="img" aria-label=${found.map((each) => each.name).join(", ")}></canvas>
-      ${!found.length && html`<p class="empty">A Mechanism2d that the robot publishes appears here: SmartDashboard.putData("Arm", mechanism).</p>`}</div>`;
+    this.found = mechanisms(model.shown.values);
+    return html`<div class="mechanism"><canvas ref=${this.canvas} role="img" aria-label=${this.found.map((each) => each.name).join(", ")}></canvas>
+      ${!this.found.length && html`<p class="empty">A Mechanism2d that the robot publishes appears here: SmartDashboard.putData("Arm", mechanism).</p>`}</div>`;
   }
 
   draw() {
@@ -34,7 +35,7 @@ export class MechanismPanel extends Live {
     const { width, height } = this.size ?? {};
     if (!canvas || !width) return;
     const context = sizeCanvas(canvas, width, height);
-    const found = mechanisms(model.shown.values);
+    const { found } = this;
     const columns = Math.ceil(Math.sqrt(found.length)) || 1;
     const rows = Math.ceil(found.length / columns) || 1;
     found.forEach((mechanism, index) => {
