@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import os
 import selectors
 import signal
@@ -55,6 +56,9 @@ class Fork:
             self._pid = os.fork()
         if self._pid == 0:
             try:
+                # Garbage of the other process is not collected here: WPILib's objects would wait for ever for locks
+                # that its threads held.
+                gc.freeze()
                 if owner is not None:  # another thread may end before its process
                     end_with(owner)
                 work(lambda data: write_all(writing_end, data))

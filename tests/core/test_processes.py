@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import select
 import signal
@@ -175,6 +176,38 @@ def test_a_message_that_is_too_large(begin: Begin, monkeypatch: pytest.MonkeyPat
     assert finish(worker) == ["before"]
     assert worker.status == 1
     assert "FrameTooLargeError" in worker.describe_exit(FILES, "meanwhile")
+
+
+class Cycle:
+    """Garbage for the collector alone, which notes in which process it is collected."""
+
+    def __init__(self, collected_in: list[int]) -> None:
+        self.itself, self.collected_in = self, collected_in
+
+    def __del__(self) -> None:
+        self.collected_in.append(os.getpid())
+
+
+@only_forked
+def test_a_fork_collects_its_own_garbage_only(begin: Begin) -> None:
+    """WPILib's objects, when they are destroyed, wait for locks that the threads of the other process may have held."""
+    collected_in: list[int] = []
+
+    def collect(send: Send, log: CrashLog) -> None:
+        gc.collect()
+        send(len(collected_in))
+        Cycle(collected_in)
+        gc.collect()
+        send(len(collected_in))
+
+    gc.collect()
+    gc.disable()
+    try:
+        Cycle(collected_in)
+        worker = begin(ForkedWorker, collect)
+    finally:
+        gc.enable()
+    assert finish(worker) == [0, 1]
 
 
 # -- a channel: two sources, one order ---------------------------------------------------------------------------------
