@@ -6,7 +6,10 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from multiprocessing.process import BaseProcess
 
 #: The exit code of a process whose robot code could not be stopped otherwise.
 EXIT_HANGS = 86
@@ -40,7 +43,20 @@ def call_before_sudden_exit() -> None:
 
 
 def end_child_processes() -> None:
-    """Kill the processes that robot code has started with `multiprocessing`."""
+    """Kill the processes that robot code has started here with `multiprocessing`."""
+    for process in _child_processes():
+        if process not in _of_another:
+            process.kill()
+
+
+def disown_child_processes() -> None:
+    """In a fork of a process: leave those to it that it has started."""
+    _of_another.extend(_child_processes())
+
+
+_of_another: list[BaseProcess] = []
+
+
+def _child_processes() -> list[BaseProcess]:
     multiprocessing = sys.modules.get("multiprocessing")
-    for process in multiprocessing.active_children() if multiprocessing is not None else ():
-        process.kill()
+    return multiprocessing.active_children() if multiprocessing is not None else []

@@ -14,7 +14,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 
 from .crash_report import write_all
-from .exit import exit_now
+from .exit import disown_child_processes, exit_now
 from .owner import end_with, prepare_end_with
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
@@ -59,6 +59,7 @@ class Fork:
                 # Garbage of the other process is not collected here: WPILib's objects would wait for ever for locks
                 # that its threads held.
                 gc.freeze()
+                disown_child_processes()
                 if owner is not None:  # another thread may end before its process
                     end_with(owner)
                 work(lambda data: write_all(writing_end, data))

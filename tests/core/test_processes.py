@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import multiprocessing
 import os
 import select
 import signal
@@ -14,6 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import partial
 from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
@@ -208,6 +210,35 @@ def test_a_fork_collects_its_own_garbage_only(begin: Begin) -> None:
     finally:
         gc.enable()
     assert finish(worker) == [0, 1]
+
+
+@only_forked
+def test_a_fork_ends_its_own_child_processes_only(begin: Begin) -> None:
+    """Tests may have a program of their own beside the robot, such as a camera's, which all tests share."""
+    fork = multiprocessing.get_context("fork")
+
+    def answer(connection: Connection) -> None:
+        while connection.recv() == "are you there?":
+            connection.send("yes")
+
+    here, there = Pipe()
+    shared = fork.Process(target=answer, args=(there,), daemon=True)
+    shared.start()
+    there.close()
+    lives, held = Pipe()
+
+    def start_another(send: Send, log: CrashLog) -> None:
+        send(multiprocessing.active_children() != [])
+        fork.Process(target=time.sleep, args=(PATIENCE,)).start()  # it holds the pipe open
+
+    assert finish(begin(ForkedWorker, start_another)) == [True]
+    held.close()
+    with pytest.raises(EOFError):
+        lives.recv()
+    here.send("are you there?")
+    assert here.recv() == "yes"
+    here.send("good bye")
+    shared.join()
 
 
 # -- a channel: two sources, one order ---------------------------------------------------------------------------------
