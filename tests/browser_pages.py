@@ -125,6 +125,10 @@ def missing_browser() -> list[str]:
     return ["chromium"] if len(missing_programs(*_PROGRAMS)) == len(_PROGRAMS) else []
 
 
+#: For scripts in the page: what one of its modules exports.
+MODULE = 'window.module = async (name) => (await import("/static/page.js")).modules[name];'
+
+
 @contextmanager
 def open_browser() -> Iterator[Browser]:
     """Start Chromium without a window."""
@@ -251,7 +255,7 @@ def page_of(browser: Browser, server: Served, address: str = "", script: str = "
     context = browser.new_context(viewport={"width": 1366, "height": 768}, **options)
     try:
         seen = Seen(context.new_page(), server)
-        seen.page.add_init_script(script)
+        seen.page.add_init_script(MODULE + script)
         yield seen.open(address)
         assert not seen.wrong, seen.wrong
     finally:

@@ -175,7 +175,7 @@ def test_a_picture_that_stays_the_same_is_painted_once(browser, server) -> None:
     """A robot at rest takes next to nothing of a laptop without a graphics processor."""
     with page_of(browser, server, script=PAINTINGS) as person:
         page = person.page
-        page.evaluate("import('/static/page.js').then(({ modules }) => (window.model = modules['js/model.js'].model))")
+        page.evaluate("module('js/model.js').then(({ model }) => (window.model = model))")
         for layout, picture in (("Mechanism", "mechanism"), ("Driving", "field-canvas")):
             person.choose("Layout", layout)
             page.wait_for_function(STAYS_THE_SAME, arg=picture)
@@ -251,9 +251,9 @@ def test_gains_are_changed_on_the_dashboard(person: Seen) -> None:
 def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> None:
     found = person.page.evaluate(
         """async () => {
-          const { model } = (await import("/static/page.js")).modules["js/model.js"];
-          const { fieldObjects, swerveStates } = (await import("/static/page.js")).modules["js/field/published.js"];
-          const { mechanisms } = (await import("/static/page.js")).modules["js/panels/mechanism.js"];
+          const { model } = await module("js/model.js");
+          const { fieldObjects, swerveStates } = await module("js/field/published.js");
+          const { mechanisms } = await module("js/panels/mechanism.js");
           const objects = fieldObjects(model.values, model.hello.field);
           // The physics' field has another name if robot code shows one of its own as "Field".
           const both = ["Field", "Field (physics)"].flatMap((name) => [
@@ -287,7 +287,7 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
 def test_names_on_the_field_do_not_cover_each_other(person: Seen) -> None:
     placed = person.page.evaluate(
         """async () => {
-          const { placeLabel } = (await import("/static/page.js")).modules["js/field/labels.js"];
+          const { placeLabel } = await module("js/field/labels.js");
           const placed = [];
           return [[100, 50], [104, 52], [200, 50], [96, 38]].map(([x, y]) => placeLabel(placed, x, y, 40, 12));
         }"""

@@ -422,9 +422,7 @@ def test_another_run_is_compared_in_plots_and_at_its_first_difference(person: Se
     page.locator("button", has_text="Differs at").click()
     page.locator(".past-actions").wait_for()
     # Its curve and its place on the field come from the branch.
-    page.wait_for_function(
-        "async () => (await import('/static/page.js')).modules['js/compare.js'].compared.pose.t.length > 0"
-    )
+    page.wait_for_function("async () => (await module('js/compare.js')).compared.pose.t.length > 0")
     person.choose("Compare with an earlier run", "")
     page.locator("button", has_text="Differs at").wait_for(state="detached")
 

@@ -103,8 +103,8 @@ def test_values_are_plotted_zoomed_and_saved(person: Seen) -> None:
 
 #: A series as the page has it, and as the history of the server has it.
 SERIES = """async (path) => {
-  const { watch } = (await import("/static/page.js")).modules["js/series.js"];
-  const { ask } = (await import("/static/page.js")).modules["js/connection.js"];
+  const { watch } = await module("js/series.js");
+  const { ask } = await module("js/connection.js");
   const answer = await ask("plot", { paths: [path], from: 0, to: 1e6, points: 20000, branch: null });
   const rounded = ({ t, v }) => t.map((time, index) => `${time.toFixed(2)} ${v[index].toFixed(3)}`);
   return [rounded(watch(path)), rounded(answer.series[path])];
@@ -127,7 +127,7 @@ def same_series(person: Seen, path: str) -> None:
 
 def test_curves_have_no_holes_when_they_are_added_or_a_run_goes_on(person: Seen) -> None:
     page = person.page
-    add = "path => import('/static/page.js').then(({ modules }) => modules['js/plotting.js'].addToPlot(path, 'plot:1'))"
+    add = "path => module('js/plotting.js').then(({ addToPlot }) => addToPlot(path, 'plot:1'))"
     person.button("Enable").click()
     page.keyboard.down("w")
     person.until(lambda: person.value("pwm[0].value") == 1)
@@ -430,8 +430,8 @@ def test_everything_fits_and_can_be_read(browser, server, scheme) -> None:
 
 #: Take in more points of a plotted value, and more marks, than a page keeps; how many are left of each.
 FLOOD = """async () => {
-  const { model } = (await import("/static/page.js")).modules["js/model.js"];
-  const { unwatch, watch } = (await import("/static/page.js")).modules["js/series.js"];
+  const { model } = await module("js/model.js");
+  const { unwatch, watch } = await module("js/series.js");
   const path = "pwm[0].value", series = watch(path);
   model.take({ type: "update", samples: { [path]: Array.from({ length: 90000 }, (_, index) => index / 50) } });
   const marks = Array.from({ length: 2500 }, (_, n) => ({ n, t: n, kind: n % 100 ? "overrun" : "own", text: "" }));
