@@ -167,9 +167,11 @@ def examine_correct_robots(robots: list[dict[str, Any]], options: argparse.Names
     for robot in robots:
         with tempfile.TemporaryDirectory(prefix="fuzz-exam-", ignore_cleanup_errors=True) as directory:
             project = make_project(robot["robot"], Path(directory))
+            begin = time.monotonic()
             found = fuzz(project, "--seed", str(options.seed), "--runs", str(options.runs))
         alarms += bool(found)
-        print(f"{robot['name']:28}{len(found)} findings  {robot.get('doubt', '') if found else ''}", flush=True)
+        doubt = robot.get("doubt", "") if found else ""
+        print(f"{robot['name']:28}{time.monotonic() - begin:7.1f}s  {len(found)} findings  {doubt}", flush=True)
         for finding in found:
             print("    " + "\n    ".join(finding.lines), flush=True)
     print(f"{alarms} of {len(robots)} robots with findings")
