@@ -22,11 +22,11 @@ from typing import Any
 import pytest
 
 from pyfrc_core.errors import RobotCodeError, UsageError
-from pyfrc_core.processes import channel, frames
+from pyfrc_core.processes import channel, frames, outbox
 from pyfrc_core.processes import exit as process_exit
 from pyfrc_core.processes.call import ForkedCall, run_in_subprocess
 from pyfrc_core.processes.crash_report import CrashLog
-from pyfrc_core.processes.exit import before_every_exit, before_sudden_exit, call_before_sudden_exit, exit_now
+from pyfrc_core.processes.exit import before_every_exit, before_sudden_exit, exit_now, prepare_sudden_exit
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
 from pyfrc_core.processes.frames import FrameTooLargeError, decode, encode
 from pyfrc_core.processes.prefork import PreforkedProcess
@@ -241,6 +241,23 @@ def test_a_fork_ends_its_own_child_processes_only(begin: Begin) -> None:
     shared.join()
 
 
+# -- an outbox: never waits
+
+
+def test_messages_to_a_process_that_does_not_read_wait_in_their_order() -> None:
+    ours, theirs = Pipe()
+    box = outbox.Outbox(ours)
+    sent = [*range(5000), "long" * 100_000, *range(5000)]
+    for message in sent:  # more than any pipe takes
+        box.send(message)
+    assert [theirs.recv() for _ in sent] == sent
+    box.send("at once")
+    assert theirs.recv() == "at once"
+    theirs.close()
+    for number in range(5000):
+        box.send(number)  # to nobody
+
+
 # -- a channel: two sources, one order ---------------------------------------------------------------------------------
 
 
@@ -386,7 +403,7 @@ def test_what_is_called_at_each_exit(begin: Begin, monkeypatch: pytest.MonkeyPat
 
     def exit_with_calls(send: Send, log: CrashLog) -> None:
         before_sudden_exit.update(first=lambda: 1 / 0, second=partial(send, "sudden"))
-        call_before_sudden_exit()
+        prepare_sudden_exit()
         before_every_exit.append(partial(send, "measured"))
 
     assert finish(begin(ForkedWorker, exit_with_calls)) == ["sudden", "measured"]

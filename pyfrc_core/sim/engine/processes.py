@@ -17,6 +17,7 @@ from typing import Any
 
 from ...processes.channel import Channel
 from ...processes.fork import FORK_IS_SAFE
+from ...processes.outbox import Outbox
 from ...processes.output_pipe import OutputPipe
 from ...processes.spawn import Interpreter
 from . import host_process
@@ -64,7 +65,7 @@ class RobotProcesses:
         self._host: Interpreter | None = None
         self._host_connection: Connection | None = None
         self._host_reader: threading.Thread | None = None
-        self._robot: Connection | None = None
+        self._robot: Outbox | None = None
         #: What the host, and so the robot, prints into.
         self._output: OutputPipe | None = None
         #: Set when the robot's process has ended.
@@ -98,8 +99,7 @@ class RobotProcesses:
         with self._lock:
             if self._robot is None:
                 self._for_robot.append(command)
-                return
-            with suppress(OSError):
+            else:
                 self._robot.send(command)
 
     def kill(self) -> None:
@@ -122,9 +122,8 @@ class RobotProcesses:
         with self._lock:
             robot, ended = self._robot, self._ended
         if robot is not None and not self._closed:
-            with suppress(OSError):
-                robot.send(Quit())
-                ended.wait(_PATIENCE)
+            robot.send(Quit())
+            ended.wait(_PATIENCE)
         with self._lock:
             if self._closed:
                 return
@@ -197,7 +196,7 @@ class RobotProcesses:
                     if self._forks:
                         self._host_reader = _thread(self._hear_host, "pyfrc sim: host", connection)
                 elif who == self._number and not self._closed:
-                    self._robot = connection
+                    self._robot = Outbox(connection)
                     for message in self._for_robot:
                         self.send(message)
                     self._for_robot.clear()
