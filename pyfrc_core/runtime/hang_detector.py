@@ -12,15 +12,15 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from types import FrameType
 from typing import TYPE_CHECKING
 
 from ..compat.cpython_private import allocate_lock, current_frames, raise_in_thread
-from ..processes.exit import EXIT_HANGS, call_before_sudden_exit
+from ..processes.exit import EXIT_HANGS, prepare_sudden_exit
 from .exceptions import TestFroze
+from .thread_cpu import cpu_of_this_thread
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
@@ -48,6 +48,14 @@ class _Interruption:
         self._message = ""
         #: Whether it comes too late.
         self.over = False
+        self._lock = allocate_lock()
+
+    def end(self) -> None:
+        """Let no interruption come any more."""
+        self.over = True
+        with self._lock:  # one that is on its way
+            pass
+        _wait(0)  # a signal arrives at the end of a system call at the latest, while it still has a handler
 
     @contextmanager
     def possible(self) -> Iterator[None]:
@@ -70,14 +78,17 @@ class _Interruption:
             signal.signal(_SIGNAL, before)
 
     def interrupt(self, ident: int, message: str) -> None:
-        """Interrupt a thread."""
-        self._message = message
-        if ident == threading.main_thread().ident and _SIGNAL is not None:
-            signal.pthread_kill(ident, _SIGNAL)  # interrupts a blocking call, too
-            return
-        # Only a class can be raised in another thread, so the message travels in one.
-        froze = type("TestFroze", (TestFroze,), {"__str__": lambda self: message, "__module__": TestFroze.__module__})
-        raise_in_thread(ident, froze)
+        """Interrupt a thread, unless it is too late."""
+        with self._lock:
+            if self.over:
+                return
+            self._message = message
+            if ident == threading.main_thread().ident and _SIGNAL is not None:
+                signal.pthread_kill(ident, _SIGNAL)  # interrupts a blocking call, too
+                return
+            # Only a class can be raised in another thread, so the message travels in one.
+            members = {"__str__": lambda self: message, "__module__": TestFroze.__module__}
+            raise_in_thread(ident, type("TestFroze", (TestFroze,), members))
 
 
 @contextmanager
@@ -87,7 +98,7 @@ def importing(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
     :param hang_seconds: processor seconds in the project's own files, after which it does; what libraries take while
         they are imported does not count
     """
-    ident, cpu = _get_ident(), _cpu_of_this_thread()
+    ident, cpu = _get_ident(), cpu_of_this_thread()
     interruption, returned = _Interruption(), allocate_lock()
     returned.acquire()
 
@@ -110,19 +121,9 @@ def importing(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
         try:
             yield
         finally:
-            interruption.over = True
+            interruption.end()
             returned.release()
             _join_thread(thread)  # what forks this process next counts its threads
-
-
-def _cpu_of_this_thread() -> Callable[[], float]:
-    """Return a function that any thread can call for the processor time of the calling thread, in seconds.
-
-    Where the system does not measure it by thread, it is the time of the whole process.
-    """
-    if not hasattr(time, "pthread_getcpuclockid"):
-        return _cpu
-    return partial(time.clock_gettime, time.pthread_getcpuclockid(_get_ident()))
 
 
 class HangDetector:
@@ -156,13 +157,13 @@ class HangDetector:
             try:
                 yield
             finally:
-                self._interruption.over = True
+                self._interruption.end()
                 if self._log is not None:
                     faulthandler.cancel_dump_traceback_later()
 
     def _watch(self) -> None:
-        clock, interruption = self._run.clock, self._interruption
-        seen, cpu, wall = clock.now_us, _cpu(), _wall()
+        clock, interruption, cpu_of_running = self._run.clock, self._interruption, self._run.threads.cpu_of_running
+        seen, cpu, own, wall = clock.now_us, _cpu(), cpu_of_running(), _wall()
         warned = False
         while not interruption.over:
             if self._log is not None:
@@ -172,17 +173,17 @@ class HangDetector:
                 )
             _wait(min(0.25, self._hang_seconds / 4))
             if clock.now_us != seen or not self._run.in_motion or interruption.over:
-                seen, cpu, wall, warned = clock.now_us, _cpu(), _wall(), False
+                seen, cpu, own, wall, warned = clock.now_us, _cpu(), cpu_of_running(), _wall(), False
                 continue
             busy = _cpu() - cpu >= self._hang_seconds
-            blocked = _wall() - wall >= BLOCKED_SECONDS and _cpu() - cpu < 0.01 * BLOCKED_SECONDS
+            blocked = _wall() - wall >= BLOCKED_SECONDS and cpu_of_running() - own < 0.01 * BLOCKED_SECONDS
             if not (busy or blocked):
                 continue
             culprit = self._culprit()
             if warned:
                 self._give_up(culprit)
             interruption.interrupt(culprit, self._explain(culprit, busy))
-            cpu, wall, warned = _cpu(), _wall(), True
+            cpu, own, wall, warned = _cpu(), cpu_of_running(), _wall(), True
 
     def _culprit(self) -> int:
         """Return the thread that has the turn."""
@@ -209,5 +210,5 @@ class HangDetector:
         if self._log is None:
             return
         self._log.write(self._explain(ident, busy=True))
-        call_before_sudden_exit()
+        prepare_sudden_exit()
         _exit(EXIT_HANGS)

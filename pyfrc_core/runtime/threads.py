@@ -25,6 +25,7 @@ from types import TracebackType
 from ..compat.cpython_private import LockType, allocate_lock
 from .clock import WAKE_UP, Clock
 from .exceptions import TestEnded, TestFroze
+from .thread_cpu import cpu_of_this_thread
 
 # Bound before these names are patched for robot code: this module needs the real ones.
 real_allocate_lock = allocate_lock
@@ -34,8 +35,9 @@ _process_time, _get_ident = time.process_time, threading.get_ident
 #: How often `TestEnded` is raised in a thread before it counts as one that does not stop.
 _TELL_TO_STOP = 1000
 # A thread that has the turn and uses (nearly) no processor time for this much wall time, in this many looks, waits for
-# something outside the process. This decides only when to stop waiting for it, not the result of a test.
-_LOOK_SECONDS, _LOOKS, _IDLE_CPU_SECONDS = 0.05, 8, 0.004
+# something outside the process. This decides only when to stop waiting for it, not the result of a test. While other
+# threads of the process are busy, it may wait for one of them that computes for it, and gets more looks.
+_LOOK_SECONDS, _LOOKS, _LOOKS_BESIDE_OTHERS, _IDLE_CPU_SECONDS = 0.05, 8, 24, 0.004
 
 
 class RobotThread:
@@ -44,6 +46,8 @@ class RobotThread:
     def __init__(self, thread: threading.Thread | None) -> None:
         self.thread = thread
         self.ident: int | None = None
+        #: Its processor time in seconds, when it has begun.
+        self.cpu: Callable[[], float] = _process_time
         self.finished = False
         self.detached = False  # it waits for something outside the process; the clock continues without it
         self.is_the_robot = False  # its end is the robot program's
@@ -88,6 +92,7 @@ class RobotThreads:
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.driver = _get_ident()
+        self._drivers_cpu = cpu_of_this_thread()
         #: The thread whose turn it is; None while the driver itself runs.
         self.running: RobotThread | None = None
         self._threads: dict[int, RobotThread] = {}
@@ -123,7 +128,7 @@ class RobotThreads:
 
     def run_body(self, record: RobotThread, body: Callable[[], object]) -> None:
         """Wait for the first turn, call `body`, and hand the turn back for good. Called by the new thread."""
-        record.ident = _get_ident()
+        record.ident, record.cpu = _get_ident(), cpu_of_this_thread()
         self._threads[record.ident] = record
         record.go.acquire()
         try:
@@ -220,6 +225,11 @@ class RobotThreads:
 
     # -- the turn -----------------------------------------------------------------------------------------------
 
+    def cpu_of_running(self) -> float:
+        """Return the processor time of the thread that has the turn, in seconds. Any thread may ask."""
+        running = self.running
+        return self._drivers_cpu() if running is None else running.cpu()
+
     def _wake(self, record: RobotThread, due_us: int) -> None:
         waits = record.waits
 
@@ -259,17 +269,21 @@ class RobotThreads:
         __tracebackhide__ = True
         if record.done.acquire(timeout=_LOOK_SECONDS):
             return
-        looks, cpu = 0, _process_time()
+        looks, of_all, own = 0, _process_time(), record.cpu()
         while not record.done.acquire(timeout=_LOOK_SECONDS):
             looks += 1
-            if looks == _LOOKS:
-                if _process_time() - cpu < _IDLE_CPU_SECONDS and not _wants_to_run(record):
-                    record.detached = True
-                    return
-                looks, cpu = 0, _process_time()
+            if looks % _LOOKS:
+                continue
+            if abs(record.cpu() - own) >= _IDLE_CPU_SECONDS or _wants_to_run(record):  # less: it has begun just now
+                looks, of_all, own = 0, _process_time(), record.cpu()
+            elif _process_time() - of_all < looks // _LOOKS * _IDLE_CPU_SECONDS or looks >= _LOOKS_BESIDE_OTHERS:
+                record.detached = True
+                return
 
     def _bury(self, record: RobotThread) -> None:
         __tracebackhide__ = True
+        if record not in self._all:  # it has ended just as it was detached
+            return
         self._all.remove(record)
         if record.thread is not None:
             real_thread_join(record.thread)  # it is about to end: is_alive() must be the same in every run
@@ -289,7 +303,6 @@ class RobotThreads:
         for record in list(self._all):
             if record.detached and record.done.acquire(blocking=False):
                 record.detached = False
-                record.done.release()
             for _ in range(_TELL_TO_STOP):
                 if record.finished or record.detached:
                     break

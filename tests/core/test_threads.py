@@ -312,6 +312,54 @@ def test_a_daemon_thread_in_the_outside_world_is_left_alone_at_the_end(
         thread.join(10)
 
 
+def test_a_busy_thread_of_a_library_does_not_hide_one_that_waits_for_the_outside_world(
+    timeline: Timeline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(threads, "_LOOK_SECONDS", 0.005)
+    outside, over = threading.Event(), threading.Event()
+
+    def is_busy() -> None:
+        while not over.is_set():
+            pass
+
+    library = threading.Thread(target=is_busy)
+    library.start()
+    thread = timeline.thread("outside", lambda: outside.wait(60))
+    record = cooperative.record_of(thread)
+    assert record is not None
+    try:
+        timeline.run_until(20)
+        assert record.detached
+    finally:
+        over.set()
+        outside.set()
+        library.join()
+        thread.join(10)
+
+
+def test_a_thread_that_came_back_from_the_outside_world_stops_at_the_end(
+    timeline: Timeline, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(threads, "_LOOK_SECONDS", 0.005)
+    outside = threading.Event()
+
+    def body() -> None:
+        outside.wait(60)
+        timeline.sleep(5)
+
+    thread = timeline.thread("reads", body)
+    record = cooperative.record_of(thread)
+    assert record is not None
+    timeline.run_until(20)
+    assert record.detached
+    outside.set()
+    assert record.done.acquire(timeout=10)  # it has parked
+    record.done.release()
+    assert timeline.threads.end() == []
+    thread.join(10)
+    assert not thread.is_alive()
+
+
 def test_before_the_loop_of_its_own_waits_it_is_said(timeline: Timeline) -> None:
     def body() -> None:
         timeline.sleep(3)
