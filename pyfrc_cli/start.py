@@ -15,6 +15,7 @@ _RUN_ROBOTS = {"create-physics", "fuzz", "replay", "test"}
 
 def main() -> None:
     """Run the command."""
+    _open_closed_streams()
     _remove_current_directory()
     if "PYTHONHASHSEED" not in os.environ and _RUN_ROBOTS.intersection(sys.argv[1:]):
         _restart_with_fixed_seed()
@@ -25,6 +26,17 @@ def main() -> None:
     except KeyboardInterrupt:  # during the import; later, `run` handles it
         print("interrupted", file=sys.stderr)
         sys.exit(2)
+
+
+def _open_closed_streams() -> None:
+    """Read nothing, and write to nowhere, in place of standard streams that are closed, as services may start programs.
+
+    pytest needs them; and the next file that is opened would have a closed one's number.
+    """
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            os.dup2(os.open(os.devnull, os.O_RDWR), number)
+            setattr(sys, name, open(number, "w" if number else "r", encoding="utf-8", closefd=False))  # noqa: SIM115
 
 
 def _remove_current_directory() -> None:

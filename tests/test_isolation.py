@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
@@ -555,6 +556,78 @@ def test_ctrl_c_ends_the_run_and_every_process(make_project: MakeProject) -> Non
     assert "not to be run" not in result.output
     for pid in (project.path / "tests" / "pids").read_text().split():
         assert not Path(f"/proc/{pid}").exists()
+
+
+@needs_fork
+def test_sigterm_ends_the_run_of_a_robot_with_a_device_in_a_class_variable(make_project: MakeProject) -> None:
+    """Its tests run from a process that was forked before the import, which alone must not receive the signal."""
+    robot = """
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            motor = wpilib.PWMSparkMax(0)
+    """
+    tests = """
+        import os
+        import signal
+        from pathlib import Path
+
+
+        def test_one(control):
+            os.kill(int(Path(f"/proc/{os.getppid()}/stat").read_text().rpartition(")")[2].split()[1]), signal.SIGTERM)
+            while True:
+                signal.pause()
+
+
+        def test_two(control):
+            raise AssertionError("not to be run")
+    """
+    project = make_project({"robot.py": robot, "tests/test_terminated.py": tests})
+    result = project.run("test", "-j", "1")
+    assert result.code == 2, result.output
+    assert "KeyboardInterrupt" in result.output
+    assert "not to be run" not in result.output
+
+
+@needs_fork
+def test_nothing_that_a_crashed_robot_has_started_is_left(make_project: MakeProject) -> None:
+    robot = """
+        import multiprocessing
+        import os
+        import time
+
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                camera = multiprocessing.get_context("fork").Process(target=time.sleep, args=(600,))
+                camera.start()
+                with open("camera", "w") as file:
+                    file.write(str(camera.pid))
+
+            def teleopInit(self):
+                os._exit(1)
+    """
+    project = make_project({"robot.py": robot})
+    result = project.run("test", "--builtin", "--", "-k", "operator")
+    assert result.code == 1, result.output
+    assert "os._exit(1)" in result.output
+    stat = Path(f"/proc/{(project.path / 'camera').read_text()}/stat")
+    assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+@needs_fork
+def test_standard_output_that_is_closed_and_a_parent_that_ignores_its_children(few: RobotProject) -> None:
+    """Both are inherited from what starts pyfrc: a service, an editor, a script."""
+    command = [sys.executable, "-m", "pyfrc", "test", "--project", str(few.path), "--", "--junitxml=report.xml"]
+    script = f"import os, signal; signal.signal(signal.SIGCHLD, signal.SIG_IGN); os.execv({command[0]!r}, {command!r})"
+    subprocess.run(["sh", "-c", '"$@" >&-', "sh", sys.executable, "-c", script], cwd=few.path, check=False)
+    suite = ElementTree.parse(few.path / "report.xml").getroot().find("testsuite")
+    assert suite is not None
+    assert int(suite.get("tests", 0)) > 0
+    assert suite.get("errors") == "0"
 
 
 def test_a_parametrised_fixture_is_not_torn_down_under_a_running_test(make_project: MakeProject) -> None:

@@ -95,6 +95,33 @@ def test_the_log_of_a_robot_that_fails(end: str, make_project) -> None:
     assert turns(named(result.output, made)) == list(range(1, 334))
 
 
+def test_processes_that_robot_code_forks_leave_the_log_to_the_robot(make_project) -> None:
+    """They end with `os._exit`, or by SIGTERM: both would complete the log of the robot's own process."""
+    forking = """
+    import multiprocessing
+
+    def end_or_wait(connection, waits):
+        connection.send("ready")
+        if waits:
+            connection.recv()
+
+    def fork(count):
+        ours, theirs = multiprocessing.Pipe()
+        other = multiprocessing.get_context("fork").Process(target=end_or_wait, args=(theirs, count == 20))
+        other.start()
+        ours.recv()
+        if count == 20:
+            other.terminate()
+        other.join()
+        print("ended with", other.exitcode)
+"""
+    files = robot("fork(count) if count in (10, 20) else None")
+    made = make_project({"robot.py": files["robot.py"].replace("    class MyRobot", f"{forking}\n    class MyRobot")})
+    result = made.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "2")
+    assert re.findall("ended with (.+)", result.stdout) == ["0", "-15"], result.output
+    assert turns(named(result.output, made)) == list(range(1, 101))
+
+
 def test_the_log_of_a_robot_that_is_killed(make_project) -> None:
     """Some kilobytes of what it logged last are lost."""
     made = make_project(robot("os.kill(os.getpid(), 9) if count == 333 else None"))

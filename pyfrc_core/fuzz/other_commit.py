@@ -46,8 +46,7 @@ class _ForkedCommit:
         def serve(log: CrashLog) -> None:
             self._connection.close()
             with open_match_executor(project, jobs) as executor, suppress(EOFError):
-                while True:
-                    tasks = other_end.recv()
+                while (tasks := other_end.recv()) is not None:
                     other_end.send(list(executor.play(tasks)))
 
         self._call = ForkedCall(serve)
@@ -68,6 +67,8 @@ class _ForkedCommit:
 
     def close(self) -> None:
         """End the process, and remove its temporary files."""
+        with suppress(OSError):  # it has ended
+            self._connection.send(None)  # a process that robot code has left behind may hold the connection open
         self._connection.close()
         self._call.wait()
         self._call.close()

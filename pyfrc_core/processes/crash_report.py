@@ -17,7 +17,7 @@ from itertools import takewhile
 
 from ..compat.cpython_private import get_frame
 from ..project.robot_files import RobotFiles, is_pyfrc
-from .exit import EXIT_HANGS, call_before_sudden_exit, exit_now
+from .exit import EXIT_HANGS, exit_now, prepare_sudden_exit
 
 _FAULT_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 
@@ -78,14 +78,16 @@ class CrashLog:
             mapped = memoryview(mmap.mmap(self.descriptor, _MOMENT.size))
             self.time_us, self._mode = mapped[len(_MAGIC) : _MODE_OFFSET].cast("q"), mapped[_MODE_OFFSET:]
         self.enable_fault_handler()
+        here = os.getpid()
 
         def exit_with_report(status: int) -> None:
-            frame = get_frame(1)
-            self.write(
-                f'os._exit({status}) was called:\n  File "{frame.f_code.co_filename}", line {frame.f_lineno}'
-                f" in {frame.f_code.co_name}\n"
-            )
-            call_before_sudden_exit()
+            if os.getpid() == here:  # the end of what robot code has forked is not this one's
+                frame = get_frame(1)
+                self.write(
+                    f'os._exit({status}) was called:\n  File "{frame.f_code.co_filename}", line {frame.f_lineno}'
+                    f" in {frame.f_code.co_name}\n"
+                )
+                prepare_sudden_exit()
             exit_now(status)
 
         os._exit = exit_with_report  # type: ignore[assignment]
@@ -101,12 +103,16 @@ def reported_exit(files: RobotFiles) -> Iterator[None]:
         yield
         return
 
+    here = os.getpid()
+
     def exit_with_line(status: int) -> None:
+        if os.getpid() != here:
+            exit_now(status)
         frame = get_frame(1)
         place = f"{files.relative(frame.f_code.co_filename)}:{frame.f_lineno}"
         print(f"error: {place}: os._exit({status}) was called while the robot's code was imported", file=sys.stderr)
         sys.stderr.flush()
-        call_before_sudden_exit()
+        prepare_sudden_exit()
         exit_now(status or 1)
 
     faults = not faulthandler.is_enabled()

@@ -14,8 +14,11 @@ if TYPE_CHECKING:
 #: The exit code of a process whose robot code could not be stopped otherwise.
 EXIT_HANGS = 86
 
-#: Called before robot code, or a signal, ends this process in the middle of its work; by name.
+#: Called before robot code, or a signal, ends this process in the middle of its work; by name. Not in what robot code
+#: forks: the files that are completed here are not its own.
 before_sudden_exit: dict[str, Callable[[], object]] = {}
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=before_sudden_exit.clear)
 
 #: Called by each `exit_now`, in this order: measurements are saved here.
 before_every_exit: list[Callable[[], object]] = []
@@ -35,11 +38,19 @@ def exit_now(status: int) -> NoReturn:
         _exit(status)
 
 
-def call_before_sudden_exit() -> None:
-    """Call each of `before_sudden_exit`, whatever the others raise."""
+def prepare_sudden_exit() -> None:
+    """Call each of `before_sudden_exit`, whatever the others raise, and end the child processes of robot code."""
     for call in list(before_sudden_exit.values()):
         with suppress(Exception):
             call()
+    end_child_processes()
+
+
+def flush_output() -> None:
+    """Write out what was printed, as far as that is possible."""
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError, AttributeError):  # its reader has gone, or it is closed
+            stream.flush()
 
 
 def end_child_processes() -> None:

@@ -14,7 +14,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 
 from .crash_report import write_all
-from .exit import disown_child_processes, exit_now
+from .exit import disown_child_processes, exit_now, flush_output
 from .owner import end_with, prepare_end_with
 
 #: macOS has fork, but its system libraries do not survive it; Windows has none.
@@ -48,10 +48,12 @@ class Fork:
         self.status = 0
         self._pipe, writing_end = os.pipe()
         os.set_blocking(self._pipe, False)
-        sys.stdout.flush()
-        sys.stderr.flush()
+        flush_output()
         prepare_end_with()
-        owner = os.getpid() if threading.current_thread() is threading.main_thread() else None
+        in_main_thread = threading.current_thread() is threading.main_thread()
+        if in_main_thread and signal.getsignal(signal.SIGCHLD) is signal.SIG_IGN:
+            signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # otherwise nobody learns how a process has ended
+        owner = os.getpid() if in_main_thread else None
         with forking_quietly():
             self._pid = os.fork()
         if self._pid == 0:
@@ -90,6 +92,12 @@ class Fork:
             self.finished = True
             os.close(self._pipe)
 
+    def send_signal(self, number: signal.Signals) -> None:
+        """Send the process a signal, if it has not ended."""
+        if not self.finished:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self._pid, number)
+
     def kill(self) -> None:
         """End the process without waiting for its work."""
         self.terminate(self.grace_seconds)
@@ -97,20 +105,23 @@ class Fork:
     def terminate(self, seconds: float) -> None:
         """End the process by SIGTERM; when it has not ended after some wall seconds, by SIGKILL."""
         if seconds and not self.finished:
-            os.kill(self._pid, signal.SIGTERM)
+            self.send_signal(signal.SIGTERM)
             deadline = time.monotonic() + seconds
             while not self.finished and time.monotonic() < deadline:
                 # The pipe, if nothing else holds it open, is closed when the process ends.
                 wait_for_any([self._pipe])
                 self.poll()
         if not self.finished:
-            os.kill(self._pid, signal.SIGKILL)
+            self.send_signal(signal.SIGKILL)
             self._reap(0)
             self.finished = True
             os.close(self._pipe)
 
     def _reap(self, how: int) -> bool:
-        pid, status = os.waitpid(self._pid, how)
+        try:
+            pid, status = os.waitpid(self._pid, how)
+        except ChildProcessError:  # code of this process has waited for it: how it has ended is not known
+            return True
         if pid:
             self.status = os.waitstatus_to_exitcode(status)
         return bool(pid)

@@ -9,10 +9,12 @@ interpreter for every test.
 from __future__ import annotations
 
 import os
-import sys
-from collections.abc import Callable
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
-from .exit import exit_now
+from .exit import exit_now, flush_output
 from .fork import Fork, wait_for_any
 
 #: What a pipe holds, at least: the reasons are written and read at once.
@@ -45,13 +47,26 @@ class PreforkedProcess:
         """
         os.write(self._writing_end, reasons.encode()[:_MOST_BYTES])
         self._close()
-        while not self._fork.finished:
-            try:
-                wait_for_any([self._fork.fileno()])
-                self._fork.poll()
-            except KeyboardInterrupt:
-                continue  # the fork has received it, too, and reports it
+        with self._interrupting_the_fork():
+            while not self._fork.finished:
+                try:
+                    wait_for_any([self._fork.fileno()])
+                    self._fork.poll()
+                except KeyboardInterrupt:
+                    continue  # the fork has received it, too, and reports it
         return self._fork.status
+
+    @contextmanager
+    def _interrupting_the_fork(self) -> Iterator[None]:
+        """Hand on SIGTERM, which only this process receives, as the Ctrl-C that it stands for."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        before = signal.signal(signal.SIGTERM, lambda number, frame: self._fork.send_signal(signal.SIGINT))
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGTERM, before)
 
     def _close(self) -> None:
         if self._open:
@@ -66,6 +81,5 @@ class PreforkedProcess:
             if reasons := os.read(self._reading_end, _MOST_BYTES):
                 status = self._work(reasons.decode(errors="ignore"))
         finally:
-            sys.stdout.flush()
-            sys.stderr.flush()
+            flush_output()
             exit_now(status)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import subprocess
-import sys
 import tempfile
 import traceback
 from abc import ABC, abstractmethod
@@ -16,7 +14,7 @@ from typing import IO, Any, NoReturn
 from ..project.robot_files import RobotFiles
 from . import fork, spawn
 from .crash_report import CrashLog, describe_exit
-from .exit import end_child_processes, exit_now
+from .exit import end_child_processes, exit_now, flush_output
 from .frames import decode, encode
 
 #: Sends an object to the process that has started this one.
@@ -178,9 +176,7 @@ def work_and_exit(work: Callable[[CrashLog], int | None], crash_log: int) -> NoR
             log.write(traceback.format_exc())
     finally:
         end_child_processes()
-        for stream in (sys.stdout, sys.stderr):
-            with contextlib.suppress(OSError, ValueError, AttributeError):  # its reader has gone, or it is closed
-                stream.flush()
+        flush_output()
         exit_now(status)  # without waiting for what the work has left running
 
 

@@ -7,6 +7,7 @@ cannot be forked, it becomes the first robot's process itself.
 from __future__ import annotations
 
 import importlib
+import os
 import pickle
 import shutil
 import signal
@@ -21,7 +22,7 @@ from typing import Any, NoReturn
 
 from ...processes.channel import close_in_forks, end_of_output
 from ...processes.crash_report import CrashLog
-from ...processes.exit import call_before_sudden_exit, end_child_processes, exit_now
+from ...processes.exit import exit_now, prepare_sudden_exit
 from ...processes.worker import work_and_exit
 from .commands import Quit
 
@@ -181,10 +182,16 @@ def _preload(modules: Sequence[str]) -> None:
                 importlib.import_module(name)
 
 
-def _end_robot(signum: int, frame: object) -> None:
-    """Complete the robot's data logs and end its process, wherever its code is."""
-    call_before_sudden_exit()
-    end_child_processes()
+def _end_robot(robot: int, signum: int, frame: object) -> None:
+    """Complete the robot's data logs and end its process, wherever its code is.
+
+    :param robot: the number of that process; one that robot code has forked ends as if there were no handler
+    """
+    if os.getpid() != robot:
+        signal.signal(signum, signal.SIG_DFL)
+        os.kill(os.getpid(), signum)
+        return
+    prepare_sudden_exit()
     exit_now(128 + signum)
 
 
@@ -196,7 +203,7 @@ def _become_the_robot(hosting: Hosting, launch: Launch) -> NoReturn:
 def _run_robot(hosting: Hosting, launch: Launch, log: CrashLog) -> None:
     from .robot_side.robot_process import run_robot
 
-    signal.signal(signal.SIGTERM, _end_robot)
+    signal.signal(signal.SIGTERM, partial(_end_robot, os.getpid()))
     connection = _connect(hosting, launch.number)
     if connection is None:
         return
