@@ -173,6 +173,21 @@ WRONG = {
     ),
     "async": ("async def it_holds():", "pass", "tests/rules.py:4: the rule it_holds() must be a plain function"),
     "import": ("def it_holds():", "pass\nimport no_such_module", "tests/rules.py:6: ModuleNotFoundError"),
+    "misspelled": (
+        "def it_holds():",
+        "pass\n\n@pyfrc.invarient\ndef another():\n    pass",
+        "tests/rules.py:7: AttributeError: module 'pyfrc' has no attribute 'invarient'",
+    ),
+    "in a class": (
+        "def it_holds():",
+        "pass\n\nclass Rules:\n    @pyfrc.invariant\n    def another(self):\n        pass",
+        "tests/rules.py:8: TypeError: the rule another() is a method of Rules: write it as a function",
+    ),
+    "twice": (
+        "def it_holds():",
+        "pass\n\n@pyfrc.invariant\ndef it_holds():\n    pass",
+        "tests/rules.py:7: TypeError: there is another rule it_holds() above this one",
+    ),
 }
 
 
@@ -185,6 +200,13 @@ def test_a_file_that_is_wrong_is_named_by_each_command(mistake: str, project) ->
         result = project.run(*command)
         assert result.code != 0
         assert result.output.count(message) == 1, result.output
+
+
+def test_a_file_whose_only_decorator_is_misspelled_is_named(project) -> None:
+    project.write({RULES: rule("pass").replace("invariant", "invarient"), "tests/test_it.py": READY_MADE})
+    result = project.run("test")
+    assert result.code != 0
+    assert f"{RULES}:3: AttributeError: module 'pyfrc' has no attribute 'invarient'" in result.output, result.output
 
 
 def test_a_rule_that_hangs_is_named(project) -> None:

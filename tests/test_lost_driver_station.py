@@ -135,6 +135,18 @@ TESTS = """
             assert DS.isDSAttached() and DS.isEnabled()
 
 
+    def test_an_emergency_stop_disables_until_it_is_over(control, hal_data, robot):
+        with control.run_robot():
+            drive(control, hal_data)
+            hal_data["control"]["eStop"] = True
+            control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+            assert DS.isEStopped() and DS.isDisabled()
+            assert robot.seen[-1][:2] == (True, False)
+            hal_data["control"]["eStop"] = False
+            control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+            assert robot.seen[-1] == DRIVING
+
+
     def test_a_reset_of_the_simulated_data_loses_nothing(control, hal_data, robot):
         with control.run_robot():
             Station.resetData()

@@ -273,6 +273,7 @@ BAD = {
     "not JSON": (text() + "hello\n", ":2: not valid JSON"),
     "an array": (text([1, 2]), ":2: each line must be a JSON object"),
     "time going back": (text({"t": 0.5, "set": {}}, {"t": 0.4, "set": {}}), ":3: time goes back from 0.5 s to 0.4 s"),
+    "time after the end": (text({"t": 1.5, "set": {}}), ":2: 1.5 s is after the end of the script, at 1 s"),
     "NaN": (text({"t": 0.5, "set": {"dio[4].value": float("nan")}}), ":2: NaN is no number that can be written"),
     "NaN as time": (text({"t": float("nan"), "set": {}}), ":2: NaN is no number"),
     "negative time": (text({"t": -1, "set": {}}), ':2: "t" must be from 0 to'),
@@ -289,9 +290,9 @@ BAD = {
         text({}, {}, {})[:0] + text({"t": 0.5, "set": {"dio[5].value": True}}),
         ":2: this robot has no dio[5]",
     ),
-    "wrong type": (text({"t": 0.5, "set": {"dio[4].value": "up"}}), ":2: "),
+    "wrong type": (text({"t": 0.5, "set": {"dio[4].value": "up"}}), ":2: dio[4].value: "),
     "unknown mode": (text({"t": 0.5, "set": {"mode": "teleoperated"}}), ":2: there is no mode 'teleoperated'"),
-    "an axis beyond its end": (text({"t": 0.5, "set": {"joysticks[0].axes[1]": 2}}), ":2: "),
+    "an axis beyond its end": (text({"t": 0.5, "set": {"joysticks[0].axes[1]": 2}}), ":2: joysticks[0].axes[1]: "),
     "another type of entry": (
         text({"t": 0.1, "set": {"nt:/a": 1.5}}, {"t": 0.5, "set": {"nt:/a": "text"}}),
         ":3: /a is double, and cannot be 'text'",
@@ -312,6 +313,12 @@ def test_a_bad_script_says_so_with_its_line(mistake: str, project) -> None:
     assert result.code == 2, result.output
     assert f"error: bad.jsonl{message}" in result.stderr
     assert "Traceback" not in result.output
+
+
+def test_a_bad_script_in_another_directory_is_named_as_it_is_opened(project) -> None:
+    project.write({"scripts/bad.jsonl": "hello\n"})
+    result = project.run("replay", "scripts/bad.jsonl")
+    assert "error: scripts/bad.jsonl:1: not valid JSON" in result.stderr, result.output
 
 
 def test_other_files_that_are_no_scripts(tmp_path: Path) -> None:
@@ -406,5 +413,6 @@ times = st.lists(st.integers(0, 10**9), max_size=9).map(sorted)
 
 @given(times, st.dictionaries(st.text(max_size=20), values), st.integers(0, 10**9), st.text(max_size=9))
 def test_a_script_written_and_read_is_the_same(at: list[int], writes: dict, end: int, robot: str) -> None:
+    end = max([end, *at])
     script = InputScript(tuple(Step(each, writes) for each in at), end, min(end, 5), robot, 7, {"pyfrc": "1"}, "ab")
     assert parse_script(script.lines()) == script

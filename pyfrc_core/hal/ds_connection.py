@@ -52,7 +52,10 @@ class DriverStationConnection:
         """Deliver a packet if a driver station is attached; otherwise it is missed."""
         if not hs.getDriverStationDsAttached():
             self._miss_packet()
-        elif self.held is None:
+            return
+        if hs.getDriverStationEStop():  # as on a real one, until the roboRIO restarts
+            hs.setDriverStationEnabled(False)
+        if self.held is None:
             deliver_packet()
         else:
             self.held, self._missed = None, 0

@@ -23,6 +23,13 @@ def invariant(rule: Rule) -> Rule:
 
     :param rule: a function with the parameters ``robot`` (the robot instance), ``hal_data`` (its inputs and outputs),
         both, or none
+    :raises TypeError: when the function would never be checked: it is a method, or replaces another rule
     """
+    name, path = getattr(rule, "__name__", ""), getattr(rule, "__qualname__", "")
+    owner = path.rpartition(".")[0]
+    if owner and not owner.endswith("<locals>"):
+        raise TypeError(f"the rule {name}() is a method of {owner}: write it as a function, outside of the class")
+    if path == name and hasattr(getattr(rule, "__globals__", {}).get(name), MARK):
+        raise TypeError(f"there is another rule {name}() above this one, which would never be checked: rename one")
     setattr(rule, MARK, True)
     return rule

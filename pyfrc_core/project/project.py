@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -108,9 +109,13 @@ class Project:
         return None
 
 
+_PYFRCS_NAME = re.compile(rb"@\s*pyfrc\s*\.|from\s+pyfrc\s+import")
+
+
 def _may_have_rules(file: Path) -> bool:
     try:
         text = file.read_bytes()
     except OSError:
         return False
-    return b"pyfrc" in text and b"invariant" in text
+    # Any name of pyfrc's own, so that a misspelled decorator is an error of that file.
+    return (b"pyfrc" in text and b"invariant" in text) or _PYFRCS_NAME.search(text) is not None

@@ -53,7 +53,7 @@ def test_a_script_is_read_as_it_was_written(tmp_path: Path) -> None:
     script.save(tmp_path / "a.jsonl")
     read = load_script(tmp_path / "a.jsonl")
     assert read == script
-    assert (read.file, [step.line for step in read.steps]) == ("a.jsonl", [2, 3])
+    assert (Path(read.file), [step.line for step in read.steps]) == (tmp_path / "a.jsonl", [2, 3])
     assert parse_script(["\n", json.dumps(HEADER) + "\n", "\n", '{"t": 0.5, "set": {}}\n']).steps[0].line == 4
     assert list(InputScript((), 5).lines()) == [
         '{"format": "pyfrc-input 1", "robot": "", "seed": 0, "end": 5e-06, "packages": {}}'

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from ...errors import PyfrcError
+from ...hal.kinds import UnknownKey
 from ..clock import INPUT
 from ..robot import RobotRun
 from .script import InputScript, ScriptError, Step
@@ -86,6 +87,8 @@ class Player:
             if isinstance(wrong, ScriptError):
                 raise
             message = wrong.message if isinstance(wrong, PyfrcError) else str(wrong)
+            if isinstance(wrong, PyfrcError) and wrong.where and not isinstance(wrong, UnknownKey):  # the target
+                message = f"{wrong.where}: {message}"
             remedy = wrong.remedy if isinstance(wrong, PyfrcError) else None
             where = f"{self._script.file}:{step.line}" if step.line else self._script.file
             raise ScriptError(message, where=where, remedy=remedy) from None

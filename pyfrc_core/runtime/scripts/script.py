@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -110,7 +111,7 @@ def load_script(file: Path) -> InputScript:
 
     :raises ScriptError: naming the line and what is wrong with it
     """
-    name = file.name
+    name = _shown(file)
     try:
         size = file.stat().st_size
         if size > _MOST_BYTES:
@@ -126,6 +127,13 @@ def load_script(file: Path) -> InputScript:
         raise ScriptError(f"there is no file {file}") from None
     except UnicodeDecodeError as malformed:
         raise ScriptError(f"not UTF-8 text: {malformed}", where=name) from None
+
+
+def _shown(file: Path) -> str:
+    """Return how errors name a file: from the current directory, as a terminal opens it."""
+    with suppress(ValueError):
+        return str(file.absolute().relative_to(Path.cwd()))
+    return str(file)
 
 
 def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
@@ -157,6 +165,12 @@ def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
         at = line.time("t")
         if at < before:
             raise ScriptError(f"time goes back from {before / 1e6:g} s to {at / 1e6:g} s", where=line.where)
+        if at > end:
+            raise ScriptError(
+                f"{at / 1e6:g} s is after the end of the script, at {end / 1e6:g} s: this would not be played",
+                where=line.where,
+                remedy='Change "end" in the first line',
+            )
         before = at
         steps.append(Step(at, line.of_type("set", dict, "an object of what is written", None), number))
     return InputScript(
