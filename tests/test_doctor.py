@@ -261,6 +261,15 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
         ({"sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}'}, "sim/config.json", "robot.w", ""),
         ({"wpilib/__init__.py": ""}, "project", "wpilib/__init__.py hides a library", "another name"),
         ({"random.py": ""}, "project", "random.py hides a library", "another name"),
+        ({"physics.py": "class PhysicsEngine:"}, "physics", "physics.py:1: SyntaxError", "Correct that line"),
+        ({"physics.py": "import phisics"}, "physics", "physics.py:1: ModuleNotFoundError", "Is the name right"),
+        ({"physics.py": "class PhysicEngine: pass"}, "physics", "PhysicsEngine", "It must have a class"),
+        (
+            {"physics.py": "class PhysicsEngine:\n    def update_sim(self): pass\n"},
+            "physics",
+            "physics.py:2: ",
+            "It must have a class",
+        ),
     ],
 )
 def test_what_is_wrong_in_a_project(files: dict[str, str], topic: str, said: str, remedy: str, make_project) -> None:

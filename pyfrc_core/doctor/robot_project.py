@@ -25,12 +25,10 @@ def check_project(project: Project, installed: Installed) -> Iterator[CheckResul
     """Check the project, without importing it in this process."""
     yield from _hidden_libraries(project)
     yield from _asked_for(project, installed)
-    yield from _robot_class(project)
+    program = [*_robot_class(project)]
+    yield from program
     yield from _sim_config(project)
-    if project.physics_file.is_file():
-        yield ok("physics", project.physics_file.name)
-    else:
-        yield hint("physics", f"no {project.physics_file.name}: nothing moves in simulation", "pyfrc create-physics")
+    yield from _physics(project, imports=all(each.status != "problem" for each in program))
     tests = project.find_tests()
     if tests is not None:
         yield ok("tests", str(tests))
@@ -110,6 +108,33 @@ def _robot_class(project: Project) -> Iterator[CheckResult]:
 def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[MisspelledMethod], tuple[str, ...]]:
     name = load_robot(project).__name__
     return name, find_misspelled_methods(project), real_time_libraries()
+
+
+def _physics(project: Project, imports: bool) -> Iterator[CheckResult]:
+    """Check the physics.
+
+    :param imports: whether the robot program, which it may import, can be imported
+    """
+    name = project.physics_file.name
+    if not project.physics_file.is_file():
+        yield hint("physics", f"no {name}: nothing moves in simulation", "pyfrc create-physics")
+        return
+    try:
+        if imports:
+            run_in_subprocess(_load_physics, project, "while the physics was imported")
+    except (PyfrcError, OSError) as error:
+        yield problem_from_error("physics", error, "Correct that line; pyfrc test shows more details.")
+    except Exception as error:  # the other process could not report the error
+        yield problem("physics", f"{name} cannot be imported: {error}", "Run pyfrc test for details.")
+    else:
+        yield ok("physics", name)
+
+
+def _load_physics(project: Project, log: CrashLog) -> None:
+    from ..physics.engine import load_physics
+
+    load_robot(project)
+    load_physics(project)
 
 
 def _sim_config(project: Project) -> Iterator[CheckResult]:
