@@ -203,7 +203,7 @@ def test_where_a_changed_robot_first_differs_is_told(make_project) -> None:
     replayed = project.run("replay", script, "--trace", "now.jsonl")
     assert replayed.code == 1
     assert "first at 0.02 s:" in replayed.stdout
-    assert "pwm[0].raw_value was " in replayed.stdout
+    assert "pwm[0].value was 0.5, is 0.25" in replayed.stdout, "what code sets comes before its consequences"
     digest = trace_hash(project.path / "now.jsonl")
     assert digest != load_script(script).trace
 
