@@ -268,6 +268,13 @@ def test_wrong_usage(arguments: tuple[str, ...], message: str, make_project) -> 
     assert "Traceback" not in result.output
 
 
+def test_a_link_to_nothing_is_no_file_of_the_robot(make_project) -> None:
+    project = make_project({"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"})
+    (project.path / "helper.py").symlink_to("gone.py")
+    result = project.run("fuzz", "--seed", "1", "--runs", "1")
+    assert result.code == 0, result.output
+
+
 def test_a_robot_that_cannot_be_imported_is_told(make_project) -> None:
     project = make_project({"robot.py": "import wpilib\n1 / 0\n"})
     result = project.run("fuzz", "--runs", "1")

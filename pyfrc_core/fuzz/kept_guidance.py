@@ -77,4 +77,5 @@ def fingerprint(project: Project) -> str:
 def _source_files(root: Path) -> Iterator[Path]:
     for directory, inside, files in os.walk(root):
         inside[:] = sorted(name for name in inside if name not in _NOT_SEARCHED and not name.startswith("."))
-        yield from (Path(directory, name) for name in sorted(files) if name.endswith(".py"))
+        found = (Path(directory, name) for name in sorted(files) if name.endswith(".py"))
+        yield from (file for file in found if file.is_file())  # not a link to nothing
