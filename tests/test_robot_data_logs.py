@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import groupby
 from pathlib import Path
 from textwrap import dedent
 
@@ -205,6 +206,65 @@ def test_replays_and_campaigns(make_project) -> None:
     before = set(made.path.rglob("*.wpilog"))
     assert made.run("fuzz", "--runs", "2").code == 0
     assert set(made.path.rglob("*.wpilog")) == before
+
+
+SYSID = """
+    import commands2
+    import wpilib
+    from commands2.sysid import SysIdRoutine
+
+    class Drive(commands2.Subsystem):
+        def __init__(self):
+            super().__init__()
+            self.motor = wpilib.PWMSparkMax(0)
+            mechanism = SysIdRoutine.Mechanism(self.motor.setVoltage, self.write, self, "drive")
+            self.routine = SysIdRoutine(SysIdRoutine.Config(), mechanism)
+
+        def write(self, log):
+            log.motor("left").voltage(self.motor.get() * 12).position(1).velocity(2).acceleration(3).current(4)
+            log.motor("arm").angularPosition(5).angularVelocity(6).angularAcceleration(7).value("heat", 8, "celsius")
+
+    class MyRobot(commands2.TimedCommandRobot):
+        def robotInit(self):
+            self.drive = Drive()
+
+        def autonomousInit(self):
+            self.drive.routine.quasistatic(SysIdRoutine.Direction.kForward).withTimeout(2).schedule()
+"""
+
+
+def test_what_a_sysid_routine_writes_is_in_the_runs_log(make_project) -> None:
+    """With the names and units that WPILib's own writes; no other log is started."""
+    made = make_project({"robot.py": SYSID, "tests/sysid_test.py": "from pyfrc.tests import test_autonomous\n"})
+    result = made.run("test")
+    assert result.code == 0, result.output
+    (file,) = made.path.rglob("*.wpilog")
+    assert file.parent == made.path / ".pyfrc" / "logs" / "test"
+    log = records(file)
+    states = [value for _, value in log["sysid-test-state-drive"]]
+    assert [state for state, _ in groupby(states)] == ["quasistatic-forward", "none"]
+    volts = [value for _, value in log["voltage-left-drive"]]
+    assert len(volts) == 100
+    assert max(volts) == pytest.approx(2, abs=0.1)  # one volt a second
+    units = {
+        start.name: start.metadata
+        for start in (record.getStartData() for record in DataLogReader(str(file)) if record.isStart())
+        if start.name.endswith("-drive")
+    }
+    assert units == {
+        "sysid-test-state-drive": "",
+        "voltage-left-drive": "volt",
+        "position-left-drive": "meter",
+        "velocity-left-drive": "meters_per_second",
+        "acceleration-left-drive": "meters_per_second_squared",
+        "current-left-drive": "ampere",
+        "position-arm-drive": "turn",
+        "velocity-arm-drive": "turns_per_second",
+        "acceleration-arm-drive": "turns_per_second_squared",
+        "heat-arm-drive": "celsius",
+    }
+    made.run("fuzz", "--runs", "2")
+    assert list(made.path.rglob("*.wpilog")) == [file]
 
 
 OWN = """

@@ -23,7 +23,7 @@ import wpilib.simulation
 from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
 from ..compat.object_hashes import hash_by_number, object_base
 from ..compat.wpilib_private import LOOP_FUNCTION
-from . import cooperative, counters, data_logs, driver_station, locks, robot_stack, udp_ports
+from . import cooperative, counters, data_logs, driver_station, locks, robot_stack, sysid_logs, udp_ports
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
 from .deferred_imports import deferred_imports
@@ -95,6 +95,7 @@ class Patches:
             *counters.patches(),
             *robot_stack.patches(lambda: self._files),
             *data_logs.patches(lambda: None if active_run.run is None else active_run.run.data_logs),
+            *sysid_logs.patches(),
             *udp_ports.patches(),
             Patch(object_base(), "__hash__", hash_by_number),
         ]
