@@ -108,12 +108,11 @@ def _replay_boots(project: Project, script: InputScript, until: float | None, tr
     from .fuzz.replay_in_subprocess import replay_in_subprocess
 
     end_us = script.end_us if until is None else min(script.end_us, to_us(until))
-    failure = None
     try:
-        replay_in_subprocess(project, replace(script, end_us=end_us), trace)
+        seconds, failure = replay_in_subprocess(project, replace(script, end_us=end_us), trace, quietly=False)
     except RobotCodeError as error:
-        failure = error
-    return ReplayResult(end_us / 1_000_000, failure, "", None, None, starts=len(boots_of(script)))
+        seconds, failure = end_us / 1_000_000, error
+    return ReplayResult(seconds, failure, "", None, None, starts=len(boots_of(script)))
 
 
 @contextmanager

@@ -87,9 +87,16 @@ def _start(
         return cold(how)
     environment = {**os.environ, **(how.environment or {})}
     with Path(os.devnull).open("wb") as unread:
+        streams = how.stdout, how.stdout if kind == "host" else how.stderr
         output, errors = (
-            unread.fileno() if stream == subprocess.DEVNULL else stream if isinstance(stream, int) else stream.fileno()
-            for stream in (how.stdout, how.stdout if kind == "host" else how.stderr)
+            unread.fileno()
+            if stream == subprocess.DEVNULL
+            else own
+            if stream is None
+            else stream
+            if isinstance(stream, int)
+            else stream.fileno()
+            for own, stream in enumerate(streams, 1)
         )
         where = of_tests if kind == "test" and of_tests is not None else address()
         warm = _ask(where, kind, sys.path, environment, how.job(), [output, errors])
@@ -231,8 +238,10 @@ def _become(request: _Request) -> None:
     sys.orig_argv[1:] = spawn.ARGUMENTS
     sys.argv[:] = spawn.ARGUMENTS[:1]
     if request.kind == "call":
-        for stream in (sys.stdin, sys.stdout, sys.stderr):
-            stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+        sys.stdin, sys.stdout, sys.stderr = (  # those of files may not be those of pipes
+            open(descriptor, mode, encoding="utf-8", errors="backslashreplace", closefd=False)  # noqa: SIM115
+            for descriptor, mode in enumerate("rww")
+        )
     sys.modules["__main__"] = types.ModuleType("__main__")
     for name in _OF_THE_SUITE:
         sys.modules.pop(name, None)

@@ -60,21 +60,22 @@ class PlayBoot(Protocol[Result]):
         """Return the result, which contains that of the boots before."""
 
 
-def play_boots(project: Project, play_boot: PlayBoot[Result]) -> Result:
+def play_boots(project: Project, play_boot: PlayBoot[Result], quietly: bool = True) -> Result:
     """Play one boot after the other, each in another process, and return the result of the last one.
 
+    :param quietly: whether nothing that they print is shown
     :raises RobotCodeError: when a process ends without a result
     """
     played: Result | None = None
     while played is None or played.next_boot is not None:
-        played = _call(project, partial(play_boot, before=played))
+        played = _call(project, partial(play_boot, before=played), quietly)
     return played
 
 
-def _call(project: Project, work: Callable[[Project, CrashLog], Result]) -> Result:
+def _call(project: Project, work: Callable[[Project, CrashLog], Result], quietly: bool) -> Result:
     if not can_fork(project):
-        return run_in_subprocess(work, project, MEANWHILE)
-    call: ForkedCall[Result] = ForkedCall(partial(work, project))
+        return run_in_subprocess(work, project, MEANWHILE, quietly)
+    call: ForkedCall[Result] = ForkedCall(partial(work, project), quietly)
     with closing(call):
         call.wait()
         return call.result(project.files, MEANWHILE)

@@ -80,6 +80,7 @@ class ReplayTask:
     :param hang_seconds: processor seconds without progress that count as a hang; None: those of the project's settings
     :param trace: where to write a trace; with restarts of the robot program, that of the last boot
     :param ignores_missing: whether writes to devices that the robot does not have end the run without a failure
+    :param quietly: whether nothing that the boots of a match with restarts print is shown
     """
 
     script: InputScript
@@ -88,6 +89,7 @@ class ReplayTask:
     hang_seconds: float | None = None
     trace: Path | None = None
     ignores_missing: bool = True
+    quietly: bool = True
 
 
 Task = FuzzTask | ReplayTask
@@ -135,7 +137,7 @@ def play(project: Project, log: CrashLog, task: Task) -> MatchResult:
     """
     if isinstance(task, ReplayTask):
         if len(boots_of(task.script)) > 1:
-            replayed: MatchResult = play_boots(project, partial(_replay, task=task))
+            replayed: MatchResult = play_boots(project, partial(_replay, task=task), task.quietly)
             return replayed
         return _replay(project, log, None, task)
     if _restarts(project, task.schedule):

@@ -8,22 +8,29 @@ from pathlib import Path
 from ..errors import RobotCodeError
 from ..processes.call import run_in_subprocess
 from ..project import Project
+from ..runtime.clock import PACKET_US
 from ..runtime.scripts.script import InputScript
 from .boots import MEANWHILE
 from .match import ReplayTask, play
 
 
-def replay_in_subprocess(project: Project, script: InputScript, trace: Path | None = None) -> None:
-    """Run the robot with the inputs of a script.
+def replay_in_subprocess(
+    project: Project, script: InputScript, trace: Path | None = None, quietly: bool = True
+) -> tuple[float, RobotCodeError | None]:
+    """Run the robot with the inputs of a script; return how far it came, in seconds, and how it failed.
 
     In a script that fuzzing has saved, misbehavior without an exception is a failure, too.
 
     :param trace: where to write the trace of the last boot
-    :raises RobotCodeError: when the robot fails, naming the user's line
+    :param quietly: whether nothing that the robot prints is shown
+    :raises RobotCodeError: when the robot cannot be imported, or ends its process
     :raises ScriptError: when something cannot be written, or the robot has no such device
     """
-    task = ReplayTask(script, use_oracle=bool(script.story), trace=trace, ignores_missing=False)
-    played = run_in_subprocess(partial(play, task=task), project, MEANWHILE)
-    failures = [each.failure for each in played.each_failure() if each.failure is not None]
-    if failures:
-        raise RobotCodeError(failures[-1].text)
+    task = ReplayTask(script, use_oracle=bool(script.story), trace=trace, ignores_missing=False, quietly=quietly)
+    played = run_in_subprocess(partial(play, task=task), project, MEANWHILE, quietly)
+    failed = [each for each in played.each_failure() if each.failure is not None]
+    if not failed:
+        return script.end_us / 1_000_000, None
+    last = failed[-1]
+    assert last.failure is not None
+    return (last.script.end_us - PACKET_US) / 1_000_000, RobotCodeError(last.failure.text)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from ..errors import PyfrcError, RobotCodeError, text_of
 from .crash_report import CrashLog
+from .exit import flush_output
 from .fork import FORK_IS_SAFE, wait_for_any
 from .worker import ForkedWorker, Send, SpawnedWorker, Worker
 
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
 
 Answer = TypeVar("Answer")
 
-#: Its output is never read: no letter of it is an error.
+#: Its output is not read by a program: no letter of it is an error.
 ENVIRONMENT = {"PYTHONIOENCODING": "utf-8:backslashreplace"}
 
 
@@ -37,16 +39,22 @@ def can_fork(project: Project) -> bool:
     return FORK_IS_SAFE and project.settings.test.isolation != "spawn"
 
 
-def run_in_subprocess(work: Callable[[Project, CrashLog], Answer], project: Project, meanwhile: str) -> Answer:
-    """Call a function in a new interpreter, and return what it returns; nothing that is printed there is shown.
+def run_in_subprocess(
+    work: Callable[[Project, CrashLog], Answer], project: Project, meanwhile: str, quietly: bool = True
+) -> Answer:
+    """Call a function in a new interpreter, and return what it returns.
 
     :param work: a function of a module, whose result can be pickled
     :param meanwhile: what robot code interrupts when it ends the process, such as "in the middle of the test"
+    :param quietly: whether nothing that is printed there is shown
     :raises RobotCodeError: when the process ends without a result, naming the user's line
     :raises PyfrcError: as the function raises it, or `OSError`
     """
     # A copy, without what the project has read already.
-    worker = SpawnedWorker(partial(_send_result, partial(work, replace(project))), environment=ENVIRONMENT)
+    call = partial(_send_result, partial(work, replace(project)))
+    output = subprocess.DEVNULL if quietly else None
+    flush_output()
+    worker = SpawnedWorker(call, stdout=output, stderr=output, environment=ENVIRONMENT)
     try:
         worker.wait()
         result: Answer = _result_of(worker, project.files, meanwhile)
@@ -56,13 +64,14 @@ def run_in_subprocess(work: Callable[[Project, CrashLog], Answer], project: Proj
 
 
 class ForkedCall(Generic[Answer]):
-    """A function that a fork of this process calls; nothing that is printed there is shown.
+    """A function that a fork of this process calls.
 
     :param call: its result can be pickled
+    :param quietly: whether nothing that is printed there is shown
     """
 
-    def __init__(self, call: Callable[[CrashLog], Answer]) -> None:
-        self._worker = ForkedWorker(partial(_call_quietly, call))
+    def __init__(self, call: Callable[[CrashLog], Answer], quietly: bool = True) -> None:
+        self._worker = ForkedWorker(partial(_call_apart, call, (0, 1, 2) if quietly else (0,)))
 
     @property
     def finished(self) -> bool:
@@ -107,11 +116,12 @@ def _result_of(worker: Worker, files: RobotFiles, meanwhile: str) -> Any:
 # -- on the other side -----------------------------------------------------------------------------------------------
 
 
-def _call_quietly(call: Callable[[CrashLog], object], send: Send, log: CrashLog) -> None:
+def _call_apart(call: Callable[[CrashLog], object], closed: Sequence[int], send: Send, log: CrashLog) -> None:
+    """Do the call, without these standard streams."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
     nowhere = os.open(os.devnull, os.O_RDWR)
-    for descriptor in (0, 1, 2):
+    for descriptor in closed:
         os.dup2(nowhere, descriptor)
     _send_result(call, send, log)
 

@@ -41,15 +41,15 @@ class Start:
     """How to start a new interpreter.
 
     :param call: what it does: a function that can be pickled
-    :param stdout, stderr: files or descriptors, as for `subprocess.Popen`
+    :param stdout, stderr: files or descriptors, as for `subprocess.Popen`; None: those of this process
     :param environment: variables that differ from this process's
     :param own_session: whether it leads a session of its own, on POSIX
     :param ends_with_owner: whether it is killed when this process ends; only for threads that wait for it
     """
 
     call: Callable[[], object]
-    stdout: int | IO[bytes] = subprocess.DEVNULL
-    stderr: int | IO[bytes] = subprocess.DEVNULL
+    stdout: int | IO[bytes] | None = subprocess.DEVNULL
+    stderr: int | IO[bytes] | None = subprocess.DEVNULL
     environment: Mapping[str, str] | None = None
     own_session: bool = False
     ends_with_owner: bool = True

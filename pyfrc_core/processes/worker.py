@@ -110,8 +110,8 @@ class SpawnedWorker(Worker):
     def __init__(
         self,
         work: Work,
-        stdout: int | IO[bytes] = subprocess.DEVNULL,
-        stderr: int | IO[bytes] = subprocess.DEVNULL,
+        stdout: int | IO[bytes] | None = subprocess.DEVNULL,
+        stderr: int | IO[bytes] | None = subprocess.DEVNULL,
         environment: Mapping[str, str] | None = None,
     ) -> None:
         super().__init__()

@@ -188,7 +188,9 @@ class TestController:
         if self.project is not None and len(boots_of(script)) > 1:
             from ..fuzz.replay_in_subprocess import replay_in_subprocess
 
-            replay_in_subprocess(self.project, script)
+            _, failure = replay_in_subprocess(self.project, script)
+            if failure is not None:
+                raise failure
             return
         if script.seed != self.seed:  # otherwise they were seeded before the robot was constructed
             seed_generators(script.seed)

@@ -12,7 +12,7 @@ import pickle
 import shutil
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -182,17 +182,19 @@ def _preload(modules: Sequence[str]) -> None:
                 importlib.import_module(name)
 
 
-def _end_robot(robot: int, signum: int, frame: object) -> None:
-    """Complete the robot's data logs and end its process, wherever its code is.
+def _ending_the_robot() -> Callable[[int, object], None]:
+    """Return a signal handler that completes the robot's data logs and ends this process, wherever its code is."""
+    robot = os.getpid()
 
-    :param robot: the number of that process; one that robot code has forked ends as if there were no handler
-    """
-    if os.getpid() != robot:
-        signal.signal(signum, signal.SIG_DFL)
-        os.kill(os.getpid(), signum)
-        return
-    prepare_sudden_exit()
-    exit_now(128 + signum)
+    def end(signum: int, frame: object) -> None:
+        if os.getpid() != robot:  # robot code has forked this one, which ends as if there were no handler
+            signal.signal(signum, signal.SIG_DFL)
+            os.kill(os.getpid(), signum)
+            return
+        prepare_sudden_exit()
+        exit_now(128 + signum)
+
+    return end
 
 
 def _become_the_robot(hosting: Hosting, launch: Launch) -> NoReturn:
@@ -203,7 +205,7 @@ def _become_the_robot(hosting: Hosting, launch: Launch) -> NoReturn:
 def _run_robot(hosting: Hosting, launch: Launch, log: CrashLog) -> None:
     from .robot_side.robot_process import run_robot
 
-    signal.signal(signal.SIGTERM, partial(_end_robot, os.getpid()))
+    signal.signal(signal.SIGTERM, _ending_the_robot())
     connection = _connect(hosting, launch.number)
     if connection is None:
         return
