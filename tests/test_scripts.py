@@ -137,6 +137,56 @@ def test_whatever_a_test_does_is_recorded(make_project) -> None:
     )
 
 
+def test_structs_that_a_test_publishes_are_recorded(make_project) -> None:
+    """Such as the pose from a camera; what the robot publishes itself is not an input."""
+    robot = """
+        import ntcore
+        import wpilib
+        from wpimath.geometry import Pose2d
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                table = ntcore.NetworkTableInstance.getDefault().getTable("camera")
+                self.pose = table.getStructTopic("pose", Pose2d).subscribe(Pose2d())
+                self.tags = table.getStructArrayTopic("tags", Pose2d).subscribe([])
+                self.own = table.getStructTopic("own", Pose2d).publish()
+                self.motors = [wpilib.PWMSparkMax(port) for port in range(2)]
+
+            def teleopPeriodic(self):
+                self.motors[0].set(self.pose.get().x)
+                self.motors[1].set(sum(tag.y for tag in self.tags.get()))
+                self.own.set(self.pose.get())
+        """
+    test = """
+        import ntcore
+        from wpimath.geometry import Pose2d
+
+        def test_it(control, hal_data):
+            table = ntcore.NetworkTableInstance.getDefault().getTable("camera")
+            pose = table.getStructTopic("pose", Pose2d).publish()
+            tags = table.getStructArrayTopic("tags", Pose2d).publish()
+            table.getRawTopic("image").publish("raw").set(b"12345678")
+            with control.run_robot():
+                pose.set(Pose2d(0.5, 0, 0))
+                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+                tags.set([Pose2d(0, 0.25, 0), Pose2d(0, -0.5, 1)])
+                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+            assert hal_data["pwm"][0]["value"] == 0.5
+        """
+    project = make_project({"robot.py": robot, "tests/test_it.py": test})
+    recorded = project.run("test", "--record", "recordings")
+    assert recorded.code == 0, recorded.output
+    script = project.path / "recordings" / "tests_test_it.py.test_it.jsonl"
+    steps = [json.loads(line)["set"] for line in script.read_text().splitlines()[1:]]
+    written = {target: value for step in steps for target, value in step.items() if target.startswith("nt:")}
+    assert written == {
+        "nt:struct:Pose2d:/camera/pose": [0.5, 0, 0],
+        "nt:struct:Pose2d[]:/camera/tags": [0, 0.25, 0, 0, -0.5, 1],
+    }
+    replayed = project.run("replay", script)
+    assert "The trace equals the recorded one." in replayed.stdout, replayed.output
+
+
 @pytest.mark.parametrize("option", ["--record", "--trace"])
 def test_where_nothing_can_be_written_is_told_once(option: str, make_project) -> None:
     project = make_project({"robot.py": "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n", "file": ""})

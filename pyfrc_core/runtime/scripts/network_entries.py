@@ -45,6 +45,19 @@ def entry_target(name: str, type_name: str = "") -> str:
     return f"{NETWORK}{type_name}:{name}" if type_name else NETWORK + name
 
 
+def struct_target(name: str, type_name: str) -> str | None:
+    """Return the target of an entry that has structs; None for other types."""
+    return entry_target(name, type_name) if type_name.startswith(_STRUCT) else None
+
+
+def numbers_of(data: bytes) -> list[float]:
+    """Return a struct's doubles, as scripts have them; empty if it has other members, or what JSON has no word for."""
+    if len(data) % 8:
+        return []
+    numbers = list(struct.unpack(f"<{len(data) // 8}d", data))
+    return numbers if all(map(math.isfinite, numbers)) else []
+
+
 def parse_entry_target(target: str) -> tuple[str, str]:
     """Return the name of a target's entry, and the name of its type; empty where its values show it."""
     type_name, slash, name = target.removeprefix(NETWORK).partition("/")

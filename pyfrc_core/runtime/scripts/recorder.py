@@ -16,7 +16,7 @@ from ...hal import modes
 from ...hal.change_reader import MISSING, Change
 from ...hal.changing_values import same
 from ..robot import RobotRun
-from .network_entries import NETWORK
+from .network_entries import NETWORK, numbers_of, struct_target
 from .script import InputScript, Step
 from .targets import MATCH_TIME, MODE, PACKET, REMAINING, Countdown, plugged
 
@@ -25,7 +25,7 @@ _RECORDED_PACKAGES = ("pyfrc", "wpilib")
 #: Leaves that scripts contain in another form, such as `mode`.
 _TOLD_OTHERWISE = {"control.enabled", "control.autonomous", "control.test"}
 
-#: The types that entries of NetworkTables have for people; structs and the like are written by robots.
+#: The types that entries of NetworkTables have for people. Of all others, only structs of doubles are recorded.
 _PLAIN = (bool, int, float, str)
 
 #: How many packets in a row, of which only the match time is recorded, end the reports from NetworkTables.
@@ -294,12 +294,21 @@ class _Network:
             news = event.data
             if isinstance(news, ntcore.ValueEventData):
                 value = news.value.value()
+                if isinstance(value, bytes):
+                    yield from self._struct(news.topic, value)
+                    continue
                 is_plain = isinstance(value, _PLAIN) or (
                     isinstance(value, list) and all(isinstance(each, _PLAIN) for each in value)
                 )
                 yield NETWORK + news.topic.getName(), value if is_plain else MISSING
             elif isinstance(news, ntcore.TopicInfo):
-                yield NETWORK + news.name, MISSING
+                yield struct_target(news.name, news.type_str) or NETWORK + news.name, MISSING
+
+    @staticmethod
+    def _struct(topic: ntcore.Topic, data: bytes) -> Iterator[tuple[str, Any]]:
+        target = struct_target(topic.getName(), topic.getTypeString())
+        if target is not None:
+            yield target, numbers_of(data) or MISSING
 
     def _hear(self, target: str, value: object) -> None:
         if value is MISSING:
