@@ -376,10 +376,11 @@ NEVER_RUNS = """
 
 
 def test_a_failure_of_a_test_that_never_ran_the_robot_says_so(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT, "tests/test_a.py": NEVER_RUNS})
+    ready_made = "from pyfrc.tests.docstring_test import *\n"  # looks at the code only
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": NEVER_RUNS, "tests/test_b.py": ready_made})
     blocks = project.run("test").blocks()
     said = {name for name, text in blocks.items() if "The robot was never run in this test" in text}
-    assert len(blocks) == 5
+    assert len(blocks) == 6
     assert said == {"test_without_a_run", "test_with_hal_data_only"}
 
 

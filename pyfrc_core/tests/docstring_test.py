@@ -35,13 +35,19 @@ def ignore_object(o: Any, robot_path: str) -> bool:
 def test_docstrings(robot: Any, robot_path: str) -> None:
     """Check that all of your robot code has docstrings."""
     __tracebackhide__ = True
-    missing = sorted(
+    missing = [
         place
         for module in list(sys.modules.values())
         if isinstance(module, ModuleType) and not ignore_object(module, robot_path)
         for place in _without_docstring(module, robot_path)
-    )
+    ]
+    missing.sort(key=_file_and_line)
     assert not missing, "these have no docstring:\n" + "\n".join(missing)
+
+
+def _file_and_line(place: str) -> tuple[str, int]:
+    file, _, line = place.rpartition(": ")[0].rpartition(":")
+    return file, int(line)
 
 
 def _without_docstring(module: ModuleType, robot_path: str) -> list[str]:
