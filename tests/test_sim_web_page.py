@@ -172,7 +172,7 @@ STAYS_THE_SAME = """
 
 
 def test_a_picture_that_stays_the_same_is_painted_once(browser, server) -> None:
-    """A robot at rest takes next to nothing of a laptop without a graphics processor."""
+    """A robot at rest is not painted again for each packet."""
     with page_of(browser, server, script=PAINTINGS) as person:
         page = person.page
         page.evaluate("module('js/model.js').then(({ model }) => (window.model = model))")
