@@ -1,8 +1,10 @@
-"""Format numbers in reports: tables, and nouns with their plural."""
+"""Wording of reports: tables, nouns with their plural, names of files."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 
 def counted(number: int, noun: str, many: str | None = None) -> str:
@@ -19,3 +21,11 @@ def table(rows: Sequence[Sequence[str]], left: int, left_at_end: int = 0) -> Ite
             for at, (cell, width) in enumerate(zip(row, widths, strict=True))
         ]
         yield ("  " + "  ".join(cells)).rstrip()
+
+
+def from_here(file: Path) -> str:
+    """Return a file's name from the current directory, as a terminal opens it, if it is in there."""
+    try:
+        return os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
+    except OSError:  # the current directory is gone
+        return str(file)

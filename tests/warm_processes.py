@@ -24,7 +24,7 @@ import weakref
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple
+from typing import IO, NamedTuple
 
 from large_pages import use_large_pages
 from warm_start import LARGEST, READ_AT_START, READ_LATER, end_like_python
@@ -88,19 +88,19 @@ def _start(
     environment = {**os.environ, **(how.environment or {})}
     with Path(os.devnull).open("wb") as unread:
         streams = how.stdout, how.stdout if kind == "host" else how.stderr
-        output, errors = (
-            unread.fileno()
-            if stream == subprocess.DEVNULL
-            else own
-            if stream is None
-            else stream
-            if isinstance(stream, int)
-            else stream.fileno()
-            for own, stream in enumerate(streams, 1)
-        )
+        output, errors = (_descriptor(stream, own, unread) for own, stream in enumerate(streams, 1))
         where = of_tests if kind == "test" and of_tests is not None else address()
         warm = _ask(where, kind, sys.path, environment, how.job(), [output, errors])
     return warm or cold(how)
+
+
+def _descriptor(stream: int | IO[bytes] | None, own: int, unread: IO[bytes]) -> int:
+    """Return the descriptor that `subprocess.Popen` would use for a stream; `own` is that of this process."""
+    if stream is None:
+        return own
+    if isinstance(stream, int) and stream != subprocess.DEVNULL:
+        return stream
+    return (unread if isinstance(stream, int) else stream).fileno()
 
 
 def _ask(

@@ -52,7 +52,7 @@ class Fork:
         prepare_end_with()
         in_main_thread = threading.current_thread() is threading.main_thread()
         if in_main_thread and signal.getsignal(signal.SIGCHLD) is signal.SIG_IGN:
-            signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # otherwise nobody learns how a process has ended
+            signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # which does not say how a process has ended
         owner = os.getpid() if in_main_thread else None
         with forking_quietly():
             self._pid = os.fork()

@@ -27,6 +27,7 @@ from wpiutil.log import DataLog, IntegerLogEntry, StringLogEntry
 from ..disk_space import check_disk_space
 from ..processes.exit import before_sudden_exit
 from ..text_files import keep_out_of_version_control
+from ..wording import from_here
 from .clock import KICKOFF, OBSERVE, PACKET_US, Clock, to_us
 from .patch_table import Patch
 
@@ -245,11 +246,11 @@ class DataLogs:
         try:
             writer = _RealWriter(str(file), header)
         except RuntimeError as error:
-            print(f"data log: {_shown(file)} cannot be written: {error}. It is not kept.", file=sys.stderr)
+            print(f"data log: {from_here(file)} cannot be written: {error}. It is not kept.", file=sys.stderr)
             writer = _RealWriter(os.devnull, header)
         else:
             if file != Path(os.devnull):
-                print(f"data log: {_shown(file)}", file=sys.stderr)
+                print(f"data log: {from_here(file)}", file=sys.stderr)
         return writer
 
     def _file(self, directory: str, filename: str) -> Path:
@@ -371,10 +372,3 @@ class _StandsFor(type):
 
     def __getattr__(cls, name: str) -> Any:
         return getattr(cls._real[0], name)
-
-
-def _shown(file: Path) -> str:
-    try:
-        return os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
-    except OSError:  # the current directory is gone
-        return str(file)

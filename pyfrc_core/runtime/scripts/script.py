@@ -13,13 +13,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ...errors import UsageError
 from ...text_files import write_whole
+from ...wording import from_here
 from ..robot_time import to_us
 
 FORMAT = "pyfrc-input 1"
@@ -111,7 +111,7 @@ def load_script(file: Path) -> InputScript:
 
     :raises ScriptError: naming the line and what is wrong with it
     """
-    name = _shown(file)
+    name = from_here(file)
     try:
         size = file.stat().st_size
         if size > _MOST_BYTES:
@@ -127,13 +127,6 @@ def load_script(file: Path) -> InputScript:
         raise ScriptError(f"there is no file {file}") from None
     except UnicodeDecodeError as malformed:
         raise ScriptError(f"not UTF-8 text: {malformed}", where=name) from None
-
-
-def _shown(file: Path) -> str:
-    """Return how errors name a file: from the current directory, as a terminal opens it."""
-    with suppress(ValueError):
-        return str(file.absolute().relative_to(Path.cwd()))
-    return str(file)
 
 
 def parse_script(lines: Iterable[str], name: str = "script") -> InputScript:
