@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from codecs import BOM_UTF8
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, TypeVar
 
 from ..compat.real_time_devices import real_time_libraries
 from ..config.robotpy import load_robot_packages
@@ -19,6 +19,8 @@ from .installed import Installed, fits
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
+
+Answer = TypeVar("Answer")
 
 
 def check_project(project: Project, installed: Installed) -> Iterator[CheckResult]:
@@ -90,19 +92,29 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[CheckResult]:
 
 
 def _robot_class(project: Project) -> Iterator[CheckResult]:
+    looked = _imported(_look_at_class, project, "program", project.main_file.name, "it")
+    if isinstance(looked, CheckResult):
+        yield looked
+        return
+    name, misspelled, real_time = looked
+    yield ok("program", f"class {name} in {project.main_file}")
+    for method in misspelled:
+        yield problem("program", str(method), method.remedy)
+    for library in real_time:
+        text = f"{library} simulates its devices in real time: runs of this robot do not repeat exactly"
+        yield hint("program", text, "In tests, compare what depends on these devices with a tolerance.")
+
+
+def _imported(
+    look: Callable[[Project, CrashLog], Answer], project: Project, topic: str, file: str, what: str
+) -> Answer | CheckResult:
+    """Return what a function finds in another process, where it imports a file of the project; or the problem."""
     try:
-        name, misspelled, real_time = run_in_subprocess(_look_at_class, project, "while it was imported")
+        return run_in_subprocess(look, project, f"while {what} was imported")
     except (PyfrcError, OSError) as error:
-        yield problem_from_error("program", error, "Correct that line; pyfrc test shows more details.")
+        return problem_from_error(topic, error, "Correct that line; pyfrc test shows more details.")
     except Exception as error:  # the other process could not report the error
-        yield problem("program", f"{project.main_file.name} cannot be imported: {error}", "Run pyfrc test for details.")
-    else:
-        yield ok("program", f"class {name} in {project.main_file}")
-        for method in misspelled:
-            yield problem("program", str(method), method.remedy)
-        for library in real_time:
-            text = f"{library} simulates its devices in real time: runs of this robot do not repeat exactly"
-            yield hint("program", text, "In tests, compare what depends on these devices with a tolerance.")
+        return problem(topic, f"{file} cannot be imported: {error}", "Run pyfrc test for details.")
 
 
 def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[MisspelledMethod], tuple[str, ...]]:
@@ -119,15 +131,8 @@ def _physics(project: Project, imports: bool) -> Iterator[CheckResult]:
     if not project.physics_file.is_file():
         yield hint("physics", f"no {name}: nothing moves in simulation", "pyfrc create-physics")
         return
-    try:
-        if imports:
-            run_in_subprocess(_load_physics, project, "while the physics was imported")
-    except (PyfrcError, OSError) as error:
-        yield problem_from_error("physics", error, "Correct that line; pyfrc test shows more details.")
-    except Exception as error:  # the other process could not report the error
-        yield problem("physics", f"{name} cannot be imported: {error}", "Run pyfrc test for details.")
-    else:
-        yield ok("physics", name)
+    wrong = _imported(_load_physics, project, "physics", name, "the physics") if imports else None
+    yield wrong or ok("physics", name)
 
 
 def _load_physics(project: Project, log: CrashLog) -> None:
