@@ -152,7 +152,7 @@ def command(
     if revision is not None:
         sys.exit(_compare(project, revision, options))
     if pages is not None:
-        from pyfrc_core.sim.output_files import check_writable
+        from pyfrc_core.text_files import check_writable
 
         check_writable("--pages", pages / "any.html")
     campaign = run_campaign(project, options, printer)

@@ -60,7 +60,7 @@ def command(
         draw_script(project, file, picture, until)
         hint(f"wrote {picture}")
     if page is not None:
-        from pyfrc_core.sim.output_files import check_writable
+        from pyfrc_core.text_files import check_writable
 
         check_writable("--page", page)
     result = replay(project, file, until=until, trace=trace)

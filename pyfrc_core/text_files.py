@@ -1,11 +1,13 @@
-"""Write files atomically."""
+"""Write files atomically, and check in advance that they can be written."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable
 from pathlib import Path
-from tempfile import NamedTemporaryFile
+from tempfile import NamedTemporaryFile, TemporaryFile
+
+from .errors import UsageError
 
 
 def write_whole(file: Path, text: Iterable[str]) -> None:
@@ -16,6 +18,28 @@ def write_whole(file: Path, text: Iterable[str]) -> None:
     except OSError as error:
         error.filename = str(file)  # the one that was asked for, not the temporary one
         raise
+
+
+def check_writable(option: str, file: Path) -> None:
+    """Check that a file can be written; create its directory. Long work must not be lost at its end.
+
+    :param option: the option that names the file
+    :raises UsageError: when it cannot
+    """
+    try:
+        if file.parent.is_file():
+            raise NotADirectoryError(0, f"{file.parent} is a file")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if file.is_dir():
+            raise IsADirectoryError(0, "it is a directory")
+        if file.exists() and not os.access(file, os.W_OK):
+            raise PermissionError(0, "it is read-only")
+        with TemporaryFile(dir=file.parent, prefix=f".{file.name}-"):
+            pass
+    except OSError as error:
+        raise UsageError(
+            f"{option} {file} cannot be written: {error.strerror}", remedy="Choose a file in another place."
+        ) from None
 
 
 def keep_out_of_version_control(directory: Path) -> None:

@@ -187,7 +187,9 @@ def test_a_command_that_fails_keeps_its_exit_code_and_is_reported(make_project: 
         (("test", "--no-such-option"), "No such option"),
         (("test", "--coverage"), "coverage is already being measured"),
         (("coverage", "test"), "'coverage' is not a command that can be measured"),
-        (("--xml", ".", "test"), "that is a directory"),
+        (("--xml", ".", "test"), "--xml . cannot be written: it is a directory"),
+        (("--json", "robot.py/report.json", "test"), " cannot be written: robot.py is a file"),
+        (("--html", "robot.py", "test"), " cannot be written: robot.py is a file"),
         (("test", "--project", "nowhere"), "there is no directory nowhere"),
     ],
 )

@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Mapping
 from math import ceil
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -415,6 +416,17 @@ def test_without_pyinstrument_it_says_what_to_install(make_project: MakeProject)
     result = project.run("profile", "--html", "profile.html", "test", env=environment)
     assert result.code == 2, result.output
     assert 'pip install "pyfrc[profile]>=2026.1"' in result.stderr
+    assert "passed" not in result.stdout
+
+
+@pytest.mark.parametrize("option", ["--outfile", "--json"])
+def test_a_report_that_cannot_be_written_is_an_error_before_anything_runs(
+    make_project: MakeProject, option: str
+) -> None:
+    project = make_project({"robot.py": SMALL_ROBOT, "tests/test_a.py": TELEOP})
+    result = project.run("profile", option, "robot.py/report", "test")
+    assert result.code == 2, result.output
+    assert result.first_error == f"{option} {Path('robot.py/report')} cannot be written: robot.py is a file"
     assert "passed" not in result.stdout
 
 

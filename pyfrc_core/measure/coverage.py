@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import UsageError
 from ..project import Project
-from ..text_files import write_whole
+from ..text_files import check_writable, write_whole
 from .never_run import never_run, summary
 from .processes import announced, is_announced
 
@@ -80,10 +80,11 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
     from coverage import Coverage
     from coverage.exceptions import CoverageException
 
-    for file, is_taken in ((options.html, Path.is_file), (options.xml, Path.is_dir), (options.json, Path.is_dir)):
-        if file is not None and is_taken(file):
-            kind = "file" if file == options.html else "directory"
-            raise UsageError(f"the report cannot be written to {file}: that is a {kind}")
+    if options.html is not None:
+        check_writable("--html", options.html / "index.html")
+    for option, file in (("--xml", options.xml), ("--json", options.json)):
+        if file is not None:
+            check_writable(option, file)
     # The directory for the data of each process, until it is combined; nothing stays in the project.
     with tempfile.TemporaryDirectory(prefix="pyfrc-coverage-") as directory:
         settings: dict[str, Any] = {

@@ -19,7 +19,7 @@ from ..errors import UsageError
 from ..project import Project
 from ..project.robot_files import RobotFiles
 from ..runtime.patch_table import PatchTable
-from ..text_files import write_whole
+from ..text_files import check_writable, write_whole
 from .figures import Figures, added_up
 from .flame import require_pyinstrument, write_flame
 from .processes import announced, is_announced
@@ -129,11 +129,11 @@ def profiling(project: Project, options: ProfileOptions, command: str) -> Iterat
     """
     if is_announced("profile"):
         raise UsageError("a profile is already being measured")
-    for file in (options.pstats, options.html, options.json):
-        if file is not None and file.is_dir():
-            raise UsageError(f"the profile cannot be written to {file}: that is a directory")
     if options.html is not None:
         require_pyinstrument()
+    for option, file in (("--outfile", options.pstats), ("--html", options.html), ("--json", options.json)):
+        if file is not None:
+            check_writable(option, file)
     # The directory for the figures of each process, until they are added up.
     with tempfile.TemporaryDirectory(prefix="pyfrc-profile-") as directory:
         settings = {

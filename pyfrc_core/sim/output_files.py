@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from tempfile import TemporaryFile
 
 from ..disk_space import check_disk_space
 from ..errors import UsageError
+from ..text_files import check_writable
 from .engine.simulation import Simulation
 from .page_file import PageFile
 
@@ -58,23 +57,6 @@ class OutputFiles:
             draw_picture(snapshot.scene, self._picture, simulation.status.former_trail)
             written.append(self._picture)
         return written + paged
-
-
-def check_writable(option: str, file: Path) -> None:
-    """Check that a file can be written; create its directory.
-
-    :raises UsageError: when it cannot
-    """
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        if file.exists() and not os.access(file, os.W_OK):
-            raise PermissionError(0, "it is read-only")
-        with TemporaryFile(dir=file.parent, prefix=f".{file.name}-"):
-            pass
-    except OSError as error:
-        raise UsageError(
-            f"{option} {file} cannot be written: {error.strerror}", remedy="Choose a file in another place."
-        ) from None
 
 
 def _stamp(file: Path | None) -> tuple[int, int] | None:
