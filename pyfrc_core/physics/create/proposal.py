@@ -58,7 +58,7 @@ def propose(project: Project, log: CrashLog) -> Proposal:
         _config_text(found),
         summary(layout, found),
         layout.assumptions,
-        advice(layout),
+        advice(found, layout),
         found.problem,
     )
 

@@ -13,8 +13,12 @@ def listed(motors: list[Motor]) -> str:
     return ", ".join(map(str, motors))
 
 
-def advice(layout: DrivetrainLayout) -> list[str]:
-    """Return the remaining work until the robot drives."""
+def advice(found: Survey, layout: DrivetrainLayout) -> list[str]:
+    """Return the remaining work: until the robot drives, and for the devices that are not simulated."""
+    return [*_advice_for_driving(layout), *_not_simulated(found, layout)]
+
+
+def _advice_for_driving(layout: DrivetrainLayout) -> list[str]:
     if layout.swerve is not None and layout.swerve.modules:
         return []
     if layout.swerve is not None:
@@ -37,19 +41,20 @@ def advice(layout: DrivetrainLayout) -> list[str]:
 _PART = re.compile(r".+ \[\d+\] [A-Z]")
 
 
+def _not_simulated(found: Survey, layout: DrivetrainLayout) -> list[str]:
+    moves = layout.drivetrain is not None or (layout.swerve is not None and layout.swerve.modules)
+    still = [] if moves else found.gyros
+    left_out = [*map(str, [*layout.undriven, *still]), *found.others]
+    left_out = [device for device in left_out if not _PART.match(device)]
+    return [f"Not simulated, since their purpose is unknown: {', '.join(left_out)}."] if left_out else []
+
+
 def notes(found: Survey, layout: DrivetrainLayout) -> list[str]:
     """Return the notes for the written file, as sentences."""
     sentences = list(layout.assumptions)
     if found.problem:
         sentences.append(f"The robot's joysticks could not be tested: {found.problem.splitlines()[0]}")
-    sentences += advice(layout)
-    moves = layout.drivetrain is not None or (layout.swerve is not None and layout.swerve.modules)
-    still = [] if moves else found.gyros
-    left_out = [*map(str, [*layout.undriven, *still]), *found.others]
-    left_out = [device for device in left_out if not _PART.match(device)]
-    if left_out:
-        sentences.append(f"Not simulated, since their purpose is unknown: {', '.join(left_out)}.")
-    return sentences
+    return sentences + advice(found, layout)
 
 
 def summary(layout: DrivetrainLayout, found: Survey) -> list[str]:
