@@ -291,9 +291,12 @@ def test_unknown_settings_are_told(make_project) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
-def test_ctrl_c_keeps_what_was_found(make_project) -> None:
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_an_interrupted_campaign_keeps_what_was_found_and_nothing_else(make_project, tmp_path: Path, name: str) -> None:
     project = make_project({"robot.py": FAULTY.format("1 / self.motor.get()")})
-    environment = {**os.environ, "PYTHONHASHSEED": "0"}
+    temporary = tmp_path / "of the campaign"
+    temporary.mkdir()
+    environment = {**os.environ, "PYTHONHASHSEED": "0", "TMPDIR": str(temporary)}
     command = [sys.executable, "-m", "pyfrc", "fuzz", "--time", "1000"]
     with subprocess.Popen(command, cwd=project.path, env=environment, stdout=subprocess.PIPE, text=True) as campaign:
         assert campaign.stdout is not None
@@ -301,9 +304,10 @@ def test_ctrl_c_keeps_what_was_found(make_project) -> None:
         for line in campaign.stdout:
             lines.append(line)
             if "pyfrc replay" in line:
-                campaign.send_signal(signal.SIGINT)
+                campaign.send_signal(getattr(signal, name))
     assert campaign.returncode == 1
     assert lines[-1] == "interrupted\n"
+    assert not list(temporary.iterdir())
     assert "fuzz/zerodivisionerror-robot-autonomousperiodic.jsonl" in kept(project)
 
 

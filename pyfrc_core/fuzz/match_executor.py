@@ -6,7 +6,6 @@ Each match has its own process, so it may crash, hang and print without harm.
 from __future__ import annotations
 
 import gc
-import signal
 import tempfile
 from abc import ABC, abstractmethod
 from collections import deque
@@ -21,6 +20,7 @@ from typing import Any, TypeVar
 from ..compat.wpilib_private import NETWORK_LOG
 from ..errors import RobotCodeError
 from ..hal import devices_exist
+from ..interruption import calling_when_ended
 from ..processes.call import ForkedCall, can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
 from ..processes.fork import wait_for_any
@@ -85,19 +85,13 @@ class MatchExecutor(ABC):
         (played,) = self.play([ReplayTask(script)])
         return played
 
-    @contextmanager
-    def interruptible(self) -> Iterator[None]:
-        """Interrupt the matches on SIGINT (Ctrl-C) and SIGTERM, until the context ends."""
+    def interruptible(self) -> AbstractContextManager[None]:
+        """Interrupt the matches on Ctrl-C, and when the terminal is closed, until the context ends."""
 
-        def interrupt(signum: int, frame: object) -> None:
+        def interrupt() -> None:
             self.interrupted = True
 
-        before = {number: signal.signal(number, interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
-        try:
-            yield
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
+        return calling_when_ended(interrupt)
 
     def _check_interrupt(self) -> None:
         if self.interrupted:
