@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import sys
+from pathlib import Path
 
 import pytest
 from conftest import MakeProject, Result
@@ -200,6 +202,15 @@ def test_one_directory_too_high_names_the_projects_below(make_project: MakeProje
     assert project.run("test", "--project", "myrobot").code == 0
     named = project.run("test", "--project", "..", cwd=project.path / "myrobot")
     assert "--project ../myrobot" in named.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="making links needs a right on Windows")
+def test_a_robot_file_that_is_a_link_to_nothing_is_explained(make_project: MakeProject) -> None:
+    project = make_project({"tests/test_a.py": ANY_TEST})
+    (project.path / "robot.py").symlink_to(Path("nowhere", "robot.py"))
+    result = project.run("test")
+    explained(result, 2)
+    assert result.first_error.endswith("robot.py: a link to nowhere/robot.py, which does not exist")
 
 
 # --- mistakes in the robot's code

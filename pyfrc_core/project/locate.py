@@ -53,8 +53,11 @@ def _project_in(directory: Path, class_name: str | None) -> Project | None:
         if not file.is_file():
             raise ProjectError(f"main = {main!r} under [tool.pyfrc], but there is no such file", where=pyproject.name)
         return Project(file.resolve(), class_name, pyproject)
-    if (directory / MAIN_FILE).is_file():
-        return Project(directory / MAIN_FILE, class_name)
+    file = directory / MAIN_FILE
+    if file.is_file():
+        return Project(file, class_name)
+    if file.is_symlink() and not file.exists():
+        raise ProjectError(f"a link to {file.readlink()}, which does not exist", where=file)
     return None
 
 
@@ -68,7 +71,9 @@ def _nothing_found(directory: Path, how: str) -> ProjectError:
             f"there is no {MAIN_FILE} {how} {directory}, but there is one in ./{below[0].as_posix()}{also}",
             remedy=f"Go there with: cd {there}. Or name it with: --project {there}",
         )
-    nearly = next((file.name for file in directory.glob("*.py") if file.name.lower() == MAIN_FILE), None)
+    nearly = next(
+        (file.name for file in directory.glob("*.py") if file.is_file() and file.name.lower() == MAIN_FILE), None
+    )
     other = next((file.name for file in sorted(directory.glob("*.py")) if _defines_robot(file)), None)
     if nearly is None and other is not None:
         return ProjectError(
