@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import pytest
 
+from pyfrc_core.processes.fork import FORK_IS_SAFE
+
 ROBOT = """
     import concurrent.futures, queue, threading, time
     import hal, wpilib
@@ -888,6 +890,42 @@ def test_a_process_that_the_robot_starts_ends_with_its_test(make_project) -> Non
             def robotInit(self):
                 context = multiprocessing.get_context("fork")
                 self.process = context.Process(target=look_for_targets, daemon=True)
+                self.process.start()
+        """,
+    )
+
+
+@pytest.mark.skipif(not FORK_IS_SAFE, reason="processes are not forked here")
+def test_a_process_that_the_robot_forks_lives_in_real_time(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_it(control, robot):
+            control.run_test(lambda tm: tm < 1)
+            assert robot.answers.get(timeout=60) == [True, True, True, True, "thread"]
+            robot.process.join()
+        """,
+        """
+        import multiprocessing, threading, time
+        import wpilib
+
+        clocks = [time.monotonic, time.time, time.perf_counter, wpilib.Timer.getFPGATimestamp]
+
+        def look_for_targets(answers):
+            began = [clock() for clock in clocks]
+            time.sleep(0.001)
+            found = [clock() > begin for clock, begin in zip(clocks, began)]
+            thread = threading.Thread(target=found.append, args=("thread",))
+            thread.start()
+            while thread.is_alive():
+                pass
+            answers.put(found)
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                context = multiprocessing.get_context("fork")
+                self.answers = context.Queue()
+                self.process = context.Process(target=look_for_targets, args=[self.answers])
                 self.process.start()
         """,
     )

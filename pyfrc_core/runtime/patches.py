@@ -23,6 +23,7 @@ import wpilib.simulation
 from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
 from ..compat.object_hashes import hash_by_number, object_base
 from ..compat.wpilib_private import LOOP_FUNCTION
+from ..hal import timing
 from . import cooperative, counters, data_logs, driver_station, locks, robot_stack, sysid_logs, udp_ports
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
@@ -64,8 +65,7 @@ class Patches:
         if self.installed:
             return
         if hasattr(os, "register_at_fork"):
-            # A process that robot code has forked lives in real time: it has neither the clock nor the HAL's threads.
-            os.register_at_fork(after_in_child=active_run.forget)
+            os.register_at_fork(after_in_child=_return_to_real_time)
         for owner, name, replacement in self._patches():
             original = vars(owner).get(name, getattr(owner, name, None))
             self._table.patch(owner, name, as_original(owner, name, original, replacement))
@@ -274,6 +274,14 @@ class Patches:
             Patch(wpilib, "getOperatingDirectory", lambda: str(Path(self._files.root))),
             Patch(wpilib, "getDeployDirectory", lambda: str(Path(self._files.root, "deploy"))),
         ]
+
+
+def _return_to_real_time() -> None:
+    """In a process that robot code has forked: it has neither the clock nor the HAL's threads."""
+    if active_run.run is not None:
+        active_run.forget()
+        cooperative.scope.is_robot_code = lambda filename: False
+        timing.run_freely()
 
 
 def _is_browned_out() -> bool:
