@@ -106,7 +106,7 @@ class PhysicsInterface:
         self._pose: Pose
         self._shown: Pose2d
         self._device_gyros: list[str] = []
-        self._turned = self._rate = 0.0
+        self._turned = self._rate = self._turned_devices = self._rate_of_devices = 0.0
         self._height = config.field.h
         start = config.start
         self._place(Pose(start.x, start.y, math.radians(start.angle)))
@@ -198,7 +198,7 @@ class PhysicsInterface:
     # -- gyros ---------------------------------------------------------------------------------------------------
 
     def add_device_gyro_channel(self, angle_key: str) -> None:
-        """Turn a gyro with the robot, for every kind of move.
+        """Turn a gyro with the robot, for every kind of move, and set its rate if it has one.
 
         :param angle_key: the name of its angle in ``hal_data['robot']``, in degrees clockwise, such as
             ``'navx_spi_4_angle'``
@@ -257,9 +257,11 @@ class PhysicsInterface:
     def _move(self, forward: float, right: float, turn: float) -> Pose2d:
         _check(forward, right, turn)
         if self._device_gyros and self._hal_data is not None:
+            degrees = math.degrees(turn)
+            self._turned_devices += degrees
             angles = self._hal_data["robot"]
             for key in self._device_gyros:
-                angles[key] = angles.get(key, 0.0) + math.degrees(turn)
+                angles[key] = angles.get(key, 0.0) + degrees
         pose = self._current()
         if not (forward or right or turn):  # at rest, no update for dashboards is needed
             return self._shown
@@ -272,12 +274,22 @@ class PhysicsInterface:
                 gyro["angle"] += math.degrees(turn)
 
     def update_rates(self, tm_diff: float) -> None:
-        """Set the analog gyros' rates after `update_sim`, in degrees/s, from the angle that it has turned them by."""
+        """Set the gyros' rates after `update_sim`, in degrees/s, from the angles that it has turned them by."""
+        if self._hal_data is None:
+            return
         rate, self._turned = self._turned / tm_diff, 0.0
-        if rate != self._rate and self._hal_data is not None:
+        if rate != self._rate:
             self._rate = rate
             for gyro in self._hal_data["analog_gyro"]:
                 gyro["rate"] = rate
+        rate, self._turned_devices = self._turned_devices / tm_diff, 0.0
+        if rate != self._rate_of_devices:
+            self._rate_of_devices = rate
+            values = self._hal_data["robot"]
+            for key in self._device_gyros:
+                rate_key = f"{key.removesuffix('angle')}rate"
+                if rate_key in values:
+                    values[rate_key] = rate
 
     def _current(self) -> Pose:
         """Return the pose, with changes that were made on the `field`."""

@@ -130,7 +130,8 @@ class TankModel:
         :param motor_config: specification of the motors
         :param robot_mass: mass of the robot
         :param gearing: gear ratio: for 10.74:1, 10.74
-        :param nmotors: number of motors on each side
+        :param nmotors: number of drive motors. With all of them, both sides together, the model accelerates as the
+            robot does. With those of one side, as the documentation of 2019 says in one of two places, half as fast
         :param x_wheelbase: distance between the left and the right wheels
         :param robot_width: with bumpers
         :param robot_length: with bumpers

@@ -6,12 +6,12 @@ The numbers describe a typical robot. Replace them with your robot's.
 import math
 
 from pyfrc.physics.core import PhysicsInterface
+from pyfrc.physics.encoders import EncoderShaft
 from wpilib.simulation import (
     BatterySim,
     DIOSim,
     DutyCycleEncoderSim,
     ElevatorSim,
-    EncoderSim,
     PWMSim,
     RoboRioSim,
     SingleJointedArmSim,
@@ -31,7 +31,7 @@ class PhysicsEngine:
 
     def __init__(self, physics_controller: PhysicsInterface, robot: MyRobot) -> None:
         self.elevator_motor = PWMSim(robot.elevator.motor.getChannel())
-        self.elevator_encoder = EncoderSim(robot.elevator.encoder)
+        self.elevator_encoder = EncoderShaft(robot.elevator.encoder)
         self.bottom_switch = DIOSim(robot.elevator.bottom_switch)
         self.elevator = ElevatorSim(
             DCMotor.NEO(2),
@@ -73,6 +73,6 @@ class PhysicsEngine:
 
     def measure(self) -> None:
         """Set the sensors to the positions of both mechanisms."""
-        self.elevator_encoder.setDistance(self.elevator.getPosition())
+        self.elevator_encoder.turn_to(self.elevator.getPosition(), self.elevator.getVelocity())
         self.bottom_switch.setValue(self.elevator.getPosition() > 0.005)  # pressed in the last 5 mm
         self.arm_encoder.set(self.arm.getAngle() + arm.READS_WHEN_LEVEL)

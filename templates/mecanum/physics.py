@@ -5,8 +5,9 @@ The numbers describe a typical robot. Replace them with your robot's.
 
 from pyfrc.physics.core import PhysicsInterface
 from pyfrc.physics.drivetrains import MecanumDrivetrain
+from pyfrc.physics.encoders import EncoderShaft
 from pyfrc.physics.units import units
-from wpilib.simulation import EncoderSim, PWMSim
+from wpilib.simulation import PWMSim
 
 from robot import MyRobot
 
@@ -27,7 +28,8 @@ class PhysicsEngine:
             for motor in (robot.front_left, robot.rear_left, robot.front_right, robot.rear_right)
         ]
         self.drivetrain = MecanumDrivetrain(x_wheelbase=TRACK_WIDTH, y_wheelbase=WHEEL_BASE, speed=MAX_SPEED)
-        self.encoders = [EncoderSim(encoder) for encoder in robot.encoders]
+        self.encoders = [EncoderShaft(encoder) for encoder in robot.encoders]
+        self.rolled = [0.0] * 4  # how far each wheel has rolled, in metres
         physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")  # turns with the robot
 
     def update_sim(self, now: float, tm_diff: float) -> None:
@@ -36,5 +38,7 @@ class PhysicsEngine:
         speeds = self.drivetrain.calculate(front_left, rear_left, front_right, rear_right)
         self.physics_controller.drive(speeds, tm_diff)
         # The right motors are inverted: forward at -1.
-        for encoder, power in zip(self.encoders, (front_left, rear_left, -front_right, -rear_right), strict=True):
-            encoder.setDistance(encoder.getDistance() + power * METRES_PER_SECOND * tm_diff)
+        for wheel, power in enumerate((front_left, rear_left, -front_right, -rear_right)):
+            speed = power * METRES_PER_SECOND
+            self.rolled[wheel] += speed * tm_diff
+            self.encoders[wheel].turn_to(self.rolled[wheel], speed)

@@ -6,7 +6,8 @@ The numbers describe a typical robot. Replace them with your robot's.
 import math
 
 from pyfrc.physics.core import PhysicsInterface
-from wpilib.simulation import AnalogEncoderSim, EncoderSim, PWMSim
+from pyfrc.physics.encoders import EncoderShaft
+from wpilib.simulation import AnalogEncoderSim, PWMSim
 from wpimath.geometry import Rotation2d
 from wpimath.kinematics import SwerveModuleState
 
@@ -22,7 +23,7 @@ class ModulePhysics:
     def __init__(self, module: SwerveModule) -> None:
         self.drive_motor = PWMSim(module.drive_motor.getChannel())
         self.turn_motor = PWMSim(module.turn_motor.getChannel())
-        self.drive_encoder = EncoderSim(module.drive_encoder)
+        self.drive_encoder = EncoderShaft(module.drive_encoder)
         self.angle_encoder = AnalogEncoderSim(module.angle_encoder)
         self.angle = 0.0  # in radians, counter-clockwise
         self.rolled = 0.0  # in metres
@@ -32,8 +33,7 @@ class ModulePhysics:
         speed = self.drive_motor.getSpeed() * MAX_SPEED
         self.angle += self.turn_motor.getSpeed() * MAX_WHEEL_TURNING * tm_diff
         self.rolled += speed * tm_diff
-        self.drive_encoder.setDistance(self.rolled)
-        self.drive_encoder.setRate(speed)
+        self.drive_encoder.turn_to(self.rolled, speed)
         self.angle_encoder.set(self.angle % math.tau)
         return SwerveModuleState(speed, Rotation2d(self.angle))
 

@@ -3,33 +3,17 @@
 The numbers describe a typical robot. Replace them with your robot's.
 """
 
-import wpilib
 from pyfrc.physics import motor_cfgs, tankmodel
 from pyfrc.physics.core import PhysicsInterface
+from pyfrc.physics.encoders import EncoderShaft
 from pyfrc.physics.units import units
-from wpilib.simulation import EncoderSim, PWMSim
+from wpilib.simulation import PWMSim
 
 from robot import MyRobot
 
 METRES_PER_FOOT = 0.3048
 MASS = 110 * units.lbs  # with battery and bumpers
 TRACK_WIDTH = 24 * units.inch  # from the left wheels to the right wheels
-
-
-class EncoderShaft:
-    """A shaft that turns an encoder. After the robot's reset(), the encoder counts from 0, like a real one."""
-
-    def __init__(self, encoder: wpilib.Encoder) -> None:
-        self.encoder = EncoderSim(encoder)
-        self.counts_per_foot = METRES_PER_FOOT / encoder.getDistancePerPulse()
-        self.counts = 0
-
-    def turn_to(self, feet: float) -> None:
-        """Turn the encoder as far as a wheel that has rolled this far."""
-        counts = round(feet * self.counts_per_foot)
-        if counts != self.counts:
-            self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
-            self.counts = counts
 
 
 class PhysicsEngine:
@@ -40,14 +24,14 @@ class PhysicsEngine:
         # The two motors of a side are geared together, so one of them is enough.
         self.left_motor = PWMSim(robot.left_motor.getChannel())
         self.right_motor = PWMSim(robot.right_motor.getChannel())
-        self.left_encoder = EncoderShaft(robot.left_encoder)
-        self.right_encoder = EncoderShaft(robot.right_encoder)
+        self.left_encoder = EncoderShaft(robot.left_encoder, METRES_PER_FOOT)
+        self.right_encoder = EncoderShaft(robot.right_encoder, METRES_PER_FOOT)
 
         self.drivetrain = tankmodel.TankModel.theory(
             motor_cfgs.MOTOR_CFG_CIM,
             robot_mass=MASS,
             gearing=10.71,  # turns of a motor per turn of a wheel
-            nmotors=2,  # on each side
+            nmotors=4,  # all of them, to accelerate as the robot does
             x_wheelbase=TRACK_WIDTH,
             robot_width=27 * units.inch,  # with bumpers
             robot_length=33 * units.inch,
@@ -60,5 +44,5 @@ class PhysicsEngine:
         """Called every 20 ms; `tm_diff` is the time since the last call, in seconds."""
         moved = self.drivetrain.calculate(self.left_motor.getSpeed(), self.right_motor.getSpeed(), tm_diff)
         self.physics_controller.move_robot(moved)
-        self.left_encoder.turn_to(self.drivetrain.l_position)
-        self.right_encoder.turn_to(self.drivetrain.r_position)
+        self.left_encoder.turn_to(self.drivetrain.l_position, self.drivetrain.l_velocity)
+        self.right_encoder.turn_to(self.drivetrain.r_position, self.drivetrain.r_velocity)

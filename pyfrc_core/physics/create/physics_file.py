@@ -45,12 +45,12 @@ WHEELBASE = 22 * units.inch  # from the front wheels to the rear ones
 #: The comment on encoder units, by the unit of the drivetrain's model.
 _UNITS = {
     "foot": """
-# The unit of the robot's encoders, from its setDistancePerPulse(): 0.3048 for metres, 1 for feet,
+# The unit of the robot's setDistancePerPulse(), which is assumed: 0.3048 for metres, 1 for feet,
 # 12 for inches.
 ENCODER_UNITS = 0.3048
 """,
     "metre": """
-# The unit of the robot's encoders, from its setDistancePerPulse(): 1 for metres, 3.281 for feet,
+# The unit of the robot's setDistancePerPulse(), which is assumed: 1 for metres, 3.281 for feet,
 # 39.37 for inches.
 ENCODER_UNITS = 1.0
 """,
@@ -61,26 +61,6 @@ _COUNTS = """
 COUNTS_PER_TURN = 360  # of a wheel
 {diameter}ENCODER_COUNTS = COUNTS_PER_TURN / (math.pi * WHEEL_DIAMETER.m_as("{unit}"))
 """
-
-_SHAFT = '''
-
-class EncoderShaft:
-    """Turns an encoder. Like a real one, it continues from the count that the robot's reset() has set."""
-
-    def __init__(self, encoder: EncoderSim, units: float) -> None:
-        """`units`: the number of encoder units in one unit of `turn_to`."""
-        self.encoder = encoder
-        self.units = units
-        self.counts = 0
-
-    def turn_to(self, position: float, velocity: float) -> None:
-        """Set the position, and the velocity per second."""
-        counts = round(position * self.units / self.encoder.getDistancePerPulse())
-        if counts != self.counts:
-            self.encoder.setCount(self.encoder.getCount() + counts - self.counts)
-            self.counts = counts
-        self.encoder.setRate(velocity * self.units)
-'''
 
 _ENGINE = '''
 
@@ -145,6 +125,7 @@ def _assembled(text: ModuleText, remarks: list[str]) -> str:
     names = ", ".join(sorted(text.from_can_motors))
     ours = {"from pyfrc.physics.core import PhysicsInterface", *text.imports}
     ours |= {f"from pyfrc.physics.can_motors import {names}"} if names else set()
+    ours |= {"from pyfrc.physics.encoders import EncoderShaft"} if "EncoderSim" in text.sims else set()
     imports.append("\n".join(sorted(ours, key=_import_order)) + "\n")
     comments = [wrap(one_line(remark), 98, initial_indent="# ", subsequent_indent="# ") for remark in remarks]
     engine = _ENGINE.format(setup=_indented(text.setup), update=_indented(text.update))
@@ -154,7 +135,6 @@ def _assembled(text: ModuleText, remarks: list[str]) -> str:
             "\n".join(imports),
             *("\n{}\n".format("\n".join(lines)) for lines in comments),
             numbers,
-            _SHAFT if "EncoderSim" in text.sims else "",
             engine,
         ]
     )
@@ -191,7 +171,7 @@ def _tank(text: ModuleText, tank: Tank, layout: DrivetrainLayout, gyros: list[Gy
         "    MOTOR,",
         "    robot_mass=MASS,",
         "    gearing=GEARING,",
-        "    nmotors=MOTORS_PER_SIDE,",
+        "    nmotors=2 * MOTORS_PER_SIDE,  # theory() needs all of them to accelerate as the robot does",
         "    x_wheelbase=TRACK_WIDTH,",
         "    robot_width=ROBOT_WIDTH,",
         "    robot_length=ROBOT_LENGTH,",

@@ -1,0 +1,74 @@
+"""Sensors that physics turns behave as on the robot when the robot resets them and reads their rates."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from conftest import MakeProject
+
+ROBOT = """
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            self.encoder = wpilib.Encoder(0, 1)
+            self.encoder.setDistancePerPulse(0.01)
+            self.gyro = wpilib.ADXRS450_Gyro()
+
+        def autonomousInit(self):
+            self.encoder.reset()
+"""
+PHYSICS = """
+    from pyfrc.physics.encoders import EncoderShaft
+
+    class PhysicsEngine:
+        def __init__(self, physics_controller, robot):
+            self.physics_controller = physics_controller
+            self.shaft = EncoderShaft(robot.encoder, units=2.0)
+            physics_controller.add_device_gyro_channel("adxrs450_spi_0_angle")
+            self.position = 0.0
+
+        def update_sim(self, now, tm_diff):
+            self.position += 3.0 * tm_diff
+            self.shaft.turn_to(self.position, 3.0)
+            self.physics_controller.drive(0, 1.0, tm_diff)  # 1 rad/s clockwise, as documented in 2019
+"""
+
+
+def test_an_encoder_counts_from_its_reset_and_has_a_rate(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "physics.py": PHYSICS,
+            "tests/test_it.py": """
+            import math
+            import pytest
+
+            def test_it(control, robot):
+                with control.run_robot():
+                    control.step_timing(seconds=1, autonomous=False, enabled=True)
+                    assert robot.encoder.getDistance() == pytest.approx(6, abs=0.2)
+                    assert robot.encoder.getRate() == pytest.approx(6)
+                    control.step_timing(seconds=1, autonomous=True, enabled=True)
+                    assert robot.encoder.getDistance() == pytest.approx(6, abs=0.2)
+                    assert robot.gyro.getRate() == pytest.approx(math.degrees(1))
+            """,
+        }
+    )
+    result = project.run("test")
+    assert result.code == 0, result.output
+
+
+@pytest.mark.parametrize("values", [(math.nan, 0.0), (0.0, math.inf)])
+def test_a_shaft_refuses_what_is_not_a_number(values: tuple[float, float], make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": ROBOT,
+            "physics.py": PHYSICS.replace("self.position, 3.0", f"float('{values[0]}'), float('{values[1]}')"),
+        }
+    )
+    result = project.run("test", "--builtin")
+    assert result.code == 1
+    assert "ParameterError" in result.output
+    assert "must be a finite number" in result.output
