@@ -407,6 +407,23 @@ def test_a_value_that_cannot_be_names_its_parameter(parameters: dict[str, Any]) 
         theory(**parameters)
 
 
+@pytest.mark.parametrize("unit", ["rpm", "rad / second", "turn / minute"])
+def test_a_free_speed_in_radians_is_a_warning(unit: str) -> None:
+    motor = MOTOR_CFG_NEO._replace(freeSpeed=5676 * units(unit))
+    with pytest.warns(UserWarning, match=r"Use units\.cpm") as warned:
+        TankModel.theory(motor, MASS, 10.71)
+    assert warned[0].filename == __file__
+
+
+def test_with_all_its_motors_a_robot_accelerates_as_force_and_mass_say() -> None:
+    model = TankModel.theory(
+        MOTOR_CFG_NEO, 50 * units.kg, 8.45, 4, wheel_diameter=15 * units.cm, vintercept=0 * units.volt
+    )
+    newtons = 4 * MOTOR_CFG_NEO.stallTorque.m_as("N_m") * 8.45 / 0.075
+    model.calculate(1, -1, 1e-4)
+    assert model.l_velocity * 0.3048 / 1e-4 == pytest.approx(newtons / 50, rel=0.001)
+
+
 def test_what_is_no_motor_is_told() -> None:
     with pytest.raises(ParameterError, match="motor_config"):
         TankModel.theory("CIM", MASS, 10.71)  # type: ignore[arg-type]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
+import warnings
 from math import cos, sin
 from typing import TYPE_CHECKING
 
@@ -127,7 +128,8 @@ class TankModel:
             kv = nominalVoltage / velocity_max
             ka = nominalVoltage / acceleration_max
 
-        :param motor_config: specification of the motors
+        :param motor_config: specification of the motors; a free speed in radians, such as one in pint's `rpm`, is taken
+            for turns, with a warning
         :param robot_mass: mass of the robot
         :param gearing: gear ratio: for 10.74:1, 10.74
         :param nmotors: number of drive motors. With all of them, both sides together, the model accelerates as the
@@ -143,6 +145,7 @@ class TankModel:
         """
         volts = nominal_volts(motor_config)
         free = positive(magnitude(motor_config.freeSpeed, "1 / second", "freeSpeed"), "freeSpeed")
+        _warn_of_radians(motor_config.freeSpeed)
         stall = positive(
             magnitude(motor_config.stallTorque, "pound * foot ** 2 / second ** 2", "stallTorque"), "stallTorque"
         )
@@ -343,3 +346,13 @@ class TankModel:
             MOST_BEND_SQUARED if max(l_passed, r_passed) <= MOST_TIME_CONSTANTS else -1.0,
         )
         self._tm_diff = tm_diff
+
+
+def _warn_of_radians(free_speed: Quantity) -> None:
+    """Warn of a free speed that counts radians: it is taken for turns, as in 2019."""
+    if "radian" in str(free_speed.to_root_units().units):
+        warnings.warn(
+            f"freeSpeed = {free_speed} counts radians, as all of pint's units of rotation do, but is taken for turns: "
+            "the robot is 6.28 times as fast. Use units.cpm, counts per minute.",
+            stacklevel=3,
+        )
