@@ -177,6 +177,10 @@ def test_the_values_cannot_be_changed(load: Load) -> None:
         ),
         ('{\n"PyFRC": {}}', "2: unknown key 'PyFRC'\n  did you mean 'pyfrc'?"),
         (
+            '{\n"robot": {"w": 2}}',
+            "2: 'robot' has no effect outside of 'pyfrc'\n  Write \"pyfrc\": {\"robot\": ...}.",
+        ),
+        (
             '{"pyfrc": {"field": {"season": 2018,\n"w": 30}}}',
             "2: pyfrc.field.w = 30: ignored, since field.season is 2018",
         ),

@@ -381,6 +381,12 @@ NEVER_RUNS = """
     def test_with_a_wrong_run(control, robot):
         control.run_test(5)
 
+    def test_with_a_wrong_key(control, robot, hal_data):
+        hal_data["pmw"]
+
+    def test_with_a_misspelled_method(control, robot):
+        control.set_autonomus()
+
     def test_of_arithmetic():
         assert 1 + 1 == 3
 """
@@ -391,7 +397,7 @@ def test_a_failure_of_a_test_that_never_ran_the_robot_says_so(make_project: Make
     project = make_project({"robot.py": ROBOT, "tests/test_a.py": NEVER_RUNS, "tests/test_b.py": ready_made})
     blocks = project.run("test").blocks()
     said = {name for name, text in blocks.items() if "The robot was never run in this test" in text}
-    assert len(blocks) == 6
+    assert len(blocks) == 8
     assert said == {"test_without_a_run", "test_with_hal_data_only"}
 
 

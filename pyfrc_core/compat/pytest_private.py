@@ -166,7 +166,9 @@ def put_into_traceback(report: pytest.TestReport, text: str, only: bool) -> bool
         longrepr.chain = longrepr.chain[-1:]
     traceback = longrepr.chain[0][0]  # what is shown first
     traceback.reprentries = [entry] if only else [entry, *traceback.reprentries]
-    traceback.extraline = None if only else traceback.extraline
+    # The advice to use --full-trace, of a traceback in which nothing is the user's: the text has the user's line.
+    if only or "--full-trace" in (traceback.extraline or ""):
+        traceback.extraline = None
     for _, crash, _ in longrepr.chain[-1:]:
         if crash is not None:
             crash.message = text.splitlines()[0]

@@ -144,6 +144,13 @@ def _find_warnings(given: SimConfig, text: JsonText, directory: File) -> Iterato
     for path, line in text.repeated_keys():
         if path[0] == "pyfrc":  # all else is other tools'
             yield path, f"{dotted(path)} stands here again, and replaces what line {line} says", None
+    for key in text.value:
+        if key in SimConfig.model_fields:
+            yield (
+                (key,),
+                f"{dotted((key,))!r} has no effect outside of 'pyfrc'",
+                f'Write "pyfrc": {{"{key}": ...}}.',
+            )
     if "pyfrc" not in text.value:
         for key in text.value:
             if key.casefold() == "pyfrc" or nearest(key[:50], ["pyfrc"]).startswith("did you mean"):

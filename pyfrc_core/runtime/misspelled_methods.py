@@ -1,8 +1,8 @@
-"""Find methods that WPILib never calls because of a misspelled name, such as ``teleopPeriodc``.
+"""Find methods that WPILib never calls because of a misspelled name, such as ``teleopPeriodc``, or wrong indentation.
 
 WPILib calls the base class's empty method instead, so the robot silently does nothing. A method is reported only if its
 name resembles an overridable method of the base class that the class does not override, and if nothing in the project
-refers to it.
+refers to it; a function inside another method, only if it has such a name and a parameter ``self``.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -42,26 +42,16 @@ _SYNONYMS = (
 
 @dataclass(frozen=True)
 class MisspelledMethod:
-    """A method that WPILib never calls, and the name that was meant.
+    """A method that WPILib never calls.
 
     :param where: ``robot.py:12``
+    :param text: the problem in one sentence, without its place
+    :param remedy: the remedy in one sentence
     """
 
     where: str
-    class_name: str
-    name: str
-    meant: str
-
-    @property
-    def text(self) -> str:
-        """The problem in one sentence, without its place."""
-        season = " (snake_case names are those of WPILib 2027)" if "_" in self.name.strip("_") else ""
-        return f"WPILib never calls {self.class_name}.{self.name}: did you mean {self.meant}?{season}"
-
-    @property
-    def remedy(self) -> str:
-        """The remedy in one sentence."""
-        return f"Rename it to {self.meant}."
+    text: str
+    remedy: str
 
     def __str__(self) -> str:
         return f"{self.where}: {self.text}"
@@ -91,14 +81,37 @@ def _in_class(cls: type, project: Project) -> Iterator[MisspelledMethod]:
     own = {name for base in cls.__mro__ if base not in library and base is not object for name in vars(base)}
     missing = {name for name in known if name in _OVERRIDDEN or _MODES.fullmatch(name)} - own
     for name, method in list(vars(cls).items()):
-        if name in known or not isinstance(method, FunctionType) or name.startswith("__"):
+        if not isinstance(method, FunctionType) or not project.files.is_robot_code(method.__code__.co_filename):
+            continue
+        for code in _inside(method, missing):
+            yield MisspelledMethod(
+                _place(code, project),
+                f"WPILib never calls {code.co_name}, which is inside {cls.__name__}.{name}",
+                f"Indent it as much as {name}.",
+            )
+        if name in known or name.startswith("__"):
             continue
         meant = _nearest(name, missing)
-        if meant is None or not project.files.is_robot_code(method.__code__.co_filename):
+        if meant is not None and not _is_referred_to(name, project):
+            season = " (snake_case names are those of WPILib 2027)" if "_" in name.strip("_") else ""
+            yield MisspelledMethod(
+                _place(method.__code__, project),
+                f"WPILib never calls {cls.__name__}.{name}: did you mean {meant}?{season}",
+                f"Rename it to {meant}.",
+            )
+
+
+def _inside(method: FunctionType, missing: set[str]) -> Iterator[CodeType]:
+    """Yield the functions inside a method that were probably meant to be methods of a mode."""
+    for code in method.__code__.co_consts:
+        if not isinstance(code, CodeType) or code.co_varnames[: code.co_argcount] != ("self",):
             continue
-        if not _is_referred_to(name, project):
-            place = f"{project.files.relative(method.__code__.co_filename)}:{_line_of(method)}"
-            yield MisspelledMethod(place, cls.__name__, name, meant)
+        if code.co_name in missing and _MODES.fullmatch(code.co_name):
+            yield code
+
+
+def _place(code: CodeType, project: Project) -> str:
+    return f"{project.files.relative(code.co_filename)}:{code.co_firstlineno}"
 
 
 def _nearest(name: str, known: set[str]) -> str | None:
@@ -144,7 +157,3 @@ def _is_referred_to(name: str, project: Project) -> bool:
             if any(reference.search(line.partition("#")[0]) for line in lines):
                 return True
     return False
-
-
-def _line_of(method: FunctionType) -> int:
-    return method.__code__.co_firstlineno

@@ -308,10 +308,13 @@ _NEVER_RUN = (
 
 
 def _never_ran_the_robot(item: pytest.Item, failure: pytest.ExceptionInfo[BaseException]) -> bool:
-    """Return whether a test with a robot failed before it ran the robot, and not in a wrong call of the controller."""
+    """Return whether a test with a robot failed before it ran the robot, for no other reason that is known."""
     run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
     if not isinstance(run, RobotRun) or run.started:
         return False
+    error = failure.value
+    if isinstance(error, PyfrcError) or isinstance(getattr(error, "obj", None), controller.TestController):
+        return False  # a wrong key of `hal_data`, a misspelled method of `control`
     if getattr(getattr(item, "function", None), "__module__", "").startswith(READY_MADE_TESTS):
         return False  # that of docstrings looks at the robot's code only
     return all(str(entry.path) != controller.__file__ for entry in failure.traceback)

@@ -150,6 +150,30 @@ def test_methods_whose_names_are_misspelled(import_text: Import, files: RobotFil
     assert found[0].remedy == "Rename it to teleopPeriodic."
 
 
+def test_a_method_of_a_mode_inside_another_method(import_text: Import, files: RobotFiles) -> None:
+    import_text(
+        """
+        class Robot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.count = 0
+                def teleopPeriodic(self):
+                    self.count += 1
+                def robotPeriodic(self):
+                    self.count += 1
+                def autonomousPeriodic():
+                    return self.count
+                def helper(self):
+                    return self.count
+            def robotPeriodic(self):
+                self.count += 1
+        """,
+        wpilib=wpilib,
+    )
+    (found,) = find_misspelled_methods(SimpleNamespace(files=files))  # type: ignore[arg-type]
+    assert str(found) == "robot.py:4: WPILib never calls teleopPeriodic, which is inside Robot.robotInit"
+    assert found.remedy == "Indent it as much as robotInit."
+
+
 # -- a loop that waits -------------------------------------------------------------------------------------------------
 
 
