@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import pkgutil
 import re
 import sys
 from pathlib import Path
@@ -10,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 from ..encoding import find_wrong_encoding
-from ..errors import ProjectError, RobotCodeError, text_of
+from ..errors import ProjectError, RobotCodeError, nearest, text_of
 from ..processes.crash_report import reported_exit
 from ..project import Project
 from ..project.hidden_libraries import LIBRARIES, find_hidden_by_any_name
@@ -80,8 +81,9 @@ def _import_error(project: Project, file: Path, error: BaseException) -> RobotCo
     if isinstance(error, SystemExit):
         remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
     elif isinstance(error, ModuleNotFoundError):
-        remedy += " Is the name right, and its package installed?"
-        if (project.root / "requirements.txt").is_file():
+        near = _module_beside(error.name or "")
+        remedy += f" {near}" if near else " Is the name right, and its package installed?"
+        if not near and (project.root / "requirements.txt").is_file():
             remedy += " Your project's packages: python -m pip install -r requirements.txt"
     elif isinstance(error, NameError) and error.name in {*LIBRARIES, *sys.stdlib_module_names}:
         remedy += f" Is this line missing at the top: import {error.name}"
@@ -89,6 +91,16 @@ def _import_error(project: Project, file: Path, error: BaseException) -> RobotCo
         for hidden in find_hidden_by_any_name(project.root, project.main_file):
             remedy += f" {hidden.text}. {hidden.remedy}"
     return RobotCodeError(text_of(error), where=place, remedy=remedy)
+
+
+def _module_beside(name: str) -> str:
+    """Return the module that was probably meant, if the package of a missing module exists; else an empty text."""
+    package, _, last = name.rpartition(".")
+    directories = getattr(sys.modules.get(package), "__path__", None)
+    if directories is None:
+        return ""
+    known = [each.name for each in pkgutil.iter_modules(directories)]
+    return f"In {package}: {nearest(last, known)}"
 
 
 def _refuse_wrong_encoding(project: Project, file: Path, error: Exception) -> None:
