@@ -931,6 +931,41 @@ def test_a_process_that_the_robot_forks_lives_in_real_time(make_project) -> None
     )
 
 
+@pytest.mark.skipif(not FORK_IS_SAFE, reason="processes are not forked here")
+@pytest.mark.parametrize(
+    ("end", "status", "said"),
+    [
+        ("sys.exit(3)", 3, ""),
+        ("raise ValueError('in the other')", 1, "ValueError: in the other"),
+        ("return", 1, "a process that robot code has forked goes on as the robot"),
+    ],
+)
+def test_a_forked_process_ends_where_it_leaves_the_robots_code(make_project, end: str, status: int, said: str) -> None:
+    project = make_project(
+        {
+            "robot.py": f"""
+            import os, sys
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    process = os.fork()
+                    if process == 0:
+                        {end}
+                    self.status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+            """,
+            "tests/test_it.py": f"""
+            def test_it(control, robot):
+                control.run_test(lambda tm: tm < 1)
+                assert robot.status == {status}
+            """,
+        }
+    )
+    result = project.run("test", "--", "-s")
+    assert result.code == 0, result.output
+    assert said in result.output
+
+
 def test_fuzzing_finds_what_only_two_buttons_at_once_do_and_repeats_it(make_project) -> None:
     project = make_project(
         {

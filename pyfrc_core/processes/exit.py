@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
@@ -36,6 +36,40 @@ def exit_now(status: int) -> NoReturn:
             call()
     finally:
         _exit(status)
+
+
+@contextmanager
+def in_this_process() -> Iterator[None]:
+    """End a process that robot code forks in this context where it would leave it: the rest is its parent's work.
+
+    It ends as Python does: with the status of `SystemExit`, or with the traceback of another exception.
+    """
+    __tracebackhide__ = True
+    here, error = os.getpid(), None
+    try:
+        yield
+    except BaseException as raised:
+        error = raised
+        raise
+    finally:
+        if os.getpid() != here:
+            _end_forked(error)
+
+
+def _end_forked(error: BaseException | None) -> NoReturn:
+    import traceback
+
+    status = 1
+    if isinstance(error, SystemExit) and not isinstance(error.code, str):
+        status = error.code or 0
+    elif error is not None:
+        traceback.print_exception(error)
+    else:
+        print(
+            "error: a process that robot code has forked goes on as the robot; end it with os._exit()", file=sys.stderr
+        )
+    flush_output()
+    exit_now(status)
 
 
 def prepare_sudden_exit() -> None:

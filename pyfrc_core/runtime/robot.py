@@ -22,6 +22,7 @@ from ..compat.wpilib_threads import end_watchdog_thread
 from ..hal import HalData, devices_exist, modes, timing
 from ..hal.ds_connection import DriverStationConnection
 from ..hal.output_gate import OutputGate
+from ..processes.exit import in_this_process
 from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .construction import missing_super_init, without_first_alarm
@@ -381,7 +382,8 @@ class RobotRun:
         if self.recorder is not None:
             self.recorder.end_outside()
         try:
-            yield
+            with in_this_process():
+                yield
         except TestEnded:
             if self.threads.failure is None:
                 raise
