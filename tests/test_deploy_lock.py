@@ -55,6 +55,7 @@ def test_an_undeploy_holds_the_lock_until_everything_is_removed_and_limits_no_si
 ) -> None:
     there = RobotPaths(str(robot.root))
     (there.releases / "1").mkdir(parents=True)
+    (there.releases / "1.json").write_text("{}")
     there.code.symlink_to(".pyfrc/releases/1")
     held, remove = {}, serve.remove
 
@@ -71,6 +72,6 @@ def test_an_undeploy_holds_the_lock_until_everything_is_removed_and_limits_no_si
     responses.seek(0)
     wire.read_frame(responses.read)  # the facts
     assert wire.parse_message(*wire.read_frame(responses.read)) == {"done": {"removed": True}}
-    assert {there.code, there.releases, there.lock} <= held.keys()
+    assert {there.code, there.releases / "1.json", there.lock} <= held.keys()
     assert all(held.values())
     assert not there.own.exists()

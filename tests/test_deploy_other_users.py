@@ -67,6 +67,69 @@ def test_files_without_permission_do_not_prevent_a_deploy(roborio: Roborio, tmp_
     assert len(list((roborio.home / ".pyfrc/releases").glob("*.json"))) == 3
 
 
+def undeploy(roborio: Roborio) -> bool:
+    with SshConnection(roborio.host, roborio.port, "lvuser") as connection:
+        robot = AgentClient.start(connection)
+        try:
+            return robot.undeploy()
+        finally:
+            robot.close()
+            roborio.wait_for_end_of_deploy()
+
+
+def test_a_read_only_directory_of_the_program_is_removed(roborio: Roborio, tmp_path: Path) -> None:
+    for number in range(1, 6):
+        deploy(roborio, tmp_path, number)
+        assert roborio.run("mkdir", "-p", "/home/lvuser/py/photos/old", user="lvuser").returncode == 0
+        roborio.run("touch", "/home/lvuser/py/photos/old/a.jpg", user="lvuser")
+        roborio.run("chmod", "-R", "a-w", "/home/lvuser/py/photos", user="lvuser")
+        # The trash of an earlier deploy is gone as well.
+        assert sorted(each.name for each in (roborio.home / ".pyfrc").iterdir()) == ["agent", "lock", "releases"]
+    roborio.run("chmod", "555", "/home/lvuser/.pyfrc/releases/5", user="lvuser")
+    assert undeploy(roborio)
+    assert not (roborio.home / "py").exists()
+    assert not (roborio.home / ".pyfrc").exists()
+
+
+@pytest.mark.parametrize("taken", [False, True], ids=["release", "another tool's"])
+def test_files_of_other_users_prevent_neither_an_undeploy_nor_the_next_deploy(
+    roborio: Roborio, tmp_path: Path, taken: bool
+) -> None:
+    if taken:
+        roborio.put("home/lvuser/py/robot.py", "# by hand\n")
+    else:
+        deploy(roborio, tmp_path, 1)
+    roborio.put("home/lvuser/py/photos/robot.jpg", "a picture", owner=ADMIN)
+    roborio.run("chown", "admin", "/home/lvuser/py/photos")
+    for _ in range(2):
+        undeploy(roborio)
+        assert not (roborio.home / "py").exists()
+        assert (roborio.home / ".pyfrc/trash-1/photos/robot.jpg").read_text() == "a picture"
+    assert deploy(roborio, tmp_path, 2).release == 1
+    assert "NUMBER = 2" in (roborio.home / "py/robot.py").read_text()
+    roborio.run("chown", "lvuser", "/home/lvuser/.pyfrc/trash-1/photos")
+    deploy(roborio, tmp_path, 3)
+    assert not (roborio.home / ".pyfrc/trash-1").exists()
+
+
+def test_another_tools_directory_that_cannot_be_moved_stays_at_an_undeploy(roborio: Roborio) -> None:
+    roborio.put("home/lvuser/py/robot.py", "# by hand\n", owner=ADMIN)
+    roborio.put("home/lvuser/robotCommand", "python3 /home/lvuser/py/robot.py\n")
+    roborio.run("chown", "-R", "admin", "/home/lvuser/py")
+    with pytest.raises(RefusedError, match="/home/lvuser/py belongs to another user of the robot"):
+        undeploy(roborio)
+    assert (roborio.home / "robotCommand").exists()
+
+
+def test_special_files_are_not_carried_over(roborio: Roborio, tmp_path: Path) -> None:
+    deploy(roborio, tmp_path, 1)
+    roborio.run("mkfifo", "-m", "600", "/home/lvuser/py/pipe")
+    roborio.put("home/lvuser/py/log.txt", "a log")
+    assert deploy(roborio, tmp_path, 2).skipped == ("pipe",)
+    assert (roborio.home / "py/log.txt").read_text() == "a log"
+    assert deploy(roborio, tmp_path, 3).skipped == ()
+
+
 def test_a_flag_for_debugging_that_another_user_has_set(roborio: Roborio, tmp_path: Path) -> None:
     roborio.run("touch", "/tmp/frcdebug")
     deploy(roborio, tmp_path, 1, start=True)

@@ -61,6 +61,7 @@ _MODULES = (
     "virtual",
     "inventory",
     "activity",
+    "carrying",
     "releases",
     "compiling",
     "content_index",

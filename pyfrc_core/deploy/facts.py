@@ -188,6 +188,7 @@ class Deployed:
     :param unchanged:  whether the robot already had the same files
     :param files_sent: the number of files whose contents were sent
     :param bytes_sent: the size of these contents before compression
+    :param skipped:    files beside the old program that were not carried over: pipes, sockets, devices
     """
 
     release: int | None
@@ -197,6 +198,7 @@ class Deployed:
     unchanged: bool
     files_sent: int
     bytes_sent: int
+    skipped: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, fields: Fields) -> Deployed:
@@ -209,6 +211,7 @@ class Deployed:
             unchanged=fields.flag("unchanged"),
             files_sent=fields.count("files"),
             bytes_sent=fields.count("bytes"),
+            skipped=fields.texts("skipped") if "skipped" in fields else (),
         )
 
 

@@ -225,6 +225,8 @@ def _upload(
             phase.detail += f"; release {deployed.release}"
     if deployed.taken is not None:
         talk.progress.note(f"  the program of another tool is kept as release {deployed.taken}")
+    if deployed.skipped:
+        talk.progress.note(f"  not carried over (pipes, sockets, devices): {', '.join(map(ascii, deployed.skipped))}")
     return deployed
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,7 @@ def test_the_first_deploy(robot: AgentDisk) -> None:
             "unchanged": False,
             "files": 3,
             "bytes": 25,
+            "skipped": [],
             "fallback": None,
         }
     }
@@ -265,6 +267,8 @@ def test_errors_of_the_disk_and_of_the_agent(robot: AgentDisk, monkeypatch: pyte
     mode = failing(PermissionError(13, "Permission denied", "/home/lvuser/py"))
     assert (mode["error"], mode["message"]) == ("disk", "/home/lvuser/py: Permission denied")
     assert failing(OSError(5, "Input/output error"))["message"] == "the robot: Input/output error"
+    assert failing(shutil.SpecialFileError("`x` is a named pipe"))["message"] == "the robot: `x` is a named pipe"
+    assert failing(OSError())["message"] == "the robot: OSError"
     bug = failing(KeyError("x"))
     assert (bug["error"], bug["message"]) == ("bug", "the agent on the robot has failed")
     assert "KeyError: 'x'" in str(bug["traceback"])
@@ -527,16 +531,65 @@ def test_in_place_nothing_is_deleted_for_a_file_of_another_kind(robot: AgentDisk
 def test_the_debris_of_a_deploy_that_was_cut_is_cleared_up(robot: AgentDisk) -> None:
     robot.deploy(ONE, *ONE.values())
     own = robot.places.own
-    for debris in ("incoming/robot.py", "trash-1/robot.py", "releases/7/robot.py", "something"):
+    for debris in ("incoming/robot.py", "trash-1/robot.py", "carried", "agent-7", "releases/.1.json.new"):
         (own / debris).parent.mkdir(parents=True, exist_ok=True)
         (own / debris).write_text("")
     (own / "releases/8.json").write_text("{}")
+    (own / "releases/9").symlink_to("1")
+    (own / "py").symlink_to("1")
     (robot.home / ".robotCommand.new").write_text("half of it")
     *_, done = robot.deploy(TWO, TWO["robot.py"])
     assert done["done"]["release"] == 2
     assert sorted(each.name for each in own.iterdir()) == ["lock", "releases"]
     assert sorted(each.name for each in (own / "releases").iterdir()) == ["1", "1.json", "2", "2.json"]
     assert robot.read(".robotCommand.new") is None
+
+
+def test_what_the_program_writes_above_its_directory_stays(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`..` of a release is a directory of pyfrc's."""
+    monkeypatch.setattr(RoboRio, "stop", lambda host, start: None)
+    deployed_twice(robot)
+    written = (
+        "releases/match.txt",
+        "releases/logs/1.txt",
+        "releases/2026/log.txt",
+        "releases/a.json",
+        "trash-can",
+        "x",
+    )
+    for name in written:
+        (robot.places.own / name).parent.mkdir(exist_ok=True)
+        (robot.places.own / name).write_text(name)
+    robot.deploy(ONE)
+    robot.ask({"op": "rollback"})
+    assert robot.ask({"op": "undeploy"}) == [{"done": {"removed": True}}]
+    assert robot.tree(".pyfrc") == sorted(written)
+    *_, done = robot.deploy(ONE, *ONE.values())
+    assert done["done"]["release"] == 2027  # no name is used twice
+    assert robot.startable() == "py/robot.py: # one"
+
+
+def test_a_deploy_that_fails_leaves_no_release(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot.deploy(ONE, *ONE.values())
+
+    def fail(self: Releases, *_: object) -> None:
+        raise OSError(5, "Input/output error", "/home/lvuser/py")
+
+    for name in ("carry_over", "switch"):
+        monkeypatch.setattr(Releases, name, fail)
+        *_, last = robot.deploy(TWO, TWO["robot.py"])
+        assert last["message"] == "/home/lvuser/py: Input/output error"
+        assert robot.startable() == "py/robot.py: # one"
+        assert {name.split("/")[0] for name in robot.tree()} == {"1", "1.json"}
+        monkeypatch.undo()
+
+
+def test_a_record_that_cannot_be_read(robot: AgentDisk) -> None:
+    deployed_twice(robot)
+    (robot.places.releases / "1.json").write_text("")
+    (answer,) = robot.ask({"op": "rollback", "release": 1})
+    assert (answer["error"], answer["message"]) == ("release", "the record of release 1 cannot be read")
+    assert robot.startable() == "py/robot.py: # two"
 
 
 def test_a_deploy_that_was_cut_past_its_moment_is_finished(robot: AgentDisk) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import stat
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
@@ -65,14 +67,18 @@ def files_below(directory: Path) -> Iterator[tuple[str, os.DirEntry[str]]]:
 
 
 def remove(path: Path) -> None:
-    """Remove a file or a directory tree, if it exists."""
-    if path.is_dir() and linked_directory(path) is None:
-        import shutil
+    """Remove a file or a directory tree, if it exists.
 
-        shutil.rmtree(path)
-    else:
+    :raises OSError: with the full path of an entry that cannot be removed
+    """
+    if _is_directory(path):
+        remove_if_possible(path)
+    while os.path.lexists(path):
+        inside = path
+        while _is_directory(inside) and (entries := sorted(inside.iterdir())):
+            inside = entries[0]
         with suppress(FileNotFoundError):
-            path.unlink()
+            inside.rmdir() if _is_directory(inside) else inside.unlink()
 
 
 def remove_if_possible(path: Path) -> None:
@@ -80,15 +86,42 @@ def remove_if_possible(path: Path) -> None:
     import shutil
 
     shutil.rmtree(path, ignore_errors=True)
+    if path.exists():
+        allow_changes(path)
+        for above, names, _ in os.walk(path):
+            for name in names:
+                allow_changes(Path(above, name))
+        shutil.rmtree(path, ignore_errors=True)
+
+
+def allow_changes(path: Path) -> None:
+    """Let this user change an own directory, which the program may have made read-only."""
+    if _is_directory(path):
+        with suppress(OSError):  # it belongs to another user
+            path.chmod(0o755)
+
+
+def _is_directory(path: Path) -> bool:
+    return path.is_dir() and linked_directory(path) is None
+
+
+class SpecialFileError(OSError):
+    """A file cannot be copied, since it is a pipe, a socket or a device."""
 
 
 def link_or_copy(source: str, target: str) -> None:
-    """Create `target` as a hard link to `source`, or as a copy if hard links are not supported."""
+    """Create `target` as a hard link to `source`, or as a copy if hard links are not supported.
+
+    :raises SpecialFileError: if it can be neither linked nor copied
+    """
     try:
         link_file(source, target)
     except FileNotFoundError:
         raise
-    except OSError:
+    except OSError as error:
+        mode = os.lstat(source).st_mode
+        if not (stat.S_ISREG(mode) or stat.S_ISLNK(mode)):
+            raise SpecialFileError(errno.EINVAL, "it is a pipe, a socket or a device", source) from error
         import shutil
 
         shutil.copy2(source, target, follow_symlinks=False)

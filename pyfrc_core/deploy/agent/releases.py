@@ -15,18 +15,18 @@ from pathlib import Path
 from typing import Any
 
 from .activity import Activity
-from .disk import everything_below, link_or_copy, remove, remove_if_possible, text_of, write_whole
+from .carrying import Carried, carry_over
+from .disk import allow_changes, remove, remove_if_possible, text_of, write_whole
 from .robot_paths import CODE, COMMAND, DEBUG_COMMAND, HOME, Refusal, RobotPaths
 from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link, replace_link
 
 Record = dict[str, Any]
 
 _KEPT = 3
-_TRASH = "trash-"
+_TRASH, _CARRIED = "trash-", "carried"
+_RECORD, _UNFINISHED_RECORD = re.compile(r"\d+\.json"), re.compile(r"\.\d+\.json\.new")
+_KEPT_AGENT = re.compile(r"agent-\d+")  # see `kept`
 _DIRECT = HOME + "/.pyfrc/releases"
-#: The longest file name to which a suffix is added, in bytes; longer names are cut to this number of characters.
-_MAX_NAME_BYTES, _CUT_LENGTH = 220, 50
-_OTHER_TOOLS_CODE = (".py", ".pyi", ".pyc")
 
 
 def start_commands(main: str) -> dict[str, str | None]:
@@ -77,7 +77,7 @@ class Releases:
         """Return the numbers of the complete releases, oldest first."""
         if not self.paths.releases.is_dir():
             return []
-        names = [each.name for each in self.paths.releases.iterdir() if each.name.isdigit()]
+        names = [each.name for each in self.paths.releases.iterdir() if each.name.isdecimal()]
         return sorted(int(name) for name in names if self._is_complete(int(name)))
 
     def _is_complete(self, number: int) -> bool:
@@ -87,7 +87,7 @@ class Releases:
     def next_number(self) -> int:
         """Return an unused number, higher than those of all known releases."""
         names = [each.name.split(".")[0] for each in self.paths.releases.glob("*")]
-        return max((int(name) for name in names if name.isdigit()), default=0) + 1
+        return max((int(name) for name in names if name.isdecimal()), default=0) + 1
 
     def _record_file(self, number: int) -> Path:
         return self.paths.releases / f"{number}.json"
@@ -150,7 +150,7 @@ class Releases:
     def current(self) -> int | None:
         """Return the release that ``~/py`` links to, or None: another tool's program, or no program."""
         release = linked_directory(self.paths.code)
-        if release is not None and release.parent == self.paths.releases and release.name.isdigit():
+        if release is not None and release.parent == self.paths.releases and release.name.isdecimal():
             return int(release.name) if release.is_dir() else None
         return None
 
@@ -164,7 +164,7 @@ class Releases:
 
     def manifest_paths(self, directory: Path) -> set[str] | None:
         """Return the deployed files of a release, or None if it is not a release. The program wrote all others."""
-        if directory.parent == self.paths.releases.resolve() and directory.name.isdigit():
+        if directory.parent == self.paths.releases.resolve() and directory.name.isdecimal():
             record = self.record(int(directory.name))
             if "files" in record:
                 return {*record["files"], "deploy.json"}
@@ -219,17 +219,25 @@ class Releases:
             else:
                 remove(self.paths.debug_flag)
 
-    def adopt_directory(self, number: int) -> None:
-        """Write the record for another tool's directory, which becomes a release.
+    def require_movable_code(self) -> None:
+        """Check that another tool's directory can be moved.
 
-        :raises Refusal: if the directory cannot be moved
+        :raises Refusal: if it belongs to another user
         """
+        allow_changes(self.paths.code)
         if not os.access(self.paths.code, os.W_OK):
             raise Refusal(
                 "disk",
                 f"{CODE} belongs to another user of the robot, and cannot be moved",
                 f"Give it to lvuser, as admin on the robot: chown -R lvuser:ni {CODE}",
             )
+
+    def adopt_directory(self, number: int) -> None:
+        """Write the record for another tool's directory, which becomes a release.
+
+        :raises Refusal: if the directory cannot be moved
+        """
+        self.require_movable_code()
         commands = {name: text_of(self.paths.home / name) for name in (COMMAND, DEBUG_COMMAND)}
         deployed = text_of(self.paths.code / "deploy.json")
         try:
@@ -251,52 +259,89 @@ class Releases:
             if self.is_other_tools():
                 taken = self.next_number()
                 self.adopt_directory(taken)
-            self.switch(number, self.record(number)["commands"], taken)
-        for each in self.paths.own.iterdir():
-            if each.name.startswith(_TRASH):
-                self.remove(each, if_possible=True)
-            elif each not in (self.paths.lock, self.paths.releases, self.paths.agent):
-                self.remove(each)
-        for name in (COMMAND, DEBUG_COMMAND):
-            remove(self.paths.home / f".{name}.new")
-        if self.paths.releases.is_dir():
-            for each in self.paths.releases.iterdir():
-                number_text = each.name.split(".json")[0]
-                if (
-                    not (number_text.isdigit() and self._is_complete(int(number_text)))
-                    and each.name not in self._startable()
-                ):
-                    self.remove(each)
+            self.switch(number, self.record(number).get("commands") or {}, taken)
+        self._remove_remains()
         current = self.current()
         if current is not None:
             self.carry_late_writes(current)
 
-    def prune(self, kept: int = _KEPT) -> None:
+    def _remove_remains(self) -> None:
+        """Remove what interrupted deploys have left, and nothing else: a program may write to ``../`` of its code."""
+        for name in (COMMAND, DEBUG_COMMAND):
+            remove(self.paths.home / f".{name}.new")
+        for each in self.paths.own.iterdir():
+            if re.fullmatch(rf"{_TRASH}\d+", each.name):
+                self.remove(each, if_possible=True)
+            elif each.name in (self.paths.incoming.name, "py", _CARRIED) or _KEPT_AGENT.fullmatch(each.name):
+                self.remove(each)
+        startable = self._startable()
+        for each in self.paths.releases.iterdir() if self.paths.releases.is_dir() else ():
+            if _UNFINISHED_RECORD.fullmatch(each.name):
+                self.remove(each)
+            elif _RECORD.fullmatch(each.name):
+                if not self._is_complete(int(each.stem)):
+                    self.remove(each)
+            elif each.name.isdecimal() and each.name not in startable and linked_directory(each) is not None:
+                self.remove(each)  # an unfinished exchange; a directory gets such a name only after its record
+
+    def remove_all(self) -> None:
+        """Remove the program and all releases. Files of other users stay, and are no obstacle to the next deploy."""
+        if self.is_other_tools():
+            self._discard(self.paths.code)
+        else:
+            remove(self.paths.code)
+        for number in self.numbers():
+            self.discard(number)
+        self._remove_remains()
+        remove(self.paths.agent)
+        with suppress(OSError):  # the program has written to it
+            self.paths.releases.rmdir()
+
+    def discard(self, number: int) -> None:
+        """Remove a release, except for files that belong to other users of the robot."""
+        self._discard(self.directory(number), self._record_file(number))
+
+    def _discard(self, directory: Path, record: Path | None = None) -> None:
+        trash = self._free_name(_TRASH)
+        allow_changes(directory)
+        directory.rename(trash)
+        if record is not None:
+            remove(record)
+        self.remove(trash, if_possible=True)
+
+    def prune(self, kept: int = _KEPT, needed: int | None = None) -> None:
         """Remove old releases.
 
         Releases that the robot may start, and the newest one that was confirmed to run, are always kept.
 
         :param kept: how many releases to keep
+        :param needed: another release that is kept, if any
         """
         numbers = self.numbers()
         keep = {int(each) for each in self._startable()}
+        if needed is not None:
+            keep.add(needed)
         keep.update([each for each in numbers if self.ran(each)][-1:])
         current = self.current()
         if kept > 1 and current is not None and self.record(current).get("from") in numbers:
             keep.add(self.record(current)["from"])
+        if current is not None and "carried" in self.record(current):
+            keep.add(self.record(current)["carried"]["from"])  # it may have files that are not carried over yet
         for number in reversed(numbers):
             if len(keep) < kept:
                 keep.add(number)
         for number in numbers:
             if number not in keep:
-                trash = self._free_name(_TRASH)
-                self.directory(number).rename(trash)
-                remove(self._record_file(number))
-                self.remove(trash, if_possible=True)
+                with suppress(PermissionError):  # another user's
+                    self.discard(number)
 
     def _free_name(self, prefix: str) -> Path:
         names = (self.paths.own / f"{prefix}{number}" for number in count(1))
         return next(name for name in names if not name.exists())
+
+    def may_start(self, number: int) -> bool:
+        """Return whether the robot may start this release in its current state."""
+        return str(number) in self._startable()
 
     def _startable(self) -> set[str]:
         """Return the numbers of the releases that the robot may start in its current state."""
@@ -305,57 +350,15 @@ class Releases:
         current = self.current()
         return kept if current is None else {*kept, str(current)}
 
-    def carry_over(self, old: Path, new: Path, before: dict[str, int] | None) -> dict[str, int]:
-        """Link files that the program wrote in the release `old` into the release `new`.
+    def carry_over(
+        self, old: Path, new: Path, before: dict[str, int] | None, manifest: set[str] | None = None
+    ) -> Carried:
+        """Carry files that the program wrote in one release over into another, see `carrying.carry_over`.
 
-        An existing file in `new` that the program wrote under the same name is kept under another name.
-
-        :param before: the result of the first call for these releases; then only files that the old program has written
-            since are linked, and files that the new program has changed are kept
-        :return: the paths of files that both releases share, with their inode numbers
+        :param manifest: the deployed files of `new`, if it is not a release yet
         """
-        old_manifest, new_manifest = self.manifest_paths(old), self.manifest_paths(new) or set()
-        # Directories that contain only code belong to the manifest.
-        code_in: set[str] = set()
-        for name in old_manifest or ():
-            above = name.rpartition("/")[0]
-            while above and above not in code_in:
-                code_in.add(above)
-                above = above.rpartition("/")[0]
-        carried: dict[str, int] = {}
-        between = self.paths.own / "carried"
-        self.activity.begin("carry")
-        for name, entry in everything_below(old):
-            self.activity.step()
-            if old_manifest is None:
-                is_code = name.endswith(_OTHER_TOOLS_CODE) or name == "deploy.json"
-            else:
-                is_code = name in old_manifest
-            if is_code or name in new_manifest:
-                continue
-            target = new / name
-            try:
-                if entry.is_dir(follow_symlinks=False):
-                    if before is None and old_manifest is not None and name not in code_in:
-                        target.mkdir(parents=True, exist_ok=True)
-                    continue
-                inode = os.lstat(entry.path).st_ino
-                there = target.lstat().st_ino if target.exists() or target.is_symlink() else None
-                if there == inode:
-                    carried[name] = inode
-                elif before is None or before.get(name) == there:
-                    target.parent.mkdir(parents=True, exist_ok=True)
-                    if before is None and there is not None:
-                        _keep_beside(target, Path(entry.path), new.name)
-                    remove(between)
-                    link_or_copy(entry.path, str(between))
-                    between.replace(target)
-                    carried[name] = inode
-            except (FileNotFoundError, FileExistsError, NotADirectoryError, IsADirectoryError, PermissionError):
-                # Removed by the program; or a file in one release and a directory in the other; or not readable
-                # for this user and therefore for the program.
-                continue
-        return carried
+        manifests = self.manifest_paths(old), self.manifest_paths(new) or set() if manifest is None else manifest
+        return carry_over(old, new, manifests, before, self.paths.own / _CARRIED, self.activity)
 
     def carry_late_writes(self, number: int) -> None:
         """Link files that the previous program wrote after the switch. Call this once, after its end."""
@@ -366,19 +369,3 @@ class Releases:
                 self.carry_over(previous.resolve(), self.directory(number).resolve(), record["carried"]["files"])
             del record["carried"]
             self.write_record(number, record)
-
-
-def _keep_beside(target: Path, replacement: Path, release: str) -> None:
-    """Keep a file under another name before its replacement, unless the content is the same."""
-    if target.is_dir() and not target.is_symlink():
-        return  # directories are not replaced
-    import filecmp
-
-    if not (target.is_symlink() or replacement.is_symlink()) and filecmp.cmp(target, replacement, shallow=False):
-        return
-    name = target.name if len(os.fsencode(target.name)) <= _MAX_NAME_BYTES else target.name[:_CUT_LENGTH]
-    for number in count(1):
-        beside = target.with_name(f"{name}.release-{release}" + (f"-{number}" if number > 1 else ""))
-        if not os.path.lexists(beside):
-            link_or_copy(str(target), str(beside))
-            return

@@ -127,9 +127,8 @@ class Agent:
                     free=free,
                 )
             else:
-                self._send_error(
-                    "disk", f"{error.filename or 'the robot'}: {error.strerror}", "Check its owner and permissions."
-                )
+                what = error.strerror or str(error) or type(error).__name__
+                self._send_error("disk", f"{error.filename or 'the robot'}: {what}", "Check its owner and permissions.")
         except Exception:
             import traceback
 
@@ -258,6 +257,8 @@ class Agent:
                 there = "It has no releases yet: each pyfrc deploy adds one."
             raise Refusal("release", f"{what} on the robot to go back to", there)
         directory, record = releases.directory(number).resolve(), releases.record(number)
+        if "commands" not in record:
+            raise Refusal("release", f"the record of release {number} cannot be read", "Choose another.")
         if not any(record["commands"].values()):
             raise Refusal("release", f"release {number} was left by another tool, and had no start command")
         files = record.get("files", {})
@@ -272,7 +273,7 @@ class Agent:
             releases.adopt_directory(taken)
         if code is not None and code != directory:
             carried = releases.carry_over(code, directory, None)
-            record["carried"] = {"from": current if taken is None else taken, "files": carried}
+            record["carried"] = {"from": current if taken is None else taken, "files": carried.files}
             releases.write_record(number, record)
         changed = self._changed(files, directory)
         releases.switch(number, record["commands"], taken)
@@ -291,6 +292,8 @@ class Agent:
     def _undeploy(self) -> Message:
         """Remove the start commands, so that a power cut cannot restart the program; then stop it, then remove it."""
         with self._transaction():
+            if self._releases.is_other_tools():
+                self._releases.require_movable_code()
             for name in (COMMAND, DEBUG_COMMAND):
                 remove(self._paths.home / name)
             self._releases.set_debug(False)
@@ -298,10 +301,7 @@ class Agent:
             self._activity.begin("stop")
             self._activity.wait_for(partial(self._host.stop, start=False))
             there = self._paths.code.exists() or self._paths.code.is_symlink()
-            self._releases.remove(self._paths.code)
-            for each in self._paths.own.iterdir():
-                if each != self._paths.lock:
-                    self._releases.remove(each)
+            self._releases.remove_all()
             # Last, and while it is held: computers that wait for it then create a new file.
             with suppress(OSError):  # Windows cannot remove an open file
                 remove(self._paths.lock)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from .activity import Activity
+from .carrying import Carried
 from .compiling import CompiledForms, Compiler, compile_below
 from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest, sha256_of
 from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, write_whole
@@ -243,19 +244,27 @@ class Deploy:
             "from": previous if taken is None else taken,
         }
         code = releases.code()
+        carried = Carried({}, [])
         self._wire.send(phase="switch")
+        if code is not None:
+            manifest = {*record["files"], DEPLOY_JSON}
+            carried = releases.carry_over(code, paths.incoming.resolve(), None, manifest)
+            record["carried"] = {"from": record["from"], "files": carried.files}
         releases.write_record(number, record)
         releases.flush(paths.own)
         paths.incoming.rename(releases.directory(number))
-        if code is not None:
-            carried = releases.carry_over(code, releases.directory(number).resolve(), None)
-            record["carried"] = {"from": record["from"], "files": carried}
-            releases.write_record(number, record)
-        self._switch(number, taken)
+        try:
+            self._switch(number, taken)
+        except BaseException:
+            if not releases.may_start(number):
+                with suppress(OSError):
+                    releases.discard(number)
+            raise
         if not self._restarts:
             with suppress(OSError):  # the next deploy removes the rest
                 releases.prune()
-        return {"release": number, "previous": record["from"], "taken": taken, "unchanged": False}
+        done = {"release": number, "previous": record["from"], "taken": taken, "unchanged": False}
+        return {**done, "skipped": carried.skipped}
 
     def _switch(self, number: int, taken: int | None) -> None:
         self._releases.switch(number, self._commands, taken)
