@@ -15,6 +15,7 @@ from roborio import PATIENCE, Proxy, Roborio, require_roborio
 from roborio.local import LocalRobot, project_of
 from roborio.ssh import SshConnection
 
+from pyfrc_core.deploy.agent.disk import free_bytes
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest, Watched
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError
 from pyfrc_core.deploy.manifest import Manifest
@@ -264,6 +265,35 @@ def test_old_releases_make_room(tmp_path: Path) -> None:
             assert robot.facts.current == 4
             assert len(robot.facts.releases) < 3
             assert "this is four" in started(robot).output
+
+
+@pytest.mark.parametrize("releases", [2, 3])
+def test_with_no_byte_free(releases: int, tmp_path: Path) -> None:
+    """Not even the name of the computer that holds the lock can be written."""
+    require_roborio()
+    with Roborio(disk_size="4m") as roborio:
+        disk = LocalRobot(roborio.disk)
+        programs = {}
+        for number in range(1, releases + 1):
+            new = program(tmp_path, f"number {number}", **{"data.bin": random.Random(number).randbytes(400_000)})
+            programs[number] = {entry.path: entry.file.read_bytes() for entry in new.entries}
+            with agent(roborio) as robot:
+                robot.deploy(new, DeployRequest("robot.py", {}))  # its late writes are not carried over yet
+        fill = "cat /dev/zero > /home/lvuser/logs.bin; dd if=/dev/zero bs=1 count=4096 >> /home/lvuser/logs.bin"
+        roborio.run("sh", "-c", fill, user="lvuser")
+        with agent(roborio) as robot:
+            assert free_bytes(roborio.home) == 0
+            assert robot.rollback().release.number == releases - 1
+            assert started(robot).started
+            assert disk.startable() == programs[releases - 1]
+        if releases > 2:
+            roborio.run("sh", "-c", f"{fill}.2", user="lvuser")
+            deploy(roborio, program(tmp_path, "another"))
+            assert b"this is another" in disk.startable()["robot.py"]
+        roborio.run("sh", "-c", f"{fill}.3", user="lvuser")
+        with agent(roborio) as robot:
+            assert robot.undeploy()
+        assert not (roborio.home / ".pyfrc/releases").exists()
 
 
 def test_two_at_once(roborio: Roborio, tmp_path: Path) -> None:

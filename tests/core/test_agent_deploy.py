@@ -251,6 +251,23 @@ def test_old_releases_make_room(robot: AgentDisk, monkeypatch: pytest.MonkeyPatc
     assert Releases(robot.places, None).numbers() == [2, 3]  # type: ignore[arg-type]
 
 
+def test_old_releases_make_room_for_cleaning_up(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
+    deployed_twice(robot)
+    Releases(robot.places, serve.Activity(lambda **said: None)).carry_late_writes(2)
+    recover, kept = Releases.recover, []
+
+    def recover_with_room(self: Releases) -> None:
+        kept.append(self.numbers())
+        if len(kept[-1]) > 1:
+            raise OSError(28, "No space left on device")
+        recover(self)
+
+    monkeypatch.setattr(Releases, "recover", recover_with_room)
+    *_, done = robot.deploy(ONE, ONE["robot.py"])
+    assert done["done"]["release"] == 3
+    assert kept == [[1, 2], [2]]
+
+
 def test_errors_of_the_disk_and_of_the_agent(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(error: Exception) -> dict[str, object]:
         def plan(*_: object) -> None:
@@ -295,9 +312,7 @@ def test_one_deploy_at_a_time(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch)
     *_, done = robot.deploy(ONE, *ONE.values())
     assert done["done"]["release"] == 1
     robot.places.lock.write_text("no json")
-    assert (
-        robot_paths._holder("no json") == robot_paths._holder("[]") == robot_paths._holder("{}") == "another computer"
-    )
+    assert {robot_paths._holder(text) for text in (b"no json", b"[]", b"{}")} == {"another computer"}
 
 
 # -- what a deploy would do, and what there is -----------------------------------------------------------------------

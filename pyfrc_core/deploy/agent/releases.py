@@ -368,4 +368,5 @@ class Releases:
             if previous.is_dir():
                 self.carry_over(previous.resolve(), self.directory(number).resolve(), record["carried"]["files"])
             del record["carried"]
-            self.write_record(number, record)
+            with suppress(OSError):  # on a full disk: the next call finds nothing more to link
+                self.write_record(number, record)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import os
 import time
+from contextlib import suppress
+from io import FileIO
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TextIO
+from typing import Any
 
 from .system import lock
 
@@ -63,13 +65,13 @@ class Lock:
     def __init__(self, paths: RobotPaths, who: str) -> None:
         self._file = paths.lock
         self._who = who
-        self._stream: TextIO | None = None
+        self._stream: FileIO | None = None
 
     def __enter__(self) -> None:
         give_up = time.monotonic() + _GRACE
         while True:
             self._file.parent.mkdir(parents=True, exist_ok=True)
-            stream = self._file.open("a+", encoding="utf-8")
+            stream = self._file.open("a+b", buffering=0)
             try:
                 lock(stream)
                 if self._is_current(stream):
@@ -89,10 +91,10 @@ class Lock:
             time.sleep(0.02)
         self._stream = stream
         stream.truncate(0)
-        stream.write(json.dumps({"who": self._who}))
-        stream.flush()
+        with suppress(OSError):  # on a full disk, other computers do not learn who holds the lock
+            stream.write(json.dumps({"who": self._who}).encode())
 
-    def _is_current(self, stream: TextIO) -> bool:
+    def _is_current(self, stream: FileIO) -> bool:
         """Return whether this is still the lock file, and not one that an undeploy has removed meanwhile."""
         try:
             return os.path.samestat(os.fstat(stream.fileno()), self._file.stat())
@@ -107,7 +109,7 @@ class Lock:
             self._stream.close()
 
 
-def _holder(text: str) -> str:
+def _holder(text: bytes) -> str:
     try:
         return str(json.loads(text)["who"])
     except (ValueError, KeyError, TypeError):

@@ -25,11 +25,12 @@ from .releases import Releases
 from .robot_paths import COMMAND, DEBUG_COMMAND, Lock, Refusal, RobotPaths
 from .start_monitor import ENDED, RUNNING, UNHEARD
 from .system import become, is_root, user
-from .transaction import Deploy, plan
+from .transaction import RESERVE, Deploy, plan
 from .virtual import VirtualRobotClient
 from .wire import EndedError, Message, Wire, WireError, parse_message, read_frame
 
 _USER = "lvuser"
+_NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
 #: Modules that only later requests need. They are imported after the first response, while the laptop reads it.
 _NEEDED_LATER = ("ctypes", "shutil", "socket", "subprocess", "tempfile")
 
@@ -118,7 +119,7 @@ class Agent:
         except OSError as error:
             if isinstance(error, ConnectionError):
                 raise
-            if error.errno in (errno.ENOSPC, errno.EDQUOT):
+            if error.errno in _NO_SPACE:
                 free = free_bytes(self._paths.home)
                 self._send_error(
                     "space",
@@ -197,7 +198,7 @@ class Agent:
     def _deploy(self, request: Message) -> Message:
         request.setdefault("files", self._files)
         with self._transaction(keep=not request.get("in_place")):
-            self._releases.recover()
+            self._recover()
             try:
                 done = Deploy(self._releases, self._wire, request).run()
                 self._has_run = done["release"] if done.get("has_run") else None
@@ -206,6 +207,16 @@ class Agent:
                 with suppress(ConnectionError):  # the next deploy removes the rest
                     self._releases.remove(self._paths.incoming, if_possible=True)
                 raise
+
+    def _recover(self) -> None:
+        """Clean up after an interrupted deploy. On a full disk, old releases are removed first."""
+        try:
+            self._releases.recover()
+        except OSError as error:
+            if error.errno not in _NO_SPACE:
+                raise
+            self._releases.prune(kept=1)
+            self._releases.recover()
 
     def _restart(self, prune: bool = False) -> Message:
         """Restart the program.
@@ -220,10 +231,10 @@ class Agent:
             has_run = current is not None and current == self._has_run
             self._has_run = None  # the next restart is not preceded by a comparison
             survived = self._activity.wait_for(self._program.restart, main, has_run)
-            if current is not None:
-                self._releases.carry_late_writes(current)
-            if prune:
-                with suppress(OSError):  # the next deploy removes the rest
+            with suppress(OSError):  # the next deploy does the rest
+                if current is not None:
+                    self._releases.carry_late_writes(current)
+                if prune:
                     self._releases.prune()
         return {"survived": survived}
 
@@ -242,7 +253,7 @@ class Agent:
 
     def _roll_back(self, request: Message) -> Message:
         with self._transaction(keep=True):
-            self._releases.recover()
+            self._recover()
             return self._roll_back_to(request.get("release"))
 
     def _roll_back_to(self, asked: int | None) -> Message:
@@ -267,6 +278,8 @@ class Agent:
             raise Refusal(
                 "release", f"release {number} is no longer complete: {missing[0]} is missing", "Choose another."
             )
+        if free_bytes(self._paths.home) < RESERVE:
+            releases.prune(kept=1, needed=number)
         code, taken = releases.code(), None
         if releases.is_other_tools():
             taken = releases.next_number()
@@ -274,7 +287,8 @@ class Agent:
         if code is not None and code != directory:
             carried = releases.carry_over(code, directory, None)
             record["carried"] = {"from": current if taken is None else taken, "files": carried.files}
-            releases.write_record(number, record)
+            with suppress(OSError):  # on a full disk, late writes stay in the other release
+                releases.write_record(number, record)
         changed = self._changed(files, directory)
         releases.switch(number, record["commands"], taken)
         releases.set_debug(bool(record.get("debug")))

@@ -10,8 +10,9 @@ import select
 import signal
 import sys
 import time
+from io import FileIO
 from pathlib import Path
-from typing import BinaryIO, TextIO
+from typing import IO, Any, BinaryIO
 
 #: Whether one rename can replace a link by another link.
 REPLACES_LINKS = sys.platform != "win32"
@@ -97,7 +98,7 @@ def link_file(source: str, target: str) -> None:
         os.link(source, target)
 
 
-def lock(stream: TextIO) -> None:
+def lock(stream: IO[Any] | FileIO) -> None:
     """Lock an open file. Closing it or the end of the process releases the lock.
 
     :raises OSError: if another process holds the lock

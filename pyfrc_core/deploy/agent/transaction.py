@@ -21,7 +21,7 @@ from .robot_paths import COMMAND, DEBUG_COMMAND, Refusal
 from .wire import Message, Wire
 
 #: Bytes of disk space that stay free for the program's own files after a deploy.
-_RESERVE = 256 * 1024
+RESERVE = 256 * 1024
 
 
 class ContentReader:
@@ -148,7 +148,7 @@ class Deploy:
         :return: the index of contents, which is new if releases were removed
         :raises Refusal: if there is not enough disk space
         """
-        needed = _RESERVE
+        needed = RESERVE
         for each in wanted:
             needed += 512
             if at_hand.same_file(each) is None:
