@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import io
+import os
 from pathlib import Path
 from typing import Any
 
@@ -43,13 +44,6 @@ def test_a_lock_that_is_removed_while_it_is_waited_for(robot: LocalRobot, monkey
         assert is_held(there.lock)
 
 
-class NeverWaitedFor(io.BytesIO):
-    """A laptop whose next word is not waited for with a limit."""
-
-    def fileno(self) -> int:
-        raise AssertionError("the agent would give the laptop up after 20 seconds")
-
-
 def test_an_undeploy_holds_the_lock_until_everything_is_removed_and_limits_no_silence_then(
     robot: LocalRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -65,10 +59,20 @@ def test_an_undeploy_holds_the_lock_until_everything_is_removed_and_limits_no_si
 
     for module in (serve, releases):
         monkeypatch.setattr(module, "remove", watched_remove)
+    limited: list[bool] = []
+
+    class LoggingWire(wire.Wire):
+        def receive(self) -> wire.Message:
+            limited.append(self.limits_silence)
+            return super().receive()
+
+    source, target = os.pipe()
+    os.write(target, wire.message_frame({"op": "undeploy"}))
+    os.close(target)
     responses = io.BytesIO()
-    serve.Agent(
-        wire.Wire(NeverWaitedFor(wire.message_frame({"op": "undeploy"})), responses), RoboRio(there), {"who": "alice"}
-    ).serve()
+    with io.FileIO(source, "rb") as stream:
+        serve.Agent(LoggingWire(stream, responses), RoboRio(there), {"who": "alice"}).serve()
+    assert limited == [False, False]
     responses.seek(0)
     wire.read_frame(responses.read)  # the facts
     assert wire.parse_message(*wire.read_frame(responses.read)) == {"done": {"removed": True}}

@@ -300,7 +300,7 @@ def test_a_program_that_crashes_right_after_its_start_is_never_called_running(
 @pytest.mark.parametrize("dies", [None, 6.0])
 def test_a_program_that_reports_no_start_is_judged_by_its_process(dies: float | None) -> None:
     """As `magicbot.MagicRobot`, which has a loop of its own."""
-    monitor = StartMonitor((), reports=False)
+    monitor = StartMonitor((), reports=lambda: False)
     monitor.restarted(0.0)
     now, verdict = 0.0, None
     while verdict is None:

@@ -26,7 +26,19 @@ from pyfrc_core.deploy.agent.host import RoboRio
 from pyfrc_core.deploy.agent.program import Program
 from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
 from pyfrc_core.deploy.agent.virtual import VARIABLE, VirtualRobotClient
-from pyfrc_core.deploy.agent.wire import CONTENT, MESSAGE, EndedError, Wire, WireError, frame, message_frame, read_frame
+from pyfrc_core.deploy.agent.wire import (
+    CONTENT,
+    MESSAGE,
+    EndedError,
+    OutputPipe,
+    Wire,
+    WireError,
+    frame,
+    message_frame,
+    read_frame,
+)
+from pyfrc_core.deploy.agent_stream import MAX_RESPONSE_BYTES
+from pyfrc_core.deploy.responses import parse_json
 
 # -- frames ------------------------------------------------------------------------------------------------------------
 
@@ -104,6 +116,37 @@ def test_a_wire_limits_silence() -> None:
         limited.limits_silence = True
         with pytest.raises(WireError, match=r"no data for 0\.01 s"):
             limited.receive()
+        # A laptop that holds no lock may be silent for longer, but not for ever.
+        with pytest.raises(WireError, match=r"no data for 0\.02 s"):
+            Wire(stream, io.BytesIO(), silence_limit=0.01, idle_limit=0.02).receive()
+
+
+def test_a_pipe_that_the_laptop_reads() -> None:
+    source, target = os.pipe()
+    received: list[bytes] = []
+
+    def read() -> None:
+        while chunk := os.read(source, 10_000):
+            received.append(chunk)
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    Wire(io.BytesIO(), OutputPipe(target)).send(text=os.urandom(500_000).hex())
+    os.close(target)
+    reader.join()
+    os.close(source)
+    assert len(wire.parse_message(*read_frame(io.BytesIO(b"".join(received)).read))["text"]) == 1_000_000
+
+
+def test_a_pipe_that_the_laptop_does_not_read() -> None:
+    """A suspended laptop's connection stays: the agent would hold its lock for as long as the program prints."""
+    source, target = os.pipe()
+    pipe = OutputPipe(target, limit=0.01)
+    for _ in range(2):
+        with pytest.raises(ConnectionAbortedError):
+            Wire(io.BytesIO(), pipe).send(text=os.urandom(500_000).hex())
+    os.close(source)
+    os.close(target)
 
 
 # -- signs of life -----------------------------------------------------------------------------------------------------
@@ -401,8 +444,53 @@ def test_what_reports_its_start(tmp_path: Path) -> None:
     (tmp_path / "robot.py").write_text("import wpilib\n")
     assert program._reports_start(tmp_path / "robot.py")
     assert program._reports_start(tmp_path / "none.py")
+    (tmp_path / "robot.py").write_text("import wpilib  # no longer a magicbot\n")
+    assert program._reports_start(tmp_path / "robot.py")
+    assert program._reports_start(None)
     (tmp_path / "robot.py").write_text("import magicbot\n")
     assert not program._reports_start(tmp_path / "robot.py")
+    (tmp_path / "robot.py").write_text("from bases.ours import Base\n")
+    (tmp_path / "bases").mkdir()
+    (tmp_path / "bases/ours.py").write_text("import wpilib\nfrom magicbot import MagicRobot\n")
+    assert not program._reports_start(tmp_path / "robot.py")
+
+
+def output_of(*texts: str, before: str = "") -> list[str]:
+    """What the laptop accepts of this output of a program, message by message.
+
+    :param before: printed during the restart
+    """
+    ours, responses = Program(RoboRio(RobotPaths())), io.BytesIO()
+    waiting = iter([before, *texts])
+    with pytest.MonkeyPatch.context() as patch, pipe_with(message_frame({})) as source:
+        World(patch, [8])
+        patch.setattr(ours._console, "connect", lambda: None)
+        patch.setattr(ours._console, "receive", lambda seconds: next(waiting, ""))
+        patch.setattr(RoboRio, "is_running", lambda robot, process: True)
+        patch.setattr(RoboRio, "stop", lambda robot, start, meanwhile: meanwhile())
+        patch.setattr(RoboRio, "processes", lambda robot: {8} if ours._monitor else set())
+        ours.restart()
+        ours.watch(Wire(source, responses), 60, 60)
+    responses.seek(0)
+    found = []
+    while responses.tell() < len(responses.getvalue()):
+        text = wire.unpack_message(*read_frame(responses.read, MAX_RESPONSE_BYTES), MAX_RESPONSE_BYTES)
+        found.append(parse_json(text).get("output", ""))
+    return [each for each in found if each]
+
+
+@pytest.mark.parametrize("line", ["[],", "\0", "\U0001f916", "x"])
+def test_much_output_is_sent_in_pieces(line: str) -> None:
+    text = line * (300_000 // len(line)) + "\n"
+    assert "".join(output_of("", text)) == text
+
+
+def test_the_last_output_of_a_long_restart_is_kept() -> None:
+    lines = [f"line {number}" for number in range(100_000)]
+    kept = "".join(output_of(before="\n".join([*lines, ""]))).splitlines()
+    assert kept[0] == "[pyfrc has left out earlier output]"
+    assert kept[1:] == lines[1 - len(kept) :]
+    assert len("\n".join(kept)) > 60_000
 
 
 # -- compiling ---------------------------------------------------------------------------------------------------------

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import re
 import time
+from contextlib import suppress
+from functools import cache, partial
 from pathlib import Path
 
 from .console import ConsoleClient
+from .disk import files_below
 from .host import Host, cpu_seconds
 from .start_monitor import STARTING, StartMonitor
 from .wire import Message, Wire
 
 _POLL_SECONDS = 0.1
 _REPORT_SECONDS = 1.0  # between two reports of a watch
+#: Characters of output in one message: the laptop limits a message's size, and the commas and brackets in it.
+_PIECE = 50_000
+#: Characters of output that are kept until the watch begins.
+_KEPT_OUTPUT = 1 << 16
+_LEFT_OUT = "[pyfrc has left out earlier output]\n"
+_IMPORTS_MAGICBOT = re.compile(rb"^[ \t]*(?:from|import)\b[^#\n]*\bmagicbot\b", re.MULTILINE)
 
 
 class Program:
@@ -38,7 +48,7 @@ class Program:
         """
         self._console.connect()
         self._output = ""
-        reports = main is None or _reports_start(main)
+        reports = cache(partial(_reports_start, main))
         self._monitor = monitor = StartMonitor(self._host.processes(), reports, has_run)
         survived = self._host.stop(start=True, meanwhile=lambda: self._poll(monitor))
         self._poll(monitor)
@@ -59,9 +69,9 @@ class Program:
         while True:
             left = monitor.trial_left(time.monotonic())
             self._poll(monitor, 0.0 if not seconds else _POLL_SECONDS if left is None else min(_POLL_SECONDS, left))
-            if self._output:
-                wire.send(output=self._output)
-                self._output = ""
+            for start in range(0, len(self._output), _PIECE):
+                wire.send(output=self._output[start : start + _PIECE])
+            self._output = ""
             now = time.monotonic()
             verdict = monitor.verdict(now, seconds, unheard)
             if verdict is None and wire.has_input():
@@ -83,6 +93,8 @@ class Program:
             found, self._next_listing = self._host.processes(), now + _REPORT_SECONDS
         if monitor.observe(now, found, text):
             self._output += text
+            if not monitor.is_restarted and len(self._output) > _KEPT_OUTPUT:
+                self._output = _LEFT_OUT + self._output[-_KEPT_OUTPUT:].partition("\n")[2]
 
     def _state(self, monitor: StartMonitor, now: float) -> Message:
         return {
@@ -106,9 +118,18 @@ def process_state(host: Host, process: int) -> Message:
         return {}
 
 
-def _reports_start(main: Path) -> bool:
-    """Return whether a program reports the end of `robotInit`. The loop of `magicbot.MagicRobot` does not."""
-    try:
-        return b"magicbot" not in main.read_bytes()
-    except OSError:
+def _reports_start(main: Path | None) -> bool:
+    """Return whether a program reports the end of `robotInit`. The loop of `magicbot.MagicRobot` does not.
+
+    The base class of the robot may be in any module of the program.
+
+    :param main: the program's main file, if known
+    """
+    if main is None:
         return True
+    for name, entry in files_below(main.parent):
+        if name.endswith(".py"):
+            with suppress(OSError), open(entry.path, "rb") as source:  # noqa: PTH123
+                if _IMPORTS_MAGICBOT.search(source.read()):
+                    return False
+    return True

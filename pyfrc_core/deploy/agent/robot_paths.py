@@ -84,7 +84,8 @@ class Lock:
                     raise Refusal(
                         "locked",
                         f"{holder} is deploying to this robot right now",
-                        "Wait until that is done; a laptop that is gone loses its turn after 20 seconds.",
+                        "Wait until that is done; a laptop that is gone loses its turn after 20 seconds, or if its "
+                        "program is starting, after a minute.",
                         holder=holder,
                     ) from None
             stream.close()

@@ -27,7 +27,7 @@ from .start_monitor import ENDED, RUNNING, UNHEARD
 from .system import become, is_root, user
 from .transaction import RESERVE, Deploy, plan
 from .virtual import VirtualRobotClient
-from .wire import EndedError, Message, Wire, WireError, parse_message, read_frame
+from .wire import EndedError, Message, OutputPipe, Wire, WireError, parse_message, read_frame
 
 _USER = "lvuser"
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
@@ -41,7 +41,7 @@ def main(source: BinaryIO, first: bytes = b"", code: bytes = b"") -> None:
     :param first: the frame of the laptop's first message, if it was already read
     :param code: the agent's code for `keep`
     """
-    wire = Wire(source, os.fdopen(os.dup(1), "wb"))
+    wire = Wire(source, OutputPipe(os.dup(1)))
     hello = parse_message(*read_frame(BytesIO(first).read)) if first else wire.receive()
     host: Host | None = VirtualRobotClient.from_environment()
     if host is None:
@@ -96,7 +96,7 @@ class Agent:
         for name in _NEEDED_LATER:
             import_module(name)
         while True:
-            # Without the lock, the laptop may be waiting for its user.
+            # Without the lock, the laptop may be waiting for its user, or still run the tests.
             self._wire.limits_silence = self._lock is not None
             try:
                 request = self._wire.receive()

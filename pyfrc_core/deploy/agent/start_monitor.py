@@ -10,7 +10,7 @@ replaced by another. A working program keeps its process.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 #: The verdicts. `STARTING`: the process runs, and has not reported the end of its start within the time limit.
 #: `UNHEARD`: the process has run for `unheard` seconds, and the console is silent or the program does not report.
@@ -47,11 +47,11 @@ class StartMonitor:
     """Observes the start of a program and gives a verdict.
 
     :param old:     processes of the old program, from just before the restart
-    :param reports: whether the program reports the end of `robotInit`
+    :param reports: returns whether the program reports the end of `robotInit`; called only if that is late
     :param has_run: whether an earlier watch has seen it run, with the same files and start command
     """
 
-    def __init__(self, old: Iterable[int], reports: bool = True, has_run: bool = False) -> None:
+    def __init__(self, old: Iterable[int], reports: Callable[[], bool] = lambda: True, has_run: bool = False) -> None:
         self._old = frozenset(old)
         self._reports = reports
         self.has_run = has_run
@@ -166,7 +166,8 @@ class StartMonitor:
         left = self.trial_left(now)
         if left is not None:
             return None if left else RUNNING
-        if not (self.heard and self._reports) and now - self._since >= unheard and not self._proof_left(now):
+        is_judged_alone = now - self._since >= unheard and not self._proof_left(now)
+        if is_judged_alone and not (self.heard and self._reports()):
             return UNHEARD
         return STARTING if now - self._restarted >= limit else None
 

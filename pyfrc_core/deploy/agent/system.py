@@ -131,6 +131,11 @@ def readable(stream: BinaryIO, seconds: float) -> bool:
     return bool(select.select([stream], [], [], seconds)[0])
 
 
+def writable(descriptor: int, seconds: float) -> bool:
+    """Wait up to `seconds` until a pipe can be written to. Return False after a timeout; never on Windows."""
+    return sys.platform == "win32" or bool(select.select([], [descriptor], [], seconds)[1])
+
+
 def end_with_parent() -> None:
     """Let the system kill this forked process when its parent ends (Linux only)."""
     import ctypes

@@ -6,12 +6,14 @@ A frame is the length of its body (four bytes, big-endian), one byte for its kin
 from __future__ import annotations
 
 import json
+import os
 import struct
 import zlib
 from collections.abc import Callable
+from io import RawIOBase
 from typing import Any, BinaryIO
 
-from .system import readable
+from .system import readable, writable
 
 MESSAGE, CONTENT = b"J", b"C"
 HEADER = struct.Struct(">Ic")
@@ -19,6 +21,10 @@ HEADER = struct.Struct(">Ic")
 MAX_FRAME_BYTES = 1 << 24
 #: Bytes in a chunk of file contents.
 CHUNK_BYTES = 1 << 15
+#: Seconds after which a laptop that holds the deploy lock counts as disconnected.
+SILENCE_SECONDS = 20.0
+#: A pipe to which anything can be written takes this number of bytes without blocking.
+_ATOMIC_BYTES = 4096
 
 Message = dict[str, Any]
 
@@ -84,17 +90,50 @@ def parse_message(kind: bytes, body: bytes) -> Message:
     return message
 
 
+class OutputPipe(RawIOBase):
+    """A pipe to the laptop. A laptop that reads nothing for some time counts as disconnected.
+
+    :param descriptor: the pipe's file descriptor
+    :param limit: the time in seconds
+    """
+
+    def __init__(self, descriptor: int, limit: float = SILENCE_SECONDS) -> None:
+        self._descriptor = descriptor
+        self._limit = limit
+
+    def write(self, data: Any, /) -> int:
+        """Write all data.
+
+        :raises ConnectionAbortedError: if the laptop has not read for too long; from then on at once
+        """
+        left = memoryview(data)
+        while left:
+            if not writable(self._descriptor, self._limit):
+                self._limit = 0.0
+                raise ConnectionAbortedError("the laptop does not read")
+            left = left[os.write(self._descriptor, left[:_ATOMIC_BYTES]) :]
+        return len(data)
+
+
 class Wire:
     """The robot's end of the connection: standard input and output.
 
     :param silence_limit: seconds after which a silent laptop counts as disconnected, while `limits_silence` is set
+    :param idle_limit: the same at all other times; enough for long tests, and for a user who thinks about a question
     """
 
-    def __init__(self, source: BinaryIO, target: BinaryIO, silence_limit: float = 20.0) -> None:
+    def __init__(
+        self,
+        source: BinaryIO,
+        target: BinaryIO | RawIOBase,
+        silence_limit: float = SILENCE_SECONDS,
+        idle_limit: float = 1800.0,
+    ) -> None:
         self._source = source
         self._target = target
         self._silence_limit = silence_limit
-        #: Whether a silent laptop counts as disconnected.
+        self._idle_limit = idle_limit
+        #: Whether the laptop has to go on at once, since it holds the deploy lock.
         self.limits_silence = False
 
     def send(self, **message: Any) -> None:
@@ -124,8 +163,9 @@ class Wire:
         # The source is unbuffered, so that `readable` detects all data that has arrived.
         chunks = []
         while count:
-            if self.limits_silence and not readable(self._source, self._silence_limit):
-                raise WireError(f"no data for {self._silence_limit} s")
+            limit = self._silence_limit if self.limits_silence else self._idle_limit
+            if not readable(self._source, limit):
+                raise WireError(f"no data for {limit} s")
             chunk = self._source.read(count)
             if not chunk:
                 break
