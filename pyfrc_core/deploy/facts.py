@@ -189,6 +189,7 @@ class Deployed:
     :param files_sent: the number of files whose contents were sent
     :param bytes_sent: the size of these contents before compression
     :param skipped:    files beside the old program that were not carried over: pipes, sockets, devices
+    :param renamed:    the new names of those whose names the new program has taken
     """
 
     release: int | None
@@ -199,6 +200,7 @@ class Deployed:
     files_sent: int
     bytes_sent: int
     skipped: tuple[str, ...] = ()
+    renamed: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, fields: Fields) -> Deployed:
@@ -212,6 +214,7 @@ class Deployed:
             files_sent=fields.count("files"),
             bytes_sent=fields.count("bytes"),
             skipped=fields.texts("skipped") if "skipped" in fields else (),
+            renamed=fields.texts("renamed") if "renamed" in fields else (),
         )
 
 

@@ -225,6 +225,9 @@ def _upload(
             phase.detail += f"; release {deployed.release}"
     if deployed.taken is not None:
         talk.progress.note(f"  the program of another tool is kept as release {deployed.taken}")
+    if deployed.renamed:
+        kept = ", ".join(map(ascii, deployed.renamed))
+        talk.progress.note(f"  the project has taken names of what the program had written, which is kept as {kept}")
     if deployed.skipped:
         talk.progress.note(f"  not carried over (pipes, sockets, devices): {', '.join(map(ascii, deployed.skipped))}")
     return deployed

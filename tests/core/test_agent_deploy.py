@@ -49,6 +49,7 @@ def test_the_first_deploy(robot: AgentDisk) -> None:
             "files": 3,
             "bytes": 25,
             "skipped": [],
+            "renamed": [],
             "fallback": None,
         }
     }
@@ -469,6 +470,39 @@ def test_what_the_program_has_written_goes_along(robot: AgentDisk) -> None:
     assert robot.read("py/data/learned.json") == "from the project"
     assert robot.read("py/data/path.json") is None  # which came with the code
     assert (code / "empty").is_dir()
+
+
+def test_names_that_the_project_has_taken(robot: AgentDisk) -> None:
+    robot.deploy(ONE, *ONE.values())
+    (robot.home / "py/logs/old").mkdir(parents=True)
+    (robot.home / "py/logs/old/match.csv").write_text("precious")
+    (robot.home / "py/field").write_text("a map")
+    new = {**ONE, "logs": "a file now", "field/map.json": "{}"}
+    *_, done = robot.deploy(new, "a file now")
+    assert done["done"]["renamed"] == ["field.release-1", "logs.release-1"]
+    (robot.home / ".pyfrc/releases/1/logs/late.csv").write_text("late")
+    for files in (new, TWO, ONE):
+        robot.deploy(files, *({TWO["robot.py"]} - set(new.values()) if files is TWO else ()))
+        assert robot.read("py/logs.release-1/old/match.csv") == "precious"
+        assert robot.read("py/logs.release-1/late.csv") == "late"
+        assert robot.read("py/field.release-1") == "a map"
+
+
+def test_links_of_another_tools_program_stay_valid(robot: AgentDisk) -> None:
+    (robot.home / "data").mkdir()
+    (robot.home / "data/keep.json").write_text("{}")
+    (robot.places.code / "within").mkdir(parents=True)
+    (robot.places.code / "robot.py").write_text("# other\n")
+    (robot.home / "robotCommand").write_text("python3 --main /home/lvuser/py/robot.py run\n")
+    links = {"ours": "../data", "within/ours": "../../data", "within/same": "../ours", "absolute": "/nowhere"}
+    for name, target in links.items():
+        (robot.places.code / name).symlink_to(target)
+    robot.deploy(ONE, *ONE.values())
+    for _ in range(2):
+        assert robot.read("py/ours/keep.json") == robot.read("py/within/ours/keep.json") == "{}"
+        assert str((robot.places.code / "within/same").readlink()) == "../ours"
+        assert str((robot.places.code / "absolute").readlink()) == "/nowhere"
+        robot.ask({"op": "rollback", "release": 1})
 
 
 def test_what_the_old_program_writes_after_the_switch_goes_along_when_it_has_ended(robot: AgentDisk) -> None:

@@ -20,10 +20,12 @@ class Carried(NamedTuple):
 
     :param files:   the paths of files that both releases share, with their inode numbers
     :param skipped: the paths of pipes, sockets and devices that cannot be carried over
+    :param renamed: the new paths of files and directories whose names are a directory or a file of the new release
     """
 
     files: dict[str, int]
     skipped: list[str]
+    renamed: list[str]
 
 
 def carry_over(
@@ -36,7 +38,8 @@ def carry_over(
 ) -> Carried:
     """Link files that the program wrote in the release `old` into the release `new`.
 
-    An existing file in `new` that the program wrote under the same name is kept under another name.
+    An existing file in `new` that the program wrote under the same name is kept under another name. So are a directory
+    whose name is a file in `new`, and the other way round.
 
     :param manifests: the deployed files of both; None for another tool's directory
     :param before: the files that the first call for these releases carried over; then only files that the old program
@@ -51,7 +54,8 @@ def carry_over(
         while above and above not in code_in:
             code_in.add(above)
             above = above.rpartition("/")[0]
-    carried = Carried({}, [])
+    carried = Carried({}, [], [])
+    aside: dict[str, str] = {}
     activity.begin("carry")
     for name, entry in everything_below(old):
         activity.step()
@@ -59,11 +63,17 @@ def carry_over(
             is_code = name.endswith(_OTHER_TOOLS_CODE) or name == "deploy.json"
         else:
             is_code = name in old_manifest
-        if is_code or name in new_manifest:
+        is_directory = entry.is_dir(follow_symlinks=False)
+        if is_code or (name in new_manifest and not is_directory):
             continue
-        target = new / name
+        parent = next((each for each in aside if name.startswith(f"{each}/")), None)
+        target = new / (name if parent is None else aside[parent] + name[len(parent) :])
+        if name in new_manifest or (not is_directory and target.is_dir() and not target.is_symlink()):
+            aside[name] = f"{name}.release-{old.name}"
+            target = new / aside[name]
+            carried.renamed.append(aside[name])
         try:
-            if entry.is_dir(follow_symlinks=False):
+            if is_directory:
                 if before is None and old_manifest is not None and name not in code_in:
                     target.mkdir(parents=True, exist_ok=True)
                 continue
@@ -82,8 +92,7 @@ def carry_over(
         except SpecialFileError:
             carried.skipped.append(name)
         except (FileNotFoundError, FileExistsError, NotADirectoryError, IsADirectoryError, PermissionError):
-            # Removed by the program; or a file in one release and a directory in the other; or not readable
-            # for this user and therefore for the program.
+            # Removed or replaced by the program; or not readable for this user and therefore for the program.
             continue
     return carried
 

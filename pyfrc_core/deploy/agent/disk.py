@@ -127,6 +127,22 @@ def link_or_copy(source: str, target: str) -> None:
         shutil.copy2(source, target, follow_symlinks=False)
 
 
+def make_links_absolute(directory: Path, between: Path) -> None:
+    """Make relative links that lead out of a directory absolute, so that they stay valid when it is moved.
+
+    :param between: the name of each new link until it takes its place
+    """
+    between.parent.mkdir(parents=True, exist_ok=True)
+    for _, entry in everything_below(directory):
+        with suppress(OSError):  # it belongs to another user
+            if entry.is_symlink() and not (target := Path(entry.path).readlink()).is_absolute():
+                absolute = Path(os.path.normpath(Path(entry.path).parent / target))
+                if directory not in (absolute, *absolute.parents):
+                    remove(between)
+                    between.symlink_to(absolute)
+                    between.replace(entry.path)
+
+
 def free_bytes(directory: Path) -> int:
     """Return the free space of this file system, in bytes."""
     if sys.platform != "win32":

@@ -16,7 +16,7 @@ from typing import Any
 
 from .activity import Activity
 from .carrying import Carried, carry_over
-from .disk import allow_changes, remove, remove_if_possible, text_of, write_whole
+from .disk import allow_changes, make_links_absolute, remove, remove_if_possible, text_of, write_whole
 from .robot_paths import CODE, COMMAND, DEBUG_COMMAND, HOME, Refusal, RobotPaths
 from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link, replace_link
 
@@ -238,6 +238,7 @@ class Releases:
         :raises Refusal: if the directory cannot be moved
         """
         self.require_movable_code()
+        make_links_absolute(self.paths.code, self.paths.own / _CARRIED)
         commands = {name: text_of(self.paths.home / name) for name in (COMMAND, DEBUG_COMMAND)}
         deployed = text_of(self.paths.code / "deploy.json")
         try:

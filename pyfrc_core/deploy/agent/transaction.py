@@ -244,7 +244,7 @@ class Deploy:
             "from": previous if taken is None else taken,
         }
         code = releases.code()
-        carried = Carried({}, [])
+        carried = Carried({}, [], [])
         self._wire.send(phase="switch")
         if code is not None:
             manifest = {*record["files"], DEPLOY_JSON}
@@ -264,7 +264,7 @@ class Deploy:
             with suppress(OSError):  # the next deploy removes the rest
                 releases.prune()
         done = {"release": number, "previous": record["from"], "taken": taken, "unchanged": False}
-        return {**done, "skipped": carried.skipped}
+        return {**done, "skipped": carried.skipped, "renamed": carried.renamed}
 
     def _switch(self, number: int, taken: int | None) -> None:
         self._releases.switch(number, self._commands, taken)
