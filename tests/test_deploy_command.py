@@ -318,6 +318,19 @@ def test_the_program_of_another_tool_is_kept_for_a_rollback(robot: Roborio, make
     assert "number 77" in code_on(robot)
 
 
+def test_what_is_carried_over_under_another_name_or_not_at_all_is_named(robot: Roborio, make_project) -> None:
+    project = make_project(program())
+    assert deploy(project, robot).code == 0
+    robot.put("home/lvuser/py/logs/match.csv", "precious")
+    robot.run("mkfifo", "-m", "600", "/home/lvuser/py/pipe")
+    (project.path / "logs").write_text("a file")
+    result = deploy(project, robot)
+    assert result.code == 0, result.output
+    assert "which is kept as 'logs.release-1'" in result.stdout
+    assert "not carried over (pipes, sockets, devices): 'pipe'" in result.stdout
+    assert (robot.home / "py/logs.release-1/match.csv").read_text() == "precious"
+
+
 def test_undeploying_has_to_be_meant(robot: Roborio, make_project) -> None:
     project = make_project(program())
     assert deploy(project, robot).code == 0
