@@ -11,8 +11,9 @@ from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import Agents, LocalRobot, project_of
 
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
-from pyfrc_core.deploy.errors import RefusedError
+from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError
 from pyfrc_core.deploy.facts import Deployed
+from pyfrc_core.deploy.recovery_hints import explain_interruption
 
 FILES = {"robot.py": "A = 1\n", "b.py": "B = 1\n", "c.py": "C = 1\n"}
 
@@ -113,3 +114,31 @@ def test_a_file_that_changes_while_it_is_sent(deploy: Deploys, agents: Agents, t
         with pytest.raises(RefusedError, match="changed while it was sent"):
             session.deploy(project, DeployRequest("robot.py", {}))
     assert deploy.robot.startable() == {name: text.encode() for name, text in FILES.items()}
+
+
+@pytest.mark.parametrize("changed", [True, False], ids=["changed", "unchanged"])
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [(ConnectionFailedError("the connection to the robot was lost"), 4), (KeyboardInterrupt(), 2)],
+    ids=["connection", "Ctrl-C"],
+)
+def test_an_end_before_the_robots_list_arrives_may_come_after_the_switch(
+    error: BaseException, code: int, changed: bool, deploy: Deploys, agents: Agents, tmp_path: Path
+) -> None:
+    """The robot needs nothing more from this computer: it switches and restarts."""
+    deploy(FILES)
+    files = {**FILES, "b.py": "B = 2\n"} if changed else FILES
+    project = project_of(tmp_path / "project", files)
+    with contextlib.closing(deploy.robot.start(agents, project)) as session:
+
+        def read_message(parse: Any) -> Any:
+            session._stream.read_response(lambda fields: None, lambda fields: None)  # until the robot has switched
+            raise error
+
+        session._stream.read_message = read_message  # type: ignore[method-assign]
+        with pytest.raises(DeployError) as caught, explain_interruption(session):
+            session.deploy(project, DeployRequest("robot.py", {}, restart=True))
+    assert deploy.robot.startable() == {name: text.encode() for name, text in files.items()}
+    assert caught.value.exit_code == code
+    assert "the robot may have switched to the new release" in caught.value.message
+    assert "it may already run the new one" in caught.value.message

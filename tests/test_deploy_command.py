@@ -563,7 +563,9 @@ def test_a_program_may_print_what_this_terminal_cannot_show(robot: Roborio, make
 def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) -> None:
     project = make_project(program(1))
     assert deploy(project, robot).code == 0
-    project.write({**program(2), "noise.txt": os.urandom(400_000).hex()})
+    project.write(program(2))
+    # More than is sent before the robot has read any of it: with all of it sent, the robot may have switched.
+    (project.path / "noise.bin").write_bytes(os.urandom(3_000_000))
     with Proxy((robot.host, robot.port), rate=25_000) as proxy:
         where = f"{proxy.host}:{proxy.port}"
         command = [sys.executable, "-m", "pyfrc", "deploy", "--skip-tests", "--large", "--robot", where]
@@ -581,7 +583,7 @@ def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) ->
         last = json.loads(output.splitlines()[-1])
         assert (last["event"], last["message"], last["exit_code"]) == ("error", "interrupted", 2)
     assert "number 1" in code_on(robot)
-    assert not (robot.home / "py/noise.txt").exists()
+    assert not (robot.home / "py/noise.bin").exists()
     assert deploy(project, robot, "--large").code == 0
     assert "number 2" in code_on(robot)
 

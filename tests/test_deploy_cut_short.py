@@ -70,7 +70,7 @@ def in_switch(phase: str, done: int, total: int) -> None:
 CUT_SHORT: dict[str, tuple[Callable[[AgentClient, Manifest], object], str, str]] = {
     "switching": (
         lambda agent, project: agent.deploy(project, REQUEST, in_switch),
-        "still runs the previous one",
+        "may already run the new one",
         "pyfrc deploy.",
     ),
     "deployed": (

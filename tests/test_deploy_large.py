@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable
 from importlib.util import cache_from_source
 from pathlib import Path
+from typing import Any
 
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
@@ -19,7 +20,7 @@ from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import Compiler
 from pyfrc_core.deploy.agent.robot_paths import Refusal
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
-from pyfrc_core.deploy.manifest import Manifest
+from pyfrc_core.deploy.manifest import Entry, Manifest
 from pyfrc_core.deploy.progress import describe_work
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="an agent runs on Linux")
@@ -228,9 +229,9 @@ def test_sources_are_asked_for_first(robot: LocalRobot, agents: Agents, tmp_path
     asked: list[str] = []
     send = agent._send_contents
 
-    def sent(entries: list, on_progress: Callable[[str, int, int], None] | None) -> None:  # type: ignore[type-arg]
+    def sent(entries: list[Entry], *others: Any) -> None:
         asked.extend(entry.path for entry in entries)
-        send(entries, on_progress)
+        send(entries, *others)
 
     agent._send_contents = sent  # type: ignore[method-assign]
     agent.deploy(project, REQUEST)
@@ -318,6 +319,7 @@ def test_a_source_that_is_not_valid_is_known_whatever_is_killed_behind_it(
 COMPILING = """
 import resource, sys
 from pathlib import Path
+from typing import Any
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import Compiler
 names = ["large.py", "small.py"]

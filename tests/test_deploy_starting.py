@@ -261,21 +261,27 @@ def test_a_link_that_is_lost_from_the_change_on(robot: LocalRobot, agents: Agent
 def test_whatever_is_lost_with_a_link_a_changed_robot_is_not_called_unchanged(
     robot: LocalRobot, agents: Agents, project: Manifest, tmp_path: Path
 ) -> None:
-    """The report that the switch begins may be lost, too."""
+    """The report that the switch begins may be lost, too; until the last contents are sent, there is no switch."""
+    project = project_of(tmp_path / "project", {"robot.py": ROBOT_PY, "noise.bin": os.urandom(200_000)})
     whole = robot.copy(tmp_path / "whole")
     agent = whole.start(agents)
     before = whole.channel.bytes_from_robot
     agent.deploy(project, REQUEST)
     codes = set()
-    # What robots send differs by some bytes: at either end, a link may be lost before, or never.
-    for cut in range(before, whole.channel.bytes_from_robot, 7):
+
+    def cut(**cut: int) -> None:
         tried = robot.copy(tmp_path / "tried")
-        with contextlib.suppress(DeployError), contextlib.closing(tried.start(agents, cut_from_robot=cut)) as agent:
+        with contextlib.suppress(DeployError), contextlib.closing(tried.start(agents, **cut)) as agent:
             try:
                 with explain_interruption(agent):
                     agent.deploy(project, REQUEST)
             except DeployError as error:
                 codes.add((error.exit_code, tried.startable() is not None))
+
+    # What robots send differs by some bytes: at either end, a link may be lost before, or never.
+    for place in range(before, whole.channel.bytes_from_robot, 7):
+        cut(cut_from_robot=place)
+    cut(cut_to_robot=whole.channel.bytes_to_robot // 2)
     assert (1, True) not in codes
     assert {(1, False), (4, True)} <= codes
 

@@ -152,29 +152,36 @@ class AgentClient:
         # The agent keeps the manifest of the last plan.
         files = {} if manifest is self._planned else {"files": _as_lists(manifest)}
         at_once = [] if request.in_place else self._at_once(manifest)
+        before, has_begun = self.recovery_hint, False
+        # The robot switches as soon as it has all contents, and its report of this may be lost or not read. Without the
+        # list of the contents that it needs, it may have all of them.
+        unknown = recovery_hints.OVERWRITING if request.in_place else recovery_hints.MAYBE_SWITCHED
 
         def on_message(message: Fields) -> None:
+            nonlocal has_begun
             phase = message.line("phase")
             if phase == "switch":
+                has_begun = True
                 self.recovery_hint = recovery_hints.OVERWRITING if request.in_place else recovery_hints.SWITCHING
             if on_progress is not None:
                 on_progress(phase, 0, 0)
 
-        with self._reporting(on_progress):
-            self._send("deploy", **asdict(request), **files, sent=[each.path for each in at_once])
-            if at_once:
-                self._send_contents(at_once, on_progress)
-            needed = self._stream.read_message(lambda fields: _needed(fields, manifest))
-            if needed:
-                self._send_contents(needed, on_progress)
+        with self._reporting(on_progress), self._tracking_changes():
             try:
-                with self._tracking_changes():
-                    deployed = self._stream.read_response(lambda fields: _deployed(fields, request), on_message)
+                self.recovery_hint = unknown
+                self._send("deploy", **asdict(request), **files, sent=[each.path for each in at_once])
+                if at_once:
+                    self._send_contents(at_once, on_progress, unknown)
+                needed = self._stream.read_message(lambda fields: _needed(fields, manifest))
+                if needed:
+                    self.recovery_hint = before  # it waits for the last of them
+                    self._send_contents(needed, on_progress, unknown)
+                deployed = self._stream.read_response(lambda fields: _deployed(fields, request), on_message)
             except ConnectionFailedError:
-                if self.recovery_hint is None:  # the report of the switch may be lost with the connection
-                    self.recovery_hint = (
-                        recovery_hints.OVERWRITING if request.in_place else recovery_hints.MAYBE_SWITCHED
-                    )
+                raise
+            except DeployError:
+                if not has_begun:  # an error is reported in place of the switch
+                    self.recovery_hint = before
                 raise
         self._is_restarting = request.restart
         self._current, self._previous, self._command = deployed.release, deployed.previous, _ANY
@@ -298,7 +305,11 @@ class AgentClient:
     def _send(self, op: str, **request: Any) -> None:
         self._stream.send_request({"op": op, **request})
 
-    def _send_contents(self, entries: list[Entry], on_progress: OnProgress | None) -> None:
+    def _send_contents(self, entries: list[Entry], on_progress: OnProgress | None, then: RecoveryHint) -> None:
+        """Send the contents of files.
+
+        :param then: the hint from the last frame on
+        """
         compressor = zlib.compressobj(6)
         done, total = 0, sum(entry.size for entry in entries)
         waiting = b""
@@ -312,6 +323,7 @@ class AgentClient:
                 waiting = b""
                 if on_progress is not None and not self._robot_reports_progress:
                     on_progress("send", done, total)
+        self.recovery_hint = then
         self._stream.send(wire.frame(wire.CONTENT, waiting + compressor.flush()))
 
     @contextmanager

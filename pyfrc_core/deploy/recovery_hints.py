@@ -26,13 +26,13 @@ class RecoveryHint:
 
 
 SWITCHING = RecoveryHint(
-    "the robot was switching to the new release: it will start either the new or the previous release, and still runs "
-    "the previous one",
+    "the robot was switching to the new release: when it is switched on, it will start either the new or the previous "
+    "release, and it may already run the new one",
     "Deploy again to start the new release: pyfrc deploy. To see which release the robot has: pyfrc deploy-info.",
 )
 MAYBE_SWITCHED = RecoveryHint(
     "the robot may have switched to the new release: when it is switched on, it will start either the new or the "
-    "previous release, and still runs the previous one",
+    "previous release, and it may already run the new one",
     SWITCHING.remedy,
 )
 ROLLING_BACK = RecoveryHint(
