@@ -55,7 +55,8 @@ def test_remedies_name_the_robot_as_it_was_typed(typed: list[str], robot: str) -
     "remedy",
     [
         recovery_hints.SWITCHING.remedy,
-        recovery_hints.ROLLING_BACK.remedy,
+        recovery_hints.rolling_back(1).remedy,
+        recovery_hints.rolling_back(None).remedy,
         recovery_hints.UNDEPLOYING.remedy,
         recovery_hints.deployed(2, 1).remedy,
         recovery_hints.rolled_back(1).remedy,

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from roborio.local import ROBOT_PY, Agents, Cut, LocalRobot, project_of
 
 from pyfrc_core.deploy import recovery_hints
 from pyfrc_core.deploy.agent.host import RoboRio, age_of
@@ -27,15 +27,15 @@ from pyfrc_core.deploy.agent_client import AgentClient
 from pyfrc_core.deploy.errors import (
     ConnectionFailedError,
     DeployError,
-    LockedError,
     NotSeenToRunError,
+    OtherComputerError,
     ProgramDiedError,
     RefusedError,
     StoppedError,
 )
 from pyfrc_core.deploy.facts import DeployRequest, Release, RolledBack, StartState, Watched
 from pyfrc_core.deploy.manifest import Manifest
-from pyfrc_core.deploy.progress import DeployProgress, UserInterface
+from pyfrc_core.deploy.progress import DeployProgress, Questions, UserInterface
 from pyfrc_core.deploy.recovery_hints import RecoveryHint, explain_interruption
 from pyfrc_core.deploy.responses import Fields, ResponseError
 from pyfrc_core.deploy.starting import go_back, start
@@ -73,7 +73,7 @@ class Watching(AgentClient):
         self.recovery_hint = None
         return watched
 
-    def rollback(self, release: int | None = None, on_progress: object = None) -> RolledBack:
+    def rollback(self, release=None, on_progress=None, *, only_from_deployed=False) -> RolledBack:  # type: ignore[no-untyped-def]
         self.went_back_to.append(release)
         self.recovery_hint = recovery_hints.rolled_back(1)
         return RolledBack(Release(1, False, "robot.py", False, 1, None, {}), 2, ())
@@ -183,9 +183,9 @@ def project(tmp_path: Path) -> Manifest:
 
 
 @contextlib.contextmanager
-def failing(robot: AgentClient, code: int, says: str) -> Iterator[None]:
+def failing(robot: AgentClient, code: int, says: str) -> Iterator[pytest.ExceptionInfo[DeployError]]:
     with pytest.raises(DeployError) as caught, explain_interruption(robot):
-        yield
+        yield caught
     assert (caught.value.exit_code, says in caught.value.message) == (code, True), caught.value
 
 
@@ -310,7 +310,7 @@ def test_a_robot_that_another_computer_deploys_to(
     ours, theirs = robot.start(agents), robot.start(agents)
     with contextlib.closing(ours), contextlib.closing(theirs):
         theirs.deploy(project, REQUEST)  # the lock is held until the end of the restart that follows
-        with pytest.raises(LockedError) as caught, explain_interruption(ours):
+        with pytest.raises(OtherComputerError) as caught, explain_interruption(ours):
             change(ours)
     assert caught.value.exit_code == 1
     assert re.fullmatch(r"\S+ is deploying to this robot right now", caught.value.message)
@@ -321,6 +321,49 @@ def test_going_back_on_a_robot_without_releases(robot: LocalRobot, agents: Agent
         agent.rollback()
     assert caught.value.message == "there is no earlier release on the robot to go back to"
     assert caught.value.remedy == "It has no releases yet: each pyfrc deploy adds one."
+
+
+def test_going_back_leaves_what_another_computer_has_deployed_meanwhile(
+    robot: LocalRobot, agents: Agents, project: Manifest, talk: UserInterface
+) -> None:
+    """While the user is asked about the rollback, the lock is free."""
+    robot.deploy(agents, project)
+
+    def yes(question: str) -> bool:
+        assert question.endswith("Go back to release 1?")
+        theirs = project_of(project.entries[0].file.parent, {"robot.py": ROBOT_PY + "# theirs\n"})
+        assert robot.deploy(agents, theirs).release == 3
+        return True
+
+    asking = UserInterface(talk.progress, Questions(text=str, yes=yes))
+    with contextlib.closing(robot.start(agents, runs=False)) as agent:
+        agent.deploy(changed(project), REQUEST)
+        with failing(agent, 3, "the robot has release 3, no longer release 2") as caught:
+            start(agent, asking, 1)
+    assert (robot.home / "py").resolve().name == "3"
+    assert "may still run" not in caught.value.message
+    assert "pyfrc deploy --rollback 1" in str(caught.value.remedy)
+
+
+def test_a_link_that_is_lost_while_going_back_does_not_suggest_to_deploy_again(
+    robot: LocalRobot, agents: Agents, project: Manifest, talk: UserInterface
+) -> None:
+    """That would deploy the crashing program."""
+    robot.deploy(agents, project)
+    with contextlib.closing(robot.start(agents, runs=False)) as agent:
+        agent.deploy(changed(project), REQUEST)
+
+        def sendall(data: bytes) -> None:
+            raise Cut
+
+        def lose(question: str) -> bool:
+            robot.channel.sendall = sendall  # type: ignore[method-assign]
+            return True
+
+        with failing(agent, 3, "; the robot may have switched to release 1, but still runs") as caught:
+            start(agent, UserInterface(talk.progress, Questions(text=str, yes=lose)), 1)
+    assert "again" not in str(caught.value.remedy)
+    assert "pyfrc deploy --rollback 1" in str(caught.value.remedy)
 
 
 def test_a_process_that_the_kill_script_leaves_in_the_background_is_not_waited_for(

@@ -14,7 +14,7 @@ from . import recovery_hints
 from .agent import start_monitor, wire
 from .agent_package import COMMAND, agent_hash, agent_package
 from .agent_stream import AgentStream, Channel, TimeLimits
-from .errors import ConnectionFailedError, DeployError, LockedError
+from .errors import ConnectionFailedError, DeployError, OtherComputerError
 from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
 from .responses import Fields, ResponseError
 
@@ -252,13 +252,17 @@ class AgentClient:
         self.recovery_hint = None
         return Watched(verdict, output, state, has_run)
 
-    def rollback(self, release: int | None = None, on_progress: OnProgress | None = None) -> RolledBack:
+    def rollback(
+        self, release: int | None = None, on_progress: OnProgress | None = None, *, only_from_deployed: bool = False
+    ) -> RolledBack:
         """Make an earlier release current again. The program is not restarted.
 
         :param release: its number; default: the release that a rollback selects
+        :param only_from_deployed: refuse if the release that this client has deployed is no longer current
         """
+        request = {"release": release, "only_from": self._current if only_from_deployed else None}
         with self._reporting(on_progress):
-            back = self._change(RolledBack.of, recovery_hints.ROLLING_BACK, "rollback", release=release)
+            back = self._change(RolledBack.of, recovery_hints.rolling_back(release), "rollback", **request)
         # None: a rollback from there would return to the release that was rolled back.
         self._current, self._previous, self._command = back.release.number, None, _ANY
         self.recovery_hint = recovery_hints.rolled_back(back.release.number)
@@ -276,7 +280,7 @@ class AgentClient:
         try:
             with self._tracking_changes():
                 return self._request(parse, op, **request)
-        except LockedError:
+        except OtherComputerError:
             self.recovery_hint = before  # if the releases have changed, another computer has changed them
             raise
 

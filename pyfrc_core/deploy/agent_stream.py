@@ -16,7 +16,7 @@ from typing import Any, Protocol, TypeVar
 
 from ..terminal_text import one_line
 from .agent import wire
-from .errors import ConnectionFailedError, DeployError, LockedError, NoPythonError, RefusedError
+from .errors import ConnectionFailedError, DeployError, NoPythonError, OtherComputerError, RefusedError
 from .responses import Fields, ResponseError, parse_json
 from .robot_setup import PREPARE
 
@@ -238,7 +238,7 @@ class AgentStream:
         if kind in ("bug", "protocol"):
             last = traceback.strip().splitlines()[-1:]
             return DeployError(": ".join([text, *map(one_line, last)]), where=self._where, remedy=_RETRY)
-        refusal = LockedError if kind == "locked" else RefusedError
+        refusal = OtherComputerError if kind in ("locked", "replaced") else RefusedError
         return refusal(text, where=self._where, remedy=remedy or None)
 
 

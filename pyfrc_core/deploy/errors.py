@@ -39,8 +39,8 @@ class RefusedError(DeployError):
     """The command was refused before anything was changed."""
 
 
-class LockedError(RefusedError):
-    """Another computer is changing the robot's programs. Nothing was changed by this command."""
+class OtherComputerError(RefusedError):
+    """Another computer changes or has changed the robot's programs. This command has changed nothing."""
 
 
 class NoPythonError(RefusedError):

@@ -35,10 +35,6 @@ MAYBE_SWITCHED = RecoveryHint(
     "previous release, and it may already run the new one",
     SWITCHING.remedy,
 )
-ROLLING_BACK = RecoveryHint(
-    "the robot may have switched to the earlier release, but still runs the previous program",
-    "Run the command again. To see which release the robot has: pyfrc deploy-info.",
-)
 UNDEPLOYING = RecoveryHint(
     "the robot's program and some of its releases may have been removed",
     "Run the command again. To see what is on the robot: pyfrc deploy-info.",
@@ -58,6 +54,20 @@ def deployed(release: int | None, previous: int | None) -> RecoveryHint:
         f"release {release} is on the robot, which will start it when it is switched on, but may still run the "
         "previous program",
         f"Deploy again to start it now: pyfrc deploy.{back}",
+    )
+
+
+def rolling_back(release: int | None) -> RecoveryHint:
+    """Return the hint for a switch to an earlier release.
+
+    :param release: its number; None if the robot selects it
+    """
+    # Not the same command again: it may have been a deploy, and from the earlier release it would go back further.
+    name = f"release {release}" if release else "an earlier release"
+    return RecoveryHint(
+        f"the robot may have switched to {name}, but still runs the program from before",
+        f"To see which release the robot has: pyfrc deploy-info. To start {name}: "
+        f"pyfrc deploy --rollback {release or 'ID'}.",
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .agent import start_monitor
 from .agent_client import AgentClient
-from .errors import ConnectionFailedError, DeployError, NotSeenToRunError, ProgramDiedError
+from .errors import DeployError, NotSeenToRunError, ProgramDiedError, RefusedError
 from .facts import StartState, Watched
 from .progress import Phase, UserInterface
 
@@ -42,24 +42,27 @@ def start(robot: AgentClient, talk: UserInterface, previous: int | None, auto_ro
         )
     if auto_rollback or (talk.ask and talk.ask.yes(f"{what.capitalize()}. Go back to release {previous}?")):
         try:
-            release = go_back(robot, talk, previous)
+            release = go_back(robot, talk, previous, only_from_deployed=True)
         except DeployError as error:
-            # After a lost connection, repeating the command would deploy the crashing program again.
-            remedy = None if isinstance(error, ConnectionFailedError) else error.remedy
+            remedy = error.remedy
+            if not isinstance(error, (RefusedError, ProgramDiedError, NotSeenToRunError)):
+                # Its own is to repeat the command, which would deploy the crashing program again.
+                remedy = None if robot.recovery_hint else _GO_BACK
             raise ProgramDiedError(f"{what}; {error.message}", where=error.where, remedy=remedy) from error
         raise ProgramDiedError(f"{what}; release {release} runs again")
     raise ProgramDiedError(what, remedy=_GO_BACK)
 
 
-def go_back(robot: AgentClient, talk: UserInterface, release: int | None) -> int:
+def go_back(robot: AgentClient, talk: UserInterface, release: int | None, *, only_from_deployed: bool = False) -> int:
     """Make an earlier release current, start it, and return its number.
 
     :param release: its number; default: the release that the robot selects
+    :param only_from_deployed: refuse if another computer has replaced the release that this one has deployed
     :raises ProgramDiedError: if it ends as well
     :raises NotSeenToRunError: if it is still starting at the end of the watch
     """
     with talk.progress.phase("back") as phase:
-        back = robot.rollback(release, phase.work)
+        back = robot.rollback(release, phase.work, only_from_deployed=only_from_deployed)
         phase.detail = f"to release {back.release.number}"
     if back.changed:
         talk.progress.note(f"  files that the program has changed: {', '.join(map(ascii, back.changed))}")

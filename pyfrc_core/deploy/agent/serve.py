@@ -254,7 +254,25 @@ class Agent:
     def _roll_back(self, request: Message) -> Message:
         with self._transaction(keep=True):
             self._recover()
+            self._refuse_unless_current(request.get("only_from"), request.get("release"))
             return self._roll_back_to(request.get("release"))
+
+    def _refuse_unless_current(self, wanted: int | None, release: int | None) -> None:
+        """Check that a release is still current. While the laptop asked its user, another one may have deployed.
+
+        :param wanted: the release; None: any
+        :param release: the one to go back to
+        :raises Refusal: if another one is current
+        """
+        current = self._releases.current()
+        if wanted is not None and current != wanted:
+            now = "the program of another tool" if current is None else f"release {current}"
+            raise Refusal(
+                "replaced",
+                f"not gone back, since another computer has changed the program meanwhile: the robot has {now}, "
+                f"no longer release {wanted}",
+                f"To see who deployed it: pyfrc deploy-info. To go back anyway: pyfrc deploy --rollback {release}",
+            )
 
     def _roll_back_to(self, asked: int | None) -> Message:
         releases, numbers, current = self._releases, self._releases.numbers(), self._releases.current()
