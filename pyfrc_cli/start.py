@@ -16,7 +16,7 @@ _RUN_ROBOTS = {"create-physics", "fuzz", "replay", "test"}
 def main() -> None:
     """Run the command."""
     _open_closed_streams()
-    _remove_current_directory()
+    _remove_current_directory(_current_directory())
     if "PYTHONHASHSEED" not in os.environ and _RUN_ROBOTS.intersection(sys.argv[1:]):
         _restart_with_fixed_seed()
     try:
@@ -39,15 +39,24 @@ def _open_closed_streams() -> None:
             setattr(sys, name, open(number, "w" if number else "r", encoding="utf-8", closefd=False))  # noqa: SIM115
 
 
-def _remove_current_directory() -> None:
+def _current_directory() -> str:
+    """Return the current directory; end the command if there is none."""
+    try:
+        # Not pathlib, which imports modules that the user's files may hide.
+        return os.getcwd()  # noqa: PTH109
+    except OSError as error:
+        print(f"error: the current directory cannot be found: {error.strerror}", file=sys.stderr)
+        print("  It may have been removed. Go to another directory, and run the command again.", file=sys.stderr)
+        sys.exit(2)
+
+
+def _remove_current_directory(here: str) -> None:
     """Remove the current directory from Python's path, where ``python -m pyfrc`` has put it.
 
     Otherwise our own libraries would import a `random.py` beside robot.py, before it can be detected.
     """
     if getattr(sys.flags, "safe_path", False) or not sys.path:
         return
-    # Not pathlib, which imports modules that the user's files may hide.
-    here = os.getcwd()  # noqa: PTH109
     if sys.path[0] in ("", here) and not __file__.startswith(os.path.join(here, "pyfrc_cli", "")):  # noqa: PTH118
         del sys.path[0]
 

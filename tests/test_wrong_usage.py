@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
 from conftest import MakeProject
 from test_failures import ANY_TEST, ROBOT
@@ -47,6 +52,17 @@ def test_plain_pytest_tells_wrong_settings_in_a_sentence(make_project: MakeProje
     assert result.code == 4
     assert "INTERNALERROR" not in result.output
     assert name in result.output
+
+
+@pytest.mark.parametrize("command", [["deploy-info", "--robot", "127.0.0.1:1"], ["test"], ["--help"]])
+def test_a_current_directory_that_was_removed(command: list[str], tmp_path: Path) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    script = f'rmdir "$PWD" && exec {shlex.join([sys.executable, "-m", "pyfrc", *command])}'
+    ended = subprocess.run(["sh", "-c", script], cwd=gone, capture_output=True, text=True, check=False)
+    assert ended.returncode == 2
+    assert ended.stderr.startswith("error: the current directory cannot be found: ")
+    assert "Traceback" not in ended.stderr
 
 
 def test_a_project_without_tests_is_told_where_they_are_looked_for(make_project: MakeProject) -> None:
