@@ -5,7 +5,9 @@ from __future__ import annotations
 import hashlib
 import os
 import sys
+import tracemalloc
 from pathlib import Path
+from typing import IO, Any
 
 import pytest
 from hypothesis import given
@@ -13,6 +15,8 @@ from hypothesis import strategies as st
 
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded
+from pyfrc_core.passes.contents import read_contents
+from pyfrc_core.project import Project
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="names and links that Windows has not")
 
@@ -40,6 +44,22 @@ def test_large_projects_are_deployed_by_size_and_content(tmp_path: Path) -> None
     assert not arm.executable
     assert robot.executable == (os.name == "posix")
     assert manifest.total_bytes == 8
+
+
+def test_a_file_larger_than_memory_is_hashed_in_pieces(tmp_path: Path) -> None:
+    make(tmp_path, "robot.py")
+    with (tmp_path / "video.bin").open("wb") as stream:
+        stream.truncate(1 << 25)
+    project = Project(tmp_path / "robot.py")
+    for read in (lambda: build_manifest(tmp_path, large=True), lambda: read_contents(project)):
+        read()  # imports and caches do not count
+        tracemalloc.start()
+        read()
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert peak < 1 << 22
+    video = build_manifest(tmp_path, large=True).entries[1]
+    assert (video.size, video.sha256) == (1 << 25, hashlib.sha256(bytes(1 << 25)).hexdigest())
 
 
 def test_what_no_tool_uploads_is_left_out(tmp_path: Path) -> None:
@@ -134,14 +154,14 @@ def test_what_is_no_file_is_refused_by_name(tmp_path: Path) -> None:
 def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Patched, since the user who runs these tests may have permission to read every file."""
     make(tmp_path, "robot.py", "secret.txt")
-    read_bytes = Path.read_bytes
+    opened = Path.open
 
-    def guarded(path: Path) -> bytes:
+    def guarded(path: Path, *args: Any, **options: Any) -> IO[Any]:
         if path.name == "secret.txt":
             raise PermissionError(13, "Permission denied", str(path))
-        return read_bytes(path)
+        return opened(path, *args, **options)
 
-    monkeypatch.setattr(Path, "read_bytes", guarded)
+    monkeypatch.setattr(Path, "open", guarded)
     with pytest.raises(RefusedError, match=r"secret.txt: this cannot be read: Permission denied\n.*exclude"):
         build_manifest(tmp_path)
 

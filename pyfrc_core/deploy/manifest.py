@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import stat
 from collections.abc import Iterator, Sequence
@@ -10,6 +9,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from ..file_hash import hash_file
 from .errors import RefusedError
 
 #: Other tools exclude these as well.
@@ -187,6 +187,6 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _entry(path: str, file: Path) -> Entry:
-    content = file.read_bytes()
+    sha256, size = hash_file(file)
     executable = os.name == "posix" and bool(file.stat().st_mode & stat.S_IXUSR)
-    return Entry(path, len(content), hashlib.sha256(content).hexdigest(), executable, file)
+    return Entry(path, size, sha256, executable, file)

@@ -12,12 +12,15 @@ from hashlib import sha256
 from pathlib import Path
 
 from .._version import __version__
+from ..file_hash import hash_file
 from ..project import Project
 
 #: Directories and files that the robot, its tests or other tools write, and no test reads.
 _DIRECTORIES_WRITTEN = {"__pycache__", "build", "ctre_sim", "dist", "htmlcov"}
 _FILES_WRITTEN = {"coverage.xml", "networktables.json", "networktables.json.bck", "simgui-ds.json", "simgui.json"}
 _SUFFIXES_WRITTEN = (".hoot", ".pyc", ".rrd", ".wpilog")
+#: The length of a hash, in hexadecimal.
+_HASH_LETTERS = 24
 _PACKAGES = ("site-packages", "dist-packages")
 
 
@@ -82,14 +85,14 @@ def _files_below(directory: Path, left_out: Collection[Path]) -> Iterator[Path]:
 def hash_of_file(file: Path) -> str:
     """Return a hash of the file's content; of a file that cannot be read, one that no content has."""
     try:
-        return hash_of(file.read_bytes())
+        return hash_file(file)[0][:_HASH_LETTERS]
     except OSError:
         return "unreadable"
 
 
 def hash_of(content: bytes) -> str:
     """Return a hash of the content."""
-    return sha256(content).hexdigest()[:24]
+    return sha256(content).hexdigest()[:_HASH_LETTERS]
 
 
 def environment() -> str:
