@@ -262,6 +262,49 @@ def test_a_deploy_after_tests_that_passed_does_not_run_them_again(make_project) 
     assert PASSED_ALREADY.search(made.run(*NO_ROBOT).output), "its tests count, too"
 
 
+SMALL = "import wpilib\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+#: Tests during which a file is saved, by the user or by the tests.
+SAVES = """
+    from pathlib import Path
+
+    def test_saves():
+        file = Path(__file__).parents[1] / {name!r}
+        file.write_text({text})
+"""
+
+
+def small_project(make_project, name: str, text: str):
+    files = {"robot.py": SMALL, "parts/arm.py": "", "log.txt": "", "tests/test_saves.py": ""}
+    return make_project({**files, "tests/test_saves.py": SAVES.format(name=name, text=text)})
+
+
+@pytest.mark.parametrize("name", ["robot.py", "parts/arm.py", "parts/new.py"])
+def test_a_source_that_is_saved_while_the_tests_run_is_not_deployed_untested(make_project, name: str) -> None:
+    made = small_project(make_project, name, repr(SMALL + "# saved\n"))
+    result = made.run(*NO_ROBOT)
+    assert result.code == 1
+    assert "1 passed" in result.output
+    assert result.first_error == f"not deployed: files have changed since the tests began, and were not tested: {name}"
+    assert "Run the command again." in result.stderr
+    assert "1 passed" in (again := made.run(*NO_ROBOT)).output
+    assert again.first_error.startswith("no robot found"), "the tests write the same again"
+
+
+def test_what_the_tests_write_themselves_prevents_no_deploy(make_project) -> None:
+    made = small_project(make_project, "log.txt", "file.read_text() + 'a run'")
+    result = made.run(*NO_ROBOT)
+    assert "warning: files have changed since the tests began: log.txt\n" in result.output
+    assert result.first_error.startswith("no robot found")
+
+
+def test_a_project_that_is_removed_while_its_tests_run(make_project) -> None:
+    removes = "import pathlib, shutil\ndef test_it():\n    shutil.rmtree(pathlib.Path(__file__).parents[1])\n"
+    made = make_project({"it/robot.py": SMALL, "it/tests/test_it.py": removes})
+    result = made.run("deploy", "--project", made.path / "it", *NO_ROBOT[1:])
+    assert result.code == 1
+    assert result.first_error.endswith("robot.py: not deployed: it was removed while the tests ran")
+
+
 def test_part_of_the_tests_or_a_failure_is_not_enough_for_a_deploy(make_project) -> None:
     made = make_project(FILES)
     assert made.run("test", "--", "-k", "auto").code == 0

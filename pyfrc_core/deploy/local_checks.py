@@ -13,10 +13,11 @@ from ..errors import PyfrcError, RobotCodeError
 from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
 from .errors import RefusedError
-from .progress import Questions
+from .progress import DeployProgress, Questions
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
+    from .manifest import Manifest
 
 
 def refuse_other_main_files(project: Project, nonstandard: bool) -> None:
@@ -66,6 +67,33 @@ def passed_already(project: Project, builtin: bool) -> str | None:
     if since is None:
         return None
     return f"{since:%H:%M}" if since.date() == datetime.now().astimezone().date() else f"{since:%Y-%m-%d %H:%M}"
+
+
+def refuse_untested(tested: Manifest, manifest: Manifest, progress: DeployProgress) -> None:
+    """Check that the files to deploy are those that the tests have run with.
+
+    A changed source is refused: it was saved while the tests ran. So is a new one, which robots may import from a
+    directory by its name, and a removed one. Tests seldom write sources, and mostly the same each time, so that the
+    next deploy works. They do write other files, such as logs, which may differ each time and would prevent every
+    deploy: when such a file has changed, the deploy goes on with a warning, and a new one is the tests'.
+
+    :param tested: the files at the beginning of the tests
+    :param manifest: the files to deploy
+    :raises RefusedError: with the changed sources
+    """
+    from .manifest import listed_paths
+
+    before, now = ({each.path: each.sha256 for each in files.entries} for files in (tested, manifest))
+    changed = sorted(path for path in before.keys() | now.keys() if before.get(path) != now.get(path))
+    sources = [path for path in changed if path.endswith(".py")]
+    if sources:
+        raise RefusedError(
+            f"not deployed: files have changed since the tests began, and were not tested: {listed_paths(sources)}",
+            remedy="Run the command again. If the tests write these files, exclude them with exclude = [...] under "
+            "[tool.pyfrc.deploy] in pyproject.toml.",
+        )
+    if others := [path for path in changed if path in before]:
+        progress.warning(f"files have changed since the tests began: {listed_paths(others)}")
 
 
 class ImportCheck:

@@ -181,6 +181,11 @@ def _refuse_large(sizes: dict[str, int]) -> None:
         )
 
 
+def listed_paths(paths: Sequence[str]) -> str:
+    """Return paths for a message: the first ones, and the number of the others."""
+    return _listed([ascii_path(path) for path in paths])
+
+
 def _listed(names: Sequence[str]) -> str:
     more = len(names) - _MAX_NAMED
     return ", ".join(names[:_MAX_NAMED]) + (f" and {more} more" if more > 0 else "")

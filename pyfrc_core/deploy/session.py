@@ -14,7 +14,14 @@ from .connection import Connection, load_in_background
 from .console import follow_console
 from .discovery import Address
 from .errors import RefusedError
-from .local_checks import ImportCheck, ask_to_continue, passed_already, refuse_other_main_files, run_tests
+from .local_checks import (
+    ImportCheck,
+    ask_to_continue,
+    passed_already,
+    refuse_other_main_files,
+    refuse_untested,
+    run_tests,
+)
 from .progress import DeployProgress, UserInterface
 from .robot_setup import other_languages_notice
 from .target_connection import (
@@ -73,7 +80,7 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     progress = talk.progress
     refuse_other_main_files(project, options.nonstandard)
     target = choose_target(project, options.choice, talk.ask)
-    importing = None if options.dry_run else _check_program(project, options, talk)
+    checked = _Checked() if options.dry_run else _check_program(project, options, talk)
     with connect_early(project, target, options.choice) as early:
         loading.join()  # the login begins then; the following runs while the robot responds
         from .manifest import build_manifest
@@ -84,6 +91,8 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
         with progress.phase("files") as phase:
             manifest = build_manifest(project.root, project.settings.deploy.exclude, options.large)
             phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
+        if checked.tested is not None:
+            refuse_untested(checked.tested, manifest, progress)
         packages = load_robot_packages(project.pyproject)
         imports = ImportSearch(manifest, project.root, project.main_file.name)
         connection = connected_early(early, progress)
@@ -92,8 +101,8 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
                 progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
             refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
             check_packages(imports, packages, robot.facts, talk, dry_run=options.dry_run, refuse=options.check_versions)
-            if importing is not None:
-                _refuse_unimportable(importing, talk)
+            if checked.importing is not None:
+                _refuse_unimportable(checked.importing, talk)
             if options.dry_run:
                 with progress.phase("compare") as phase:
                     plan = robot.plan(manifest, phase.work)
@@ -241,22 +250,39 @@ def _report_deployed(
     talk.progress.result(result, text)
 
 
-def _check_program(project: Project, options: DeployOptions, talk: UserInterface) -> ImportCheck | None:
+@dataclass(frozen=True)
+class _Checked:
+    """What was checked before the connection.
+
+    :param importing: the check that the program can be imported; None if the tests run
+    :param tested: the files that a deploy would have sent when the tests began, if these passed now
+    """
+
+    importing: ImportCheck | None = None
+    tested: Manifest | None = None
+
+
+def _check_program(project: Project, options: DeployOptions, talk: UserInterface) -> _Checked:
     """Run the tests. Without tests, import the program in the background."""
     if options.skip_tests or (project.find_tests() is None and not options.builtin):
         if not options.skip_tests:
             talk.progress.note("this project has no tests; the ready-made ones run with --builtin")
-        return ImportCheck(project)
+        return _Checked(importing=ImportCheck(project))
     if (since := passed_already(project, options.builtin)) is not None:
         with talk.progress.phase("tests") as phase:
             phase.detail = f"passed at {since}; nothing has changed since"
-        return None
+        return _Checked()
+    from .manifest import build_manifest
+
+    before = build_manifest(project.root, project.settings.deploy.exclude, options.large)
     with talk.progress.phase("tests", own_output=True) as phase:
         passed = run_tests(project, options.builtin, talk.progress.child_output, talk.progress.quiet)
         phase.detail = "passed" if passed else "failed"
+    if not project.main_file.is_file():
+        raise RefusedError("not deployed: it was removed while the tests ran", where=project.main_file)
     if not passed:
         ask_to_continue("the tests failed", talk.ask, "Correct the failures, or deploy without tests: --skip-tests")
-    return None
+    return _Checked(tested=before if passed else None)
 
 
 def _refuse_unimportable(importing: ImportCheck, talk: UserInterface) -> None:
