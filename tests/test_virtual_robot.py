@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import re
@@ -22,8 +23,10 @@ from ports import lasting_port
 from skips import require
 
 from pyfrc_core.doctor.robot import RobotSearch
+from pyfrc_core.errors import PyfrcError
 from pyfrc_core.project import find_project
 from pyfrc_core.virtual_robot.console import ConsoleServer
+from pyfrc_core.virtual_robot.disk import RobotDisk
 
 #: Wall seconds after which a test gives up, and after which a robot is killed. They decide nothing else.
 SECONDS, ROBOT_SECONDS = 120, 240
@@ -274,6 +277,32 @@ def test_a_command_gets_the_address_and_the_robot_ends_with_it(project: RobotPro
     result = project.run("virtual-robot", "--directory", directory, "--", "no-such-command")
     assert result.code == 2
     assert "there is no command 'no-such-command'" in result.first_error
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="processes there end without signals")
+def test_a_command_that_a_signal_ends_gives_the_exit_code_of_a_shell(project: RobotProject, directory: Path) -> None:
+    result = project.run("virtual-robot", "--directory", directory, "--", "sh", "-c", "kill -KILL $$")
+    assert result.code == 128 + signal.SIGKILL, result.output
+
+
+def test_a_key_that_cannot_be_read_is_named(project: RobotProject, directory: Path) -> None:
+    directory.mkdir()
+    (directory / "host_key").write_bytes(bytes(range(128, 256)))
+    result = project.run("virtual-robot", "--directory", directory)
+    assert result.code == 1, result.output
+    assert result.first_error.startswith(f"{directory / 'host_key'}: this is not an SSH key: ")
+
+
+@pytest.mark.parametrize("write", ["pathlib.Path.write_text", "pyfrc_core.virtual_robot.disk.write_whole"])
+def test_a_full_disk_is_named(write: str, directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(write, full)
+    with pytest.raises(PyfrcError) as caught, RobotDisk(directory) as disk:
+        disk.write_address("127.0.0.1:2222", 2222)
+    assert caught.value.message == "cannot store the virtual robot's files here: no space left on device"
+    assert caught.value.where == str(directory)
 
 
 def test_the_guides_example_deploys(project: RobotProject) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -33,7 +35,7 @@ class RobotDisk:
         self.paths = RobotPaths(str(directory / "root"))
         self._key_file = directory / "host_key"
         self._port_file = directory / "port"
-        try:
+        with _storing_in(directory):
             if directory.is_dir() and any(directory.iterdir()) and not self._key_file.exists():
                 raise UsageError(
                     "this directory has files that are not from a virtual robot",
@@ -42,21 +44,15 @@ class RobotDisk:
                 )
             directory.mkdir(parents=True, exist_ok=True)
             self._lock = (directory / "lock").open("a+", encoding="utf-8")
-        except OSError as error:
-            raise PyfrcError(
-                f"cannot store the virtual robot's files here: {(error.strerror or str(error)).lower()}",
-                where=directory,
-                remedy="Choose a writable directory with --directory DIR.",
-            ) from error
-        try:
-            self._take_lock()
-            self.key = self._host_key()
-            if fresh:
-                shutil.rmtree(self.paths.root, ignore_errors=True)
-            self._create()
-        except BaseException:
-            self._lock.close()
-            raise
+            try:
+                self._take_lock()
+                self.key = self._host_key()
+                if fresh:
+                    shutil.rmtree(self.paths.root, ignore_errors=True)
+                self._create()
+            except BaseException:
+                self._lock.close()
+                raise
 
     def __enter__(self) -> RobotDisk:
         return self
@@ -74,10 +70,11 @@ class RobotDisk:
 
     def write_address(self, address: str, port: int) -> None:
         """Store the port for the next start, and the address for the error message of a second start."""
-        write_whole(self._port_file, str(port))
-        self._lock.truncate(0)
-        self._lock.write(json.dumps({"address": address}))
-        self._lock.flush()
+        with _storing_in(self.directory):
+            write_whole(self._port_file, str(port))
+            self._lock.truncate(0)
+            self._lock.write(json.dumps({"address": address}))
+            self._lock.flush()
 
     def _take_lock(self) -> None:
         try:
@@ -100,7 +97,7 @@ class RobotDisk:
             beside.replace(self._key_file)
         try:
             return paramiko.ECDSAKey.from_private_key_file(str(self._key_file))
-        except paramiko.SSHException as error:
+        except (paramiko.SSHException, ValueError) as error:  # ValueError: it is not text
             raise PyfrcError(
                 f"this is not an SSH key: {error}",
                 where=self._key_file,
@@ -113,6 +110,19 @@ class RobotDisk:
         for each in (self.paths.home, temporary, self.paths.of(IMAGE_FILE).parent):
             each.mkdir(parents=True, exist_ok=True)
         self.paths.of(IMAGE_FILE).write_text(f'[ImageMetadata]\nIMAGEVERSION = "{VIRTUAL_IMAGE}"\n')
+
+
+@contextmanager
+def _storing_in(directory: Path) -> Iterator[None]:
+    """Name the directory in errors of the operating system, of which some name no file, as that of a full disk."""
+    try:
+        yield
+    except OSError as error:
+        raise PyfrcError(
+            f"cannot store the virtual robot's files here: {(error.strerror or str(error)).lower()}",
+            where=directory,
+            remedy="Choose a writable directory with --directory DIR.",
+        ) from error
 
 
 def _at(text: str) -> str:

@@ -48,7 +48,7 @@ def show(
 def run_command(command: Sequence[str], directory: Path | None, port: int | None, fresh: bool) -> int:
     """Run a command with a virtual robot's address as last argument, and stop the robot when it has ended.
 
-    :return: the command's exit code
+    :return: the command's exit code; 128 + N if signal N has ended it, as in a shell
     :raises PyfrcError: if the robot or the command cannot be started
     """
     program = shutil.which(command[0])
@@ -56,4 +56,5 @@ def run_command(command: Sequence[str], directory: Path | None, port: int | None
         raise UsageError(f"there is no command {command[0]!r}", remedy="Write: pyfrc virtual-robot -- COMMAND")
     directory = (directory or default_directory()).absolute()
     with ending_like_ctrl_c(), VirtualRobot(directory, port=port, fresh=fresh) as robot:
-        return subprocess.run([program, *command[1:], robot.address], check=False).returncode
+        code = subprocess.run([program, *command[1:], robot.address], check=False).returncode
+    return code if code >= 0 else 128 - code
