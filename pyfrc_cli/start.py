@@ -26,6 +26,22 @@ def main() -> None:
     except KeyboardInterrupt:  # during the import; later, `run` handles it
         print("interrupted", file=sys.stderr)
         sys.exit(2)
+    finally:
+        _end_at_once_by_ctrl_c()
+
+
+def _end_at_once_by_ctrl_c() -> None:
+    """Let a further Ctrl-C end the process with exit code 2.
+
+    The result was printed. Python may still wait for threads, and would print a traceback or end by the signal.
+    """
+    import signal
+    from contextlib import suppress
+
+    with suppress(OSError, ValueError):  # its reader may have ended
+        sys.stdout.flush()
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # otherwise nohup, for example, ignores it
+        signal.signal(signal.SIGINT, lambda number, frame: os._exit(2))
 
 
 def _open_closed_streams() -> None:

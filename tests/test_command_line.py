@@ -114,6 +114,27 @@ def test_ctrl_c_while_it_is_still_starting_is_told_in_a_word() -> None:
     assert (done.returncode, done.stdout, done.stderr) == (2, "", "interrupted\n")
 
 
+INTERRUPTED_AT_ITS_END = """
+import atexit, os, signal, threading
+from pyfrc_cli.start import main
+
+def interrupt():
+    os.kill(os.getpid(), signal.SIGINT)
+    threading.Event().wait()
+
+atexit.register(interrupt)
+main()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
+def test_ctrl_c_after_the_result_ends_without_a_traceback() -> None:
+    command = [sys.executable, "-c", INTERRUPTED_AT_ITS_END, "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, "")
+    assert done.stdout.startswith("Usage: pyfrc ")
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 @pytest.mark.parametrize("no_color", [None, "1"])
 def test_colours_are_for_terminals_and_for_who_wants_them(no_color: str | None, make_project) -> None:
