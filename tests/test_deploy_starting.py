@@ -360,7 +360,7 @@ def test_a_link_that_is_lost_while_going_back_does_not_suggest_to_deploy_again(
             robot.channel.sendall = sendall  # type: ignore[method-assign]
             return True
 
-        with failing(agent, 3, "; the robot may have switched to release 1, but still runs") as caught:
+        with failing(agent, 3, "; the robot may have switched to release 1, but may still run") as caught:
             start(agent, UserInterface(talk.progress, Questions(text=str, yes=lose)), 1)
     assert "again" not in str(caught.value.remedy)
     assert "pyfrc deploy --rollback 1" in str(caught.value.remedy)

@@ -65,7 +65,7 @@ def rolling_back(release: int | None) -> RecoveryHint:
     # Not the same command again: it may have been a deploy, and from the earlier release it would go back further.
     name = f"release {release}" if release else "an earlier release"
     return RecoveryHint(
-        f"the robot may have switched to {name}, but still runs the program from before",
+        f"the robot may have switched to {name}, but may still run the program from before",
         f"To see which release the robot has: pyfrc deploy-info. To start {name}: "
         f"pyfrc deploy --rollback {release or 'ID'}.",
     )
