@@ -235,11 +235,15 @@ def test_old_releases_that_cannot_be_removed_do_not_prevent_a_deploy(
     nothing = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"  # SHA-256
     sent = wire.frame(wire.CONTENT, zlib.compress(b""))
     request = {"main": "robot.py", "files": [["robot.py", 0, nothing, False]]}
-    deployed = transaction.Deploy(
-        releases.Releases(RobotPaths(str(robot.root)), Activity(lambda **said: None)),
-        wire.Wire(io.BytesIO(sent), io.BytesIO()),
-        request,
-    ).run()
+    reading, writing = os.pipe()
+    os.write(writing, sent)
+    os.close(writing)
+    with os.fdopen(reading, "rb", buffering=0) as source:
+        deployed = transaction.Deploy(
+            releases.Releases(RobotPaths(str(robot.root)), Activity(lambda **said: None)),
+            wire.Wire(source, io.BytesIO()),
+            request,
+        ).run()
     assert deployed["release"] == 1
 
 
