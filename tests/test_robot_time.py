@@ -964,6 +964,7 @@ def test_a_forked_process_ends_where_it_leaves_the_robots_code(make_project, end
     result = project.run("test", "--", "-s")
     assert result.code == 0, result.output
     assert said in result.output
+    assert "pyfrc_core" not in result.output
 
 
 def test_fuzzing_finds_what_only_two_buttons_at_once_do_and_repeats_it(make_project) -> None:

@@ -59,11 +59,16 @@ def in_this_process() -> Iterator[None]:
 def _end_forked(error: BaseException | None) -> NoReturn:
     import traceback
 
+    from ..project.robot_files import is_pyfrc
+
     status = 1
     if isinstance(error, SystemExit) and not isinstance(error.code, str):
         status = error.code or 0
     elif error is not None:
-        traceback.print_exception(error)
+        users = error.__traceback__
+        while users is not None and is_pyfrc(users.tb_frame.f_code.co_filename):
+            users = users.tb_next
+        traceback.print_exception(error.with_traceback(users))
     else:
         print(
             "error: a process that robot code has forked goes on as the robot; end it with os._exit()", file=sys.stderr
