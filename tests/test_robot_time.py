@@ -993,3 +993,108 @@ def test_fuzzing_finds_what_only_two_buttons_at_once_do_and_repeats_it(make_proj
         (trace,) = (project.path / run).iterdir()
         traces.add(trace.read_text())
     assert len(traces) == 1
+
+
+def test_a_filter_that_is_made_while_the_robot_is_imported_begins_with_the_run(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import pytest
+
+        def test_it(control, robot):
+            control.set_operator_control(enabled=True)
+            control.run_test(lambda tm: tm < 0.1)
+            assert robot.values == pytest.approx([0.06, 0.12, 0.18, 0.24])
+        """,
+        """
+        import wpilib
+        from wpimath.filter import SlewRateLimiter
+
+        class MyRobot(wpilib.TimedRobot):
+            limiter = SlewRateLimiter(3.0)
+            values = []
+
+            def teleopPeriodic(self):
+                self.values.append(self.limiter.calculate(1.0))
+        """,
+    )
+
+
+def test_a_test_in_wpilibs_own_way_runs_the_robot(make_project) -> None:
+    passes(
+        make_project,
+        """
+        import threading
+        from wpilib import simulation
+        import robot
+
+        def test_it():
+            simulation.pauseTiming()
+            simulation.DriverStationSim.resetData()
+            robot_program = robot.MyRobot()
+            thread = threading.Thread(target=robot_program.startCompetition, daemon=True)
+            thread.start()
+            simulation.waitForProgramStart()
+            simulation.stepTiming(0.1)
+            robot_program.endCompetition()
+            thread.join(60)
+            assert not thread.is_alive()
+            assert robot_program.count in (4, 5)
+        """,
+        """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            count = 0
+
+            def robotPeriodic(self):
+                self.count += 1
+        """,
+    )
+
+
+def test_a_robot_that_ends_its_own_program_has_ended(make_project) -> None:
+    passes(
+        make_project,
+        """
+        def test_it(control, robot):
+            with control.run_robot():
+                control.step_timing(seconds=0.08, autonomous=False, enabled=True)
+                assert control.robot_is_alive
+                control.step_timing(seconds=0.2, autonomous=False, enabled=True, assert_alive=False)
+                assert not control.robot_is_alive
+                assert robot.count == 5
+        """,
+        """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            count = 0
+
+            def robotPeriodic(self):
+                self.count += 1
+                if self.count == 5:
+                    self.endCompetition()
+        """,
+    )
+
+
+def test_what_is_no_function_is_no_periodic_callback(make_project) -> None:
+    project = make_project(
+        {
+            "robot.py": """
+            import wpilib
+
+            class MyRobot(wpilib.TimedRobot):
+                def robotInit(self):
+                    self.addPeriodic(self.slow(), 0.5)
+
+                def slow(self):
+                    pass
+            """
+        }
+    )
+    result = project.run("test", "--builtin")
+    assert result.code == 1
+    place = project.place("robot.py", "self.addPeriodic")
+    assert f"{place}: TypeError: addPeriodic: the callback is None, not a function" in result.output

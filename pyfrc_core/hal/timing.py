@@ -6,6 +6,9 @@ call (such as `wpilib.simulation.stepTiming`), so they always reach the HAL itse
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from hal.simulation import (
     notifyDriverStationNewData,
     pauseTiming,
@@ -34,6 +37,19 @@ def stop_and_zero() -> None:
     """Stop HAL time at 0; from now on it advances only by `step_us`."""
     pauseTiming()
     restartTiming()
+
+
+@contextmanager
+def standing_at_zero() -> Iterator[None]:
+    """Stop HAL time at 0 in this context, as when a robot's run begins; then let it follow the wall clock.
+
+    What robot code makes while it is imported, such as a `SlewRateLimiter`, takes its first time from it.
+    """
+    stop_and_zero()
+    try:
+        yield
+    finally:
+        run_freely()
 
 
 def run_freely() -> None:

@@ -19,12 +19,11 @@ import wpiutil
 
 from ..compat.wpilib_private import LOOP_FUNCTION
 from ..project.robot_files import RobotFiles
-from ..runtime.clock import to_us
 from ..runtime.notifier import Notifier
 from ..runtime.patch_table import PatchTable
 from ..runtime.robot import RobotRun
 from ..runtime.threads import RobotThreads
-from ..runtime.timed_loop import TimedLoop
+from ..runtime.timed_loop import Periodic, TimedLoop
 from .figures import Measurand
 from .stopwatch import Stopwatch
 
@@ -62,7 +61,7 @@ class UserFunctions:
         """Time the functions that are created from now on, until the table is undone."""
         for base in (wpilib.RobotBase, wpiutil.Sendable):
             table.patch(base, "__init_subclass__", classmethod(self._when_derived_from(base)))
-        table.patch(TimedLoop, "add", self._adding(TimedLoop.add))
+        table.patch(TimedLoop, "schedule", self._scheduling(TimedLoop.schedule))
         self._time_arguments(table, wpilib.event.EventLoop, "bind", (1,), ("action",))
         for name in ("__init__", "setCallback"):
             self._time_arguments(table, Notifier, name, (1,), ("handler",))
@@ -130,18 +129,18 @@ class UserFunctions:
 
     # -- callbacks ------------------------------------------------------------------------------------------------
 
-    def _adding(self, real: Callable[..., None]) -> Callable[..., None]:
-        """Wrap `TimedLoop.add`, for the loop itself and for callbacks with their own rate."""
+    def _scheduling(self, real: Callable[..., Periodic]) -> Callable[..., Periodic]:
+        """Wrap `TimedLoop.schedule`, for the loop itself and for callbacks with their own rate."""
 
-        def add(loop: TimedLoop, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
-            period_ns = to_us(period) * 1000
+        def schedule(loop: TimedLoop, call: Callable[[], object], first_due_us: int, period_us: int) -> Periodic:
+            period_ns = period_us * 1000
             if getattr(call, "__name__", "") == LOOP_FUNCTION.name:
                 call = self._stopwatch.timed_whole_loop(self._wrap(call), period_ns)
             else:
                 call = self.timed(call, "periodic", period_ns=period_ns)
-            real(loop, call, period, offset)
+            return real(loop, call, first_due_us, period_us)
 
-        return add
+        return schedule
 
     def _time_callbacks_of_commands(self, table: PatchTable) -> None:
         """Time the functions that commands and triggers take; if the robot uses commands2, it is imported by now."""

@@ -12,6 +12,7 @@ from typing import Any
 
 from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, RobotCodeError, nearest, text_of
+from ..hal.timing import standing_at_zero
 from ..processes.crash_report import reported_exit
 from ..project import Project
 from ..project.hidden_libraries import LIBRARIES, find_hidden_by_any_name
@@ -25,12 +26,14 @@ _ENCODING_MESSAGE = re.compile(r"null bytes|Non-UTF-8|codec can't decode")
 
 
 def load_robot(project: Project) -> type[Any]:
-    """Import the robot program and return its robot class.
+    """Import the robot program and return its robot class. Call this before its run, whose time starts at 0 as here.
 
     :raises RobotCodeError: when the user's code fails, naming the user's line
     :raises ProjectError: when there is not exactly one robot class to choose
     """
-    return choose_robot_class(project, import_file(project, project.main_file))
+    with standing_at_zero():
+        module = import_file(project, project.main_file)
+    return choose_robot_class(project, module)
 
 
 def import_file(project: Project, file: Path, name: str | None = None) -> ModuleType:

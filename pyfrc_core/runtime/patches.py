@@ -228,6 +228,7 @@ class Patches:
     def _timed_robot(self) -> list[Patch]:
         TimedRobot = wpilib.TimedRobot
         real_add, real_start = TimedRobot.addPeriodic, TimedRobot.startCompetition
+        real_end = TimedRobot.endCompetition
         real_loop_start = TimedRobot.getLoopStartTime
         real_turn: Callable[[wpilib.IterativeRobotBase], None] = LOOP_FUNCTION.find()
 
@@ -249,21 +250,29 @@ class Patches:
             if active_run.run is None:
                 real_add(robot, callback, period, offset)
             else:
-                active_run.run.timed_loop.add(callback, period, offset)
+                active_run.run.timed_loop.add(robot, callback, period, offset)
 
-        def start_competition(robot: wpilib.TimedRobot) -> None:
+        # Under its original name, too: otherwise WPILib's own takes it for the method of a derived class, and calls it.
+        def startCompetition(robot: wpilib.TimedRobot) -> None:
             __tracebackhide__ = True
             if active_run.run is None:
                 return real_start(robot)
             active_run.run.timed_loop.begin(robot)
             return active_run.run.timed_loop.run_blocking(active_run.run.threads)
 
+        def endCompetition(robot: wpilib.TimedRobot) -> None:
+            run = active_run.run
+            if run is not None and run.started:  # before that, only its alarm is cancelled: see `construction`
+                run.timed_loop.stopped = True
+            real_end(robot)
+
         def loop_start_time(robot: wpilib.TimedRobot) -> Any:
             return real_loop_start(robot) if active_run.run is None else active_run.run.timed_loop.loop_start_us
 
         return [
             Patch(TimedRobot, "addPeriodic", add_periodic),
-            Patch(TimedRobot, "startCompetition", start_competition),
+            Patch(TimedRobot, "startCompetition", startCompetition),
+            Patch(TimedRobot, "endCompetition", endCompetition),
             Patch(TimedRobot, "getLoopStartTime", loop_start_time),
             Patch(*LOOP_FUNCTION.place, _loopFunc),
         ]

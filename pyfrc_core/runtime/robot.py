@@ -211,7 +211,9 @@ class RobotRun:
         """Whether the robot program has started and has neither ended nor failed."""
         if not self._started or self._ended or self.threads.failure is not None:
             return False
-        return self.own_loop is None or not self.own_loop.finished
+        if self.own_loop is not None:
+            return not self.own_loop.finished
+        return not self.timed_loop.stopped
 
     @property
     def started(self) -> bool:

@@ -8,7 +8,7 @@ time. A robot that overrides `startCompetition` and calls `super().startCompetit
 from __future__ import annotations
 
 from collections.abc import Callable
-from operator import attrgetter
+from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
 import hal
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from .threads import RobotThreads
 
 
-_DUE = attrgetter("due_us")
 _NEVER = 1 << 62
 
 
@@ -36,6 +35,9 @@ class Periodic:
         self.due_us = first_due_us
         self.period_us = period_us
 
+    def __lt__(self, other: Periodic) -> bool:
+        return self.due_us < other.due_us
+
     def move_on(self, called_at_us: int) -> None:
         """Fix the next time, skipping the periods that were missed, as WPILib does."""
         self.due_us += self.period_us + (called_at_us - self.due_us) // self.period_us * self.period_us
@@ -43,6 +45,9 @@ class Periodic:
 
 class TimedLoop:
     """The callbacks of one `TimedRobot`.
+
+    They are in a heap, as in WPILib. Which of several that are due at once comes first, depends on what was taken from
+    it and put into it before: Python's heaps break ties as the C++ library of the robot does.
 
     :param created_us: when the robot was constructed; its periods count from there
     :param on_initialized: called when the robot's own initialisation is over
@@ -61,6 +66,7 @@ class TimedLoop:
         self._on_initialized = on_initialized
         self._created_us = created_us
         self._callbacks: list[Periodic] = []
+        self._turn_of_robot: Periodic | None = None
         #: Whether the clock calls what is due: from the end of `robotInit` on.
         self.in_place = False
         self._turns_on_own_thread = False
@@ -73,17 +79,32 @@ class TimedLoop:
         #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
         self.loop_start_us = 0
 
-    def add(self, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
+    def add(self, robot: wpilib.TimedRobot, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
         """`TimedRobot.addPeriodic`: times in seconds."""
+        if not callable(call):
+            raise TypeError(f"addPeriodic: the callback is {call!r}, not a function: write it without parentheses")
         period_us = to_us(period)
         if period_us <= 0:
             raise ValueError(f"addPeriodic: the period must be longer than 0 s, not {period!r}")
+        self._schedule_turns(robot)
         periods_gone = (self._clock.now_us - self._created_us) // period_us
         first = self._created_us + to_us(offset) + (periods_gone + 1) * period_us
-        callback = Periodic(call, first, period_us)
-        self._callbacks.append(callback)
+        callback = self.schedule(call, first, period_us)
         if self.in_place and callback.due_us < self._alarm_us < _NEVER:
             self._set_alarm(callback)
+
+    def _schedule_turns(self, robot: wpilib.TimedRobot) -> Periodic:
+        """Put WPILib's loop into the schedule, as the robot's constructor does: before all others."""
+        if self._turn_of_robot is None:
+            period_us = to_us(robot.getPeriod())
+            self._turn_of_robot = self.schedule(LOOP_FUNCTION.of(robot), self._created_us + period_us, period_us)
+        return self._turn_of_robot
+
+    def schedule(self, call: Callable[[], object], first_due_us: int, period_us: int) -> Periodic:
+        """Put a callback, or WPILib's loop, into the schedule."""
+        callback = Periodic(call, first_due_us, period_us)
+        heappush(self._callbacks, callback)
+        return callback
 
     def begin(self, robot: wpilib.TimedRobot) -> None:
         """What WPILib does before its first loop: the robot's own initialisation, then the loop's schedule."""
@@ -92,14 +113,12 @@ class TimedLoop:
         SIMULATION_INIT.of(robot)()
         self._on_initialized()
         hal.observeUserProgramStarting()
-        self.add(LOOP_FUNCTION.of(robot), robot.getPeriod())
-        self.main = self._callbacks.pop()
-        self._callbacks.insert(0, self.main)  # WPILib schedules it before all others
+        self.main = self._schedule_turns(robot)
 
     def run_in_place(self) -> None:
         """Let the clock call what is due from now on."""
         self.in_place = True
-        self._set_alarm(self._next())
+        self._set_alarm(self._callbacks[0])
 
     @property
     def in_turn(self) -> bool:
@@ -120,7 +139,7 @@ class TimedLoop:
     def run_blocking(self, threads: RobotThreads) -> None:
         """Call what is due on the calling thread, which waits in between, until the run ends."""
         __tracebackhide__ = True
-        callback = self._next()
+        callback = self._callbacks[0]
         while not self.stopped:
             threads.sleep_until(callback.due_us)
             self._turns_on_own_thread = True
@@ -132,8 +151,8 @@ class TimedLoop:
         __tracebackhide__ = True
         clock = self._clock
         woken_us = clock.now_us
-        callback = self._next()
-        while callback.due_us <= woken_us and not self.stopped:
+        while self._callbacks[0].due_us <= woken_us and not self.stopped:
+            callback = heappop(self._callbacks)
             self.loop_start_us = clock.now_us
             callback.call()
             if clock.now_us != self.loop_start_us:
@@ -141,14 +160,10 @@ class TimedLoop:
             for listener in self.after_calls:
                 listener(callback)
             callback.move_on(woken_us)
-            callback = self._next()
-        return callback
+            heappush(self._callbacks, callback)
+        return self._callbacks[0]
 
     def _look_for_overrun(self, callback: Periodic) -> None:
         took_us = self._clock.now_us - self.loop_start_us
         if took_us > callback.period_us:
             self._when_overrun(took_us)
-
-    def _next(self) -> Periodic:
-        callbacks = self._callbacks
-        return callbacks[0] if len(callbacks) == 1 else min(callbacks, key=_DUE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -29,6 +30,10 @@ class Robot:
         return 0.02
 
 
+#: For callbacks that are added when the robot's turns are in the schedule.
+ROBOT: Any = None
+
+
 def make_loop(timeline: Timeline, turn: Callable[[], object] | None = None, start: bool = True) -> TimedLoop:
     """A loop of 20 ms whose overruns are in the log."""
     loop = TimedLoop(
@@ -46,9 +51,10 @@ def make_loop(timeline: Timeline, turn: Callable[[], object] | None = None, star
 
 def test_the_robots_initialisation_comes_first_and_then_the_first_turn_after_one_period(timeline: Timeline) -> None:
     loop = make_loop(timeline, start=False)
-    loop.add(lambda: timeline.note("of the constructor"), 0.02)
+    robot: Any = Robot(timeline, lambda: timeline.note("loop"))
+    loop.add(robot, lambda: timeline.note("of the constructor"), 0.02)
     assert not loop.in_place
-    loop.begin(Robot(timeline, lambda: timeline.note("loop")))  # type: ignore[arg-type]
+    loop.begin(robot)
     assert timeline.log == ["0 robotInit", "0 _simulationInit", "0 initialized"]
     loop.run_in_place()
     assert loop.in_place
@@ -67,10 +73,10 @@ def test_within_a_packet_the_order_is_packet_threads_loop_physics(timeline: Time
 def test_periods_and_offsets_count_from_the_robots_construction(timeline: Timeline) -> None:
     timeline.run_until(3)
     loop = make_loop(timeline)
-    loop.add(lambda: timeline.note("offset"), 0.01, 0.004)
+    loop.add(ROBOT, lambda: timeline.note("offset"), 0.01, 0.004)
     timeline.run_until(18)
     assert timeline.log == ["17 offset"]
-    loop.add(lambda: timeline.note("late"), 0.005)
+    loop.add(ROBOT, lambda: timeline.note("late"), 0.005)
     assert timeline.run_until(34)[1:] == ["23 loop", "23 late", "27 offset", "28 late", "33 late"]
 
 
@@ -78,7 +84,7 @@ def test_a_callback_that_is_added_within_the_loop_is_called_after_its_first_peri
     def turn() -> None:
         timeline.note("loop")
         if timeline.clock.now_us == 20_000:
-            loop.add(lambda: timeline.note("added"), 0.006)
+            loop.add(ROBOT, lambda: timeline.note("added"), 0.006)
 
     loop = make_loop(timeline, turn)
     assert timeline.run_until(41) == ["20 loop", "24 added", "30 added", "36 added", "40 loop"]
@@ -87,7 +93,7 @@ def test_a_callback_that_is_added_within_the_loop_is_called_after_its_first_peri
 @pytest.mark.parametrize("period", [0, -0.01, 0.0000001])
 def test_a_period_must_be_longer_than_nothing(period: float, timeline: Timeline) -> None:
     with pytest.raises(ValueError, match=r"^addPeriodic: the period must be longer than 0 s, not"):
-        make_loop(timeline).add(lambda: None, period)
+        make_loop(timeline).add(ROBOT, lambda: None, period)
 
 
 def test_an_overrun_skips_the_periods_that_it_has_missed(timeline: Timeline) -> None:
@@ -122,7 +128,7 @@ def test_callbacks_of_one_turn_follow_each_other_and_one_that_sleeps_is_not_inte
         timeline.note("loop ends")
 
     loop = make_loop(timeline, turn)
-    loop.add(lambda: timeline.note("often"), 0.005)
+    loop.add(ROBOT, lambda: timeline.note("often"), 0.005)
     loop.after_calls.append(lambda callback: timeline.note(f"after {callback.period_us}"))
     timeline.at(23, PHYSICS, "physics")
     timeline.run_until(19)
@@ -153,7 +159,7 @@ def test_a_loop_that_was_stopped_makes_no_further_call(timeline: Timeline) -> No
         loop.stopped = timeline.clock.now_us >= 40_000
 
     loop = make_loop(timeline, turn)
-    loop.add(lambda: timeline.note("other"), 0.02)
+    loop.add(ROBOT, lambda: timeline.note("other"), 0.02)
     assert timeline.run_until(100) == ["20 loop", "20 other", "40 loop"]
 
 
@@ -166,7 +172,7 @@ def test_a_loop_on_a_thread_of_its_own_makes_the_same_calls(timeline: Timeline) 
     loop = make_loop(timeline, start=False)
     loop.begin(Robot(timeline, turn))  # type: ignore[arg-type]
     timeline.log.clear()
-    loop.add(lambda: timeline.note("other"), 0.03)
+    loop.add(ROBOT, lambda: timeline.note("other"), 0.03)
     timeline.thread("robot", lambda: loop.run_blocking(timeline.threads))
     timeline.run_until(79)
     assert not loop.in_turn
@@ -175,8 +181,8 @@ def test_a_loop_on_a_thread_of_its_own_makes_the_same_calls(timeline: Timeline) 
         "30 other",
         "40 loop True",
         "65 took 25",
+        "65 other",  # it was in the schedule, with the same time, when the loop was put back
         "65 loop True",
-        "65 other",
     ]
     loop.stopped = True
     assert timeline.run_until(200)[-1].startswith(("80", "65"))
@@ -190,3 +196,28 @@ def test_the_next_time_is_the_next_whole_period_after_the_call(called_at: int, n
     periodic = Periodic(lambda: None, 100, 10)
     periodic.move_on(called_at)
     assert periodic.due_us == next_due
+
+
+def test_callbacks_that_are_due_at_once_come_in_the_order_of_wpilibs_heap(timeline: Timeline) -> None:
+    loop = make_loop(timeline)
+    loop.add(ROBOT, lambda: timeline.note("40"), 0.04)
+    loop.add(ROBOT, lambda: timeline.note("10"), 0.01, 0.005)
+    loop.add(ROBOT, lambda: timeline.note("100"), 0.1)
+    # Measured with WPILib's own loop, stepped by 5 ms.
+    assert timeline.run_until(200) == [
+        *("15 10", "20 loop", "25 10", "35 10", "40 40", "40 loop", "45 10", "55 10", "60 loop", "65 10", "75 10"),
+        *("80 40", "80 loop", "85 10", "95 10", "100 100", "100 loop", "105 10", "115 10", "120 40", "120 loop"),
+        *("125 10", "135 10", "140 loop", "145 10", "155 10", "160 40", "160 loop", "165 10", "175 10", "180 loop"),
+        *("185 10", "195 10", "200 loop", "200 40", "200 100"),
+    ]
+
+
+def test_the_first_turn_follows_an_initialisation_that_waits_for_longer_than_a_period(timeline: Timeline) -> None:
+    loop = make_loop(timeline, start=False)
+    robot: Any = Robot(timeline, lambda: timeline.note("loop"))
+    loop.add(robot, lambda: timeline.note("other"), 0.05)
+    robot.robotInit = lambda: timeline.sleep(105)
+    loop.begin(robot)
+    timeline.log.clear()
+    loop.run_in_place()
+    assert timeline.run_until(150) == ["105 loop", "105 other", "120 loop", "140 loop", "150 other"]
