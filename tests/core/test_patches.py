@@ -175,7 +175,7 @@ def test_a_timed_robots_functions_are_the_runs(real: list[tuple[Any, ...]], run:
     robot = Robot()
     calls: list[str] = []
     run.timed_loop = SimpleNamespace(  # type: ignore[assignment]
-        add=lambda *args: calls.append(f"add {args[1:]}"),
+        add=lambda robot, call, *times: calls.append(f"add {times}"),
         begin=lambda robot: calls.append("begin"),
         run_blocking=lambda threads: calls.append("loop"),
         loop_start_us=1234,
