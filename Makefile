@@ -2,8 +2,8 @@
 PYTHON ?= python3
 VENV ?= .venv
 RUN := $(VENV)/bin/python -m
-# One more than the number of processors, because some tests wait for other programs.
-WORKERS ?= $(shell expr 1 + $$(getconf _NPROCESSORS_ONLN))
+# Two more than the number of processors, because many tests wait for other programs.
+WORKERS ?= $(shell expr 2 + $$(getconf _NPROCESSORS_ONLN))
 
 # Without compiled modules, each of many processes compiles the tests and pytest's plugins again.
 unexport PYTHONDONTWRITEBYTECODE
