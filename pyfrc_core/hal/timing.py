@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from hal.simulation import (
+    isTimingPaused,
     notifyDriverStationNewData,
     pauseTiming,
     resetAllSimData,
@@ -41,10 +42,14 @@ def stop_and_zero() -> None:
 
 @contextmanager
 def standing_at_zero() -> Iterator[None]:
-    """Stop HAL time at 0 in this context, as when a robot's run begins; then let it follow the wall clock.
+    """Stop HAL time at 0 in this context, as when a robot's run begins; then let it follow the wall clock again.
 
-    What robot code makes while it is imported, such as a `SlewRateLimiter`, takes its first time from it.
+    What robot code makes while it is imported, such as a `SlewRateLimiter`, takes its first time from it. Where HAL
+    time is stopped already, for a run that is about to begin, nothing is changed.
     """
+    if isTimingPaused():
+        yield
+        return
     stop_and_zero()
     try:
         yield
