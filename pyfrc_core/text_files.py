@@ -20,12 +20,15 @@ def write_whole(file: Path, text: Iterable[str]) -> None:
         raise
 
 
-def check_writable(option: str, file: Path) -> None:
+def check_writable(option: str, file: Path | None) -> None:
     """Check that a file can be written; create its directory. Long work must not be lost at its end.
 
     :param option: the option that names the file
+    :param file: None when the option was not given
     :raises UsageError: when it cannot
     """
+    if file is None:
+        return
     try:
         if file.parent.is_file():
             raise NotADirectoryError(0, f"{file.parent} is a file")

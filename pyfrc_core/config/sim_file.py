@@ -148,13 +148,13 @@ def _find_warnings(given: SimConfig, text: JsonText, directory: File) -> Iterato
         if key in SimConfig.model_fields:
             yield (
                 (key,),
-                f"{dotted((key,))!r} has no effect outside of 'pyfrc'",
+                f"{key!r} has no effect outside of 'pyfrc'",
                 f'Write "pyfrc": {{"{key}": ...}}.',
             )
     if "pyfrc" not in text.value:
         for key in text.value:
             if key.casefold() == "pyfrc" or nearest(key[:50], ["pyfrc"]).startswith("did you mean"):
-                yield (key,), f"unknown key {dotted((key,))!r}", "did you mean 'pyfrc'?"
+                yield (key,), f"unknown key {key!r}", "did you mean 'pyfrc'?"
         return
     for path, known in _unknown_keys(given, text.value["pyfrc"], ("pyfrc",)):
         # Of a long key, the beginning is enough to find the nearest.

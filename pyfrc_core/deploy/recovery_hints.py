@@ -25,14 +25,15 @@ class RecoveryHint:
     remedy: str
 
 
+_EITHER = (
+    "when it is switched on, it will start either the new or the previous release, and it may already run the new one"
+)
 SWITCHING = RecoveryHint(
-    "the robot was switching to the new release: when it is switched on, it will start either the new or the previous "
-    "release, and it may already run the new one",
+    f"the robot was switching to the new release: {_EITHER}",
     "Deploy again to start the new release: pyfrc deploy. To see which release the robot has: pyfrc deploy-info.",
 )
 MAYBE_SWITCHED = RecoveryHint(
-    "the robot may have switched to the new release: when it is switched on, it will start either the new or the "
-    "previous release, and it may already run the new one",
+    f"the robot may have switched to the new release: {_EITHER}",
     SWITCHING.remedy,
 )
 UNDEPLOYING = RecoveryHint(

@@ -83,8 +83,7 @@ def measuring(project: Project, options: CoverageOptions) -> Iterator[Measured]:
     if options.html is not None:
         check_writable("--html", options.html / "index.html")
     for option, file in (("--xml", options.xml), ("--json", options.json)):
-        if file is not None:
-            check_writable(option, file)
+        check_writable(option, file)
     # The directory for the data of each process, until it is combined; nothing stays in the project.
     with tempfile.TemporaryDirectory(prefix="pyfrc-coverage-") as directory:
         settings: dict[str, Any] = {

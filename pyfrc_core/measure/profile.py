@@ -132,8 +132,7 @@ def profiling(project: Project, options: ProfileOptions, command: str) -> Iterat
     if options.html is not None:
         require_pyinstrument()
     for option, file in (("--outfile", options.pstats), ("--html", options.html), ("--json", options.json)):
-        if file is not None:
-            check_writable(option, file)
+        check_writable(option, file)
     # The directory for the figures of each process, until they are added up.
     with tempfile.TemporaryDirectory(prefix="pyfrc-profile-") as directory:
         settings = {

@@ -106,7 +106,7 @@ class PhysicsInterface:
         self._pose: Pose
         self._shown: Pose2d
         self._device_gyros: list[str] = []
-        self._turned = self._rate = self._turned_devices = self._rate_of_devices = 0.0
+        self._analog_rate, self._device_rate = _Rate(), _Rate()
         self._height = config.field.h
         start = config.start
         self._place(Pose(start.x, start.y, math.radians(start.angle)))
@@ -258,7 +258,7 @@ class PhysicsInterface:
         _check(forward, right, turn)
         if self._device_gyros and self._hal_data is not None:
             degrees = math.degrees(turn)
-            self._turned_devices += degrees
+            self._device_rate.turned += degrees
             angles = self._hal_data["robot"]
             for key in self._device_gyros:
                 angles[key] = angles.get(key, 0.0) + degrees
@@ -269,7 +269,7 @@ class PhysicsInterface:
 
     def _turn_analog_gyros(self, turn: float) -> None:
         if turn and self._hal_data is not None:
-            self._turned += math.degrees(turn)
+            self._analog_rate.turned += math.degrees(turn)
             for gyro in self._hal_data["analog_gyro"]:
                 gyro["angle"] += math.degrees(turn)
 
@@ -277,19 +277,15 @@ class PhysicsInterface:
         """Set the gyros' rates after `update_sim`, in degrees/s, from the angles that it has turned them by."""
         if self._hal_data is None:
             return
-        rate, self._turned = self._turned / tm_diff, 0.0
-        if rate != self._rate:
-            self._rate = rate
+        if self._analog_rate.update(tm_diff):
             for gyro in self._hal_data["analog_gyro"]:
-                gyro["rate"] = rate
-        rate, self._turned_devices = self._turned_devices / tm_diff, 0.0
-        if rate != self._rate_of_devices:
-            self._rate_of_devices = rate
+                gyro["rate"] = self._analog_rate.value
+        if self._device_rate.update(tm_diff):
             values = self._hal_data["robot"]
             for key in self._device_gyros:
                 rate_key = f"{key.removesuffix('angle')}rate"
                 if rate_key in values:
-                    values[rate_key] = rate
+                    values[rate_key] = self._device_rate.value
 
     def _current(self) -> Pose:
         """Return the pose, with changes that were made on the `field`."""
@@ -310,6 +306,21 @@ class PhysicsInterface:
 
     def _seen_in_metres(self, pose: Pose) -> Pose2d:
         return Pose2d(pose.x * METRES_PER_FOOT, (self._height - pose.y) * METRES_PER_FOOT, Rotation2d(-pose.angle))
+
+
+class _Rate:
+    """The rate of gyros, from the angles that they turn by."""
+
+    def __init__(self) -> None:
+        #: Degrees since the last update.
+        self.turned = 0.0
+        #: Degrees/s.
+        self.value = 0.0
+
+    def update(self, time: float) -> bool:
+        """Take in what was turned in this time, in seconds; return whether the rate has changed."""
+        before, self.value, self.turned = self.value, self.turned / time, 0.0
+        return self.value != before
 
 
 def _check(forward: float, right: float, turn: float) -> None:

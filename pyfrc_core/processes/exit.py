@@ -59,16 +59,13 @@ def in_this_process() -> Iterator[None]:
 def _end_forked(error: BaseException | None) -> NoReturn:
     import traceback
 
-    from ..project.robot_files import is_pyfrc
+    from ..project.robot_files import past_pyfrc
 
     status = 1
     if isinstance(error, SystemExit) and not isinstance(error.code, str):
         status = error.code or 0
     elif error is not None:
-        users = error.__traceback__
-        while users is not None and is_pyfrc(users.tb_frame.f_code.co_filename):
-            users = users.tb_next
-        traceback.print_exception(error.with_traceback(users))
+        traceback.print_exception(error.with_traceback(past_pyfrc(error.__traceback__)))
     else:
         print(
             "error: a process that robot code has forked goes on as the robot; end it with os._exit()", file=sys.stderr

@@ -79,6 +79,13 @@ class RobotFiles:
         return f"{self.relative(filename)}:{frame.f_lineno}" if self.is_project_file(filename) else None
 
 
+def past_pyfrc(traceback: TracebackType | None) -> TracebackType | None:
+    """Return a traceback without pyfrc's own entries at its beginning; its last entry stays."""
+    while traceback is not None and traceback.tb_next is not None and is_pyfrc(traceback.tb_frame.f_code.co_filename):
+        traceback = traceback.tb_next
+    return traceback
+
+
 def innermost_entry(traceback: TracebackType | None, is_ours: Callable[[str], bool]) -> TracebackType | None:
     """Return the entry of a traceback nearest to where the exception was raised, of those in some files.
 

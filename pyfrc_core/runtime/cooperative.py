@@ -40,10 +40,16 @@ class _Scope:
     def __init__(self) -> None:
         self.threads: RobotThreads | None = None
         self.waiting_to_begin: list[tuple[threading.Thread, Callable[[], object]]] = []
-        self.is_robot_code: Callable[[str], bool] = lambda filename: False
+        self.is_robot_code: Callable[[str], bool]
         #: The project's line, as ``robot.py:12``, that a frame is at; None for a frame of other code.
-        self.line_of: Callable[[FrameType], str | None] = lambda frame: None
+        self.line_of: Callable[[FrameType], str | None]
+        self.forget_project()
         self.local = threading.local()
+
+    def forget_project(self) -> None:
+        """Take no code for a robot's from now on."""
+        self.is_robot_code = lambda filename: False
+        self.line_of = lambda frame: None
 
     def taking_part(self) -> RobotThreads | None:
         """The run's threads, if the calling thread is one of them and not in the middle of starting another."""

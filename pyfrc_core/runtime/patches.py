@@ -76,8 +76,7 @@ class Patches:
         """Restore the original names."""
         self._table.undo()
         deferred_imports.uninstall()
-        cooperative.scope.is_robot_code = lambda filename: False
-        cooperative.scope.line_of = lambda frame: None
+        cooperative.scope.forget_project()
         robot_stack.show_all_lines()
 
     # -- the table --------------------------------------------------------------------------------------------
@@ -289,7 +288,7 @@ def _return_to_real_time() -> None:
     """In a process that robot code has forked: it has neither the clock nor the HAL's threads."""
     if active_run.run is not None:
         active_run.forget()
-        cooperative.scope.is_robot_code = lambda filename: False
+        cooperative.scope.forget_project()
         timing.run_freely()
 
 

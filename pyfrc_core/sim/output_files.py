@@ -32,8 +32,7 @@ class OutputFiles:
             ("--page", None if page is None else page.file),
         )
         for option, file in files:
-            if file is not None:
-                check_writable(option, file)
+            check_writable(option, file)
         self._former_log = _stamp(wpilog)
 
     def write(self, simulation: Simulation) -> list[Path]:

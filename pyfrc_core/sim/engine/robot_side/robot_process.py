@@ -22,7 +22,7 @@ from ....physics.engine import load_physics
 from ....processes.crash_report import CrashLog
 from ....processes.exit import before_sudden_exit
 from ....project import Project
-from ....project.robot_files import is_pyfrc
+from ....project.robot_files import past_pyfrc
 from ....runtime.crash_moment import CrashMoment
 from ....runtime.data_logs import LogPlace
 from ....runtime.failures import as_robot_code_error, leave_out_pyfrc
@@ -115,10 +115,7 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
         return Failure(str(error), "", now, error.exit_code)
     leave_out_pyfrc(error, project.files)
     failure = as_robot_code_error(error, project.files)
-    entry = error.__traceback__
-    while entry is not None and entry.tb_next is not None and is_pyfrc(entry.tb_frame.f_code.co_filename):
-        entry = entry.tb_next  # _run's own
-    text = "".join(traceback.format_exception(type(error), error, entry))
+    text = "".join(traceback.format_exception(type(error), error, past_pyfrc(error.__traceback__)))
     for root in {str(project.root), str(project.root.resolve())}:
         text = text.replace(f'  File "{root}{os.sep}', '  File "')  # windows have little space
     return Failure(str(failure), text, now)
