@@ -5,6 +5,6 @@ One module for each library: `wpilib_private` (with `wpilib_threads`), `pytest_p
 test whose failure says what depends on it (`tests/test_compat_*.py`). To support a new version of a library, change
 these modules until the tests pass. `CONTRIBUTING.md` lists the steps.
 
-Three modules depend on how libraries behave: `real_time_devices` (phoenix6), `rev_noise` (REV), and `library_output`
-(what they print). `object_hashes` gives the objects of these libraries hashes that repeat.
+Four modules depend on how libraries behave: `real_time_devices` (phoenix6), `rev_noise` (REV), `wpilib_noise`,
+and `library_output` (what they print). `object_hashes` gives the objects of these libraries hashes that repeat.
 """

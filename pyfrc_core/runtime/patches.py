@@ -22,6 +22,7 @@ import wpilib.simulation
 
 from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
 from ..compat.object_hashes import hash_by_number, object_base
+from ..compat.wpilib_noise import replace_chance
 from ..compat.wpilib_private import LOOP_FUNCTION
 from ..hal import timing
 from . import cooperative, counters, data_logs, driver_station, locks, robot_stack, sysid_logs, udp_ports
@@ -69,6 +70,7 @@ class Patches:
         for owner, name, replacement in self._patches():
             original = vars(owner).get(name, getattr(owner, name, None))
             self._table.patch(owner, name, as_original(owner, name, original, replacement))
+        replace_chance()
         robot_stack.show_robots_lines(lambda: self._files)
         deferred_imports.install()
 

@@ -12,15 +12,20 @@ from types import ModuleType
 from typing import Any
 
 from ..compat.rev_noise import seed_noise
+from ..compat.wpilib_noise import seed_mechanism_noise
 
 
 def seed_generators(seed: int) -> None:
-    """Start Python's global generator, and those of numpy and REV's library, from `seed`.
+    """Start Python's global generator, and those of numpy, WPILib's mechanisms and REV's library, from `seed`.
 
     A library that is imported later, by physics.py or in `robotInit`, is seeded when it is imported.
     """
     random.seed(seed)
-    _on_import.functions = {"numpy": lambda: _seed_numpy(seed), "rev": lambda: _seed_rev(seed)}
+    _on_import.functions = {
+        "numpy": lambda: _seed_numpy(seed),
+        "rev": lambda: _seed_rev(seed),
+        "wpilib.simulation": lambda: _seed_mechanisms(seed),
+    }
     for name in [*_on_import.functions]:
         if name in sys.modules:
             _on_import.functions.pop(name)()
@@ -34,6 +39,10 @@ def _seed_numpy(seed: int) -> None:
 
 def _seed_rev(seed: int) -> None:
     seed_noise(seed)
+
+
+def _seed_mechanisms(seed: int) -> None:
+    seed_mechanism_noise(seed)
 
 
 class _OnImport(MetaPathFinder):
