@@ -11,7 +11,6 @@ from __future__ import annotations
 import ctypes
 import mmap
 import os
-import platform
 import random
 import struct
 import sys
@@ -42,28 +41,18 @@ _POINTERS = {"x86_64": (6, 7), "aarch64": (1025, 1026)}
 _generator = random.Random(0)
 
 
-def seed_mechanism_noise(seed: int) -> bool:
-    """Seed the noise of WPILib's simulated mechanisms.
-
-    :return: whether the noise is the same in each run from now on
-    """
-    _generator.seed(seed)
-    return replace_chance()
-
-
+@cache
 def replace_chance() -> bool:
     """Have WPILib's mechanisms draw from our generator. Done before a process forks, its forks need not do it.
 
-    :return: whether that is possible
+    :return: whether the noise now depends on `seed_mechanism_noise` alone
     """
-    pointers = _POINTERS.get(platform.machine())
-    if sys.platform != "linux" or pointers is None or not os.confstr("CS_GNU_LIBC_VERSION"):
+    if sys.platform != "linux" or not os.confstr("CS_GNU_LIBC_VERSION"):
         return False
-    return _replace(tuple(_files()), pointers)
-
-
-@cache
-def _replace(files: tuple[Path, ...], pointers: tuple[int, ...]) -> bool:
+    pointers = _POINTERS.get(os.uname().machine)
+    files = list(_files())
+    if pointers is None or not files:
+        return False
     try:
         for file in files:
             wanted = {_PREPARE: _prepare, _DRAW: _draw}
@@ -74,7 +63,12 @@ def _replace(files: tuple[Path, ...], pointers: tuple[int, ...]) -> bool:
                         break
     except OSError:
         return False
-    return bool(files)
+    return True
+
+
+def seed_mechanism_noise(seed: int) -> None:
+    """Start the noise of WPILib's simulated mechanisms from this seed, where `replace_chance` could be done."""
+    _generator.seed(seed)
 
 
 def _prepare_nothing(device: int, _source: int) -> None:

@@ -21,11 +21,8 @@ def seed_generators(seed: int) -> None:
     A library that is imported later, by physics.py or in `robotInit`, is seeded when it is imported.
     """
     random.seed(seed)
-    _on_import.functions = {
-        "numpy": lambda: _seed_numpy(seed),
-        "rev": lambda: _seed_rev(seed),
-        "wpilib.simulation": lambda: _seed_mechanisms(seed),
-    }
+    seed_mechanism_noise(seed)
+    _on_import.functions = {"numpy": lambda: _seed_numpy(seed), "rev": lambda: _seed_rev(seed)}
     for name in [*_on_import.functions]:
         if name in sys.modules:
             _on_import.functions.pop(name)()
@@ -39,10 +36,6 @@ def _seed_numpy(seed: int) -> None:
 
 def _seed_rev(seed: int) -> None:
     seed_noise(seed)
-
-
-def _seed_mechanisms(seed: int) -> None:
-    seed_mechanism_noise(seed)
 
 
 class _OnImport(MetaPathFinder):
