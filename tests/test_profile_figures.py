@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,7 @@ from pyfrc_core.measure.stopwatch_cost import Cost
 
 TELEOP = Measurand("robot", "MyRobot.teleopPeriodic", "robot.py:3")
 LOOP = Measurand("loop", "the whole loop", "")
-COST = Cost(call_ns=300, timing_ns=3e6, sampling_ns=2e6, calls_ns=0, robot_ns=105e6)
+COST = Cost(call_ns=300, timing_ns=3e6, sampling_ns=2e6, profiled_calls=0, calls_ns=0, robot_ns=105e6)
 
 times = st.lists(st.integers(0, 10**12), min_size=1, max_size=300)
 
@@ -76,6 +77,13 @@ def test_the_report_groups_overruns_and_says_when_they_were() -> None:
         "Cost of measuring: 3.0 ms for timing (0.30 µs a call), 2.0 ms for 1 sample; "
         "5% of the 100.0 ms that the robot took without it."
     )
+
+
+def test_the_report_has_cprofile_also_when_its_cost_was_too_small_to_measure() -> None:
+    figures = Figures()
+    figures.times_of(TELEOP).append(1_000_000)
+    text = as_text(figures, replace(COST, profiled_calls=1200), top=1)
+    assert "0.0 ms for 1,200 calls in cProfile, which the times above include;" in text
 
 
 def test_the_report_says_how_much_of_the_period_each_periodic_function_takes() -> None:

@@ -201,8 +201,8 @@ def _cost(cost: Cost, samples: int) -> Iterator[str]:
     yield ""
     parts = [f"{cost.timing_ns / 1e6:.1f} ms for timing ({cost.call_ns / 1e3:.2f} µs a call)"]
     parts.append(f"{cost.sampling_ns / 1e6:.1f} ms for {counted(samples, 'sample')}")
-    if cost.calls_ns:
-        parts.append(f"{cost.calls_ns / 1e6:.1f} ms for cProfile, which the times above include")
+    if cost.profiled_calls:
+        parts.append(f"{cost.calls_ns / 1e6:.1f} ms for {counted(cost.profiled_calls, 'call')} in cProfile, which the times above include")
     text = f"Cost of measuring: {', '.join(parts)}"
     if cost.share is not None:
         robot_ms = (cost.robot_ns / 1e6) / (1 + cost.share)

@@ -23,13 +23,15 @@ class Cost:
     :param call_ns: the cost of timing one call
     :param timing_ns: the cost of timing all calls
     :param sampling_ns: the cost of all samples
-    :param calls_ns: the cost of `cProfile`, if it was used
+    :param profiled_calls: how many calls `cProfile` has recorded; 0 if it was not used
+    :param calls_ns: the cost of recording them
     :param robot_ns: the time of `robotInit` and all iterations of the loop, with the cost of measuring
     """
 
     call_ns: float
     timing_ns: float
     sampling_ns: float
+    profiled_calls: int
     calls_ns: float
     robot_ns: float
 
@@ -64,7 +66,9 @@ def measured_cost(figures: Figures, profiled_calls: int) -> Cost:
         call_ns,
         count * call_ns,
         figures.sampling_ns,
-        profiled_calls * max(0.0, _profiled_seconds(robot) - bare) * 1e9 if profiled_calls else 0.0,
+        profiled_calls,
+        # Each run makes two calls: of the lambda, and of the method.
+        profiled_calls * max(0.0, _profiled_seconds(robot) - bare) / 2 * 1e9 if profiled_calls else 0.0,
         sum(sum(times) for what, times in figures.times.items() if _is_outermost(what)),
     )
 
@@ -78,7 +82,6 @@ def _profiled_seconds(robot: _Robot) -> float:
     profile = cProfile.Profile()
     profile.enable()
     try:
-        # Each run makes two calls: of the lambda, and of the method.
-        return _seconds(lambda: _Robot.periodic(robot)) / 2
+        return _seconds(lambda: _Robot.periodic(robot))
     finally:
         profile.disable()
