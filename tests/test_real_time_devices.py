@@ -17,7 +17,7 @@ from conftest import MakeProject, RobotProject
 
 from pyfrc_core.compat import real_time_devices as real_time
 from pyfrc_core.runtime.scripts.script import ScriptError, load_script, parse_script
-from pyfrc_core.runtime.trace import hashed_part
+from pyfrc_core.runtime.trace_lines import hashed_part
 from pyfrc_core.sim.engine.changes import change_of
 
 PHOENIX = """
@@ -145,10 +145,10 @@ def test_one_sentence_names_the_device_the_reason_and_the_remedy() -> None:
 
 def test_a_line_is_hashed_without_its_marked_values() -> None:
     """A line that has nothing else does not count at all."""
-    plain = '{"set": {"pwm[0].value": 0.5}, "t": 1.0}'
+    plain = '{"t":1.0,"set":{"pwm[0].value":0.5}}'
     assert hashed_part(plain) == plain
-    assert hashed_part('{"real_time": {"CAN": 1}, "set": {"pwm[0].value": 0.5}, "t": 1.0}') == plain
-    assert hashed_part('{"real_time": {"CAN": 1}, "set": {}, "t": 1.0}') == ""
+    assert hashed_part('{"t":1.0,"set":{"pwm[0].value":0.5},"real_time":{"CAN":1}}') == plain
+    assert hashed_part('{"t":1.0,"set":{},"real_time":{"CAN":1}}') == ""
 
 
 def test_marked_values_are_changes_like_others() -> None:
@@ -162,7 +162,7 @@ def test_recordings_have_the_same_hash_and_mark_the_values(with_phoenix: Phoenix
     first, second = (with_phoenix.record(directory) for directory in ("first", "second"))
     assert load_script(first).trace == load_script(second).trace
     lines = first.with_name(f"{first.stem}.trace.jsonl").read_text("utf-8").splitlines()
-    assert any('"real_time": {"CAN[' in line for line in lines)
+    assert any('"real_time":{"CAN[' in line for line in lines)
     changes = [json.loads(line) for line in lines[1:-1]]
     assert not any("(v6)" in path for change in changes for path in change["set"])
     expected = hashlib.sha256("".join(map(hashed_part, lines[1:-1])).encode()).hexdigest()

@@ -11,7 +11,6 @@ from sim_robots import FILES, run, settle, wait
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.project import find_project
-from pyfrc_core.runtime.trace_lines import TraceLines, line_time
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine import history, output_log
 from pyfrc_core.sim.engine.changes import Change, RunBegan
@@ -205,13 +204,6 @@ def test_runs_that_no_consumer_reads_are_not_kept(make_project) -> None:
         from pyfrc_core.sim.engine.changes import RunChanges
 
         assert sum(isinstance(each, RunChanges) for each in gc.get_objects()) == 1
-
-
-def test_the_time_of_a_line_is_its_last_item() -> None:
-    nasty = {'custom["t"]': '"t": 7, "t": 8}', "t": 9, "a": ["}", {"t": 3}]}
-    line = TraceLines().format(1.25, dict(nasty), ["t"], {"x": '"t": 5}'})
-    assert line_time(line) == json.loads(line)["t"] == 1.25
-    assert line_time(line + "\n") == 1.25
 
 
 def test_a_history_is_read_from_any_entry(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,16 +10,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING
 
 from ..compat.real_time_devices import is_real_time, real_time_libraries
 from ..hal.change_reader import MISSING
-from .trace_lines import REAL_TIME, TraceLines
+from .trace_lines import trace_line, with_real_time
 
 if TYPE_CHECKING:
     from ..hal import HalData
 
-FORMAT = "pyfrc-trace 1"
+FORMAT = "pyfrc-trace 2"
 
 
 class Trace:
@@ -34,7 +34,6 @@ class Trace:
         self._out = out
         #: The paths whose values do not repeat.
         self._real_time: set[str] = set()
-        self._lines = TraceLines()
         self._hash = hashlib.sha256()
         if out is not None:
             out.write(json.dumps({"format": FORMAT}) + "\n")
@@ -45,18 +44,15 @@ class Trace:
         changed = {path: new for path, old, new in found if old != new}
         if not changed and not gone:
             return
+        marked = {}
         if real_time_libraries():
             self._real_time.update(path for path, old, _ in found if old is MISSING and is_real_time(path))
-        marked = {}
-        if self._real_time:
             marked = {path: changed.pop(path) for path in list(changed) if path in self._real_time}
-        line = self._lines.format(round(now, 6), changed, gone, marked)
-        if not marked:
+        line = trace_line(round(now, 6), changed, gone)
+        if changed or gone:
             self._hash.update(line.encode())
-        elif changed or gone:
-            self._hash.update(self._lines.format(round(now, 6), changed, gone, {}).encode())
         if self._out is not None:
-            self._out.write(line + "\n")
+            self._out.write(f"{with_real_time(line, marked) if marked else line}\n")
 
     def digest(self) -> str:
         """Return the hash of everything recorded so far, in hexadecimal."""
@@ -68,17 +64,3 @@ class Trace:
         if self._out is not None:
             self._out.write(json.dumps({"sha256": digest}) + "\n")
         return digest
-
-
-def hashed_part(line: str) -> str:
-    """Return what the hash covers of a line; empty if the line has only values that do not repeat."""
-    if f'"{REAL_TIME}"' not in line:
-        return line
-    change = repeatable_part(json.loads(line))
-    return "" if change is None else json.dumps(change, sort_keys=True)
-
-
-def repeatable_part(change: dict[str, object]) -> dict[str, Any] | None:
-    """Return a line's object without the values that do not repeat; None if it has nothing else."""
-    change = {key: value for key, value in change.items() if key != REAL_TIME}
-    return change if change["set"] or "gone" in change else None

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .robot_time import to_us
-from .trace import repeatable_part
+from .trace_lines import repeatable_part
 
 #: Outputs that robot code sets, and what it asks a motor controller for.
 _OUTPUT = re.compile(

@@ -10,7 +10,7 @@ from typing import Any
 
 from pyfrc_core.hal.change_reader import ChangeReader
 from pyfrc_core.runtime.trace import FORMAT, Trace
-from pyfrc_core.runtime.trace_lines import TraceLines
+from pyfrc_core.runtime.trace_lines import hashed_part, line_time, trace_line, with_real_time
 
 
 class Tree:
@@ -92,7 +92,6 @@ def test_the_hash_is_of_all_lines_in_their_order() -> None:
     assert digest({"a": 1}, {"a": 2}) == digest({"a": 1}, {"a": 2}, {"a": 2})
     assert digest({"a": 1}, {"a": 2}) != digest({"a": 2}, {"a": 1})
     assert digest({"a": 1}) != digest({"b": 1})
-    assert digest({"a": 1, "b": 2}) == digest({"b": 2, "a": 1})
 
 
 def test_a_trace_without_a_file_has_the_same_hash() -> None:
@@ -105,35 +104,47 @@ def test_a_trace_without_a_file_has_the_same_hash() -> None:
     assert quiet.finish() == written.finish()
 
 
-def test_lines_are_as_json_has_them() -> None:
-    lines = TraceLines()
+def test_lines_are_json_that_returns_each_value() -> None:
     values: dict[str, Any] = {
         'CAN["b"].x': 1.5,
-        'CAN["a"].x': 1.5,
         "robot.\u00e9\n": -0.0,
         "pwm[10].value": 0.0,
         "pwm[9].value": math.nan,
         "custom.far": math.inf,
         "custom.deep": {"b": [1e16, -math.inf], "a": None},
         "custom.text": "\u00e9",
+        "custom.half": "\ud800",
         "dio[0].value": True,
-        "encoder[0].count": 2**40,
+        "encoder[0].count": 2**70,
         "time.remaining": 1e-05,
     }
-    for number in range(len(values) + 1):  # paths come, and paths are known
+    for number in range(len(values) + 1):
         some = dict(list(values.items())[:number])
-        for gone, marked in (([], {}), (["x"], {}), ([], {"CAN.z": 1.0, "CAN.y": 1.0})):
-            change: dict[str, Any] = {"t": 0.02, "set": some}
-            change |= {"gone": gone} if gone else {}
-            change |= {"real_time": marked} if marked else {}
-            assert lines.format(0.02, some, gone, marked) == json.dumps(change, sort_keys=True)
+        for gone in ([], ["x"]):
+            line = trace_line(0.02, some, gone)
+            expected = {"t": 0.02, "set": some} | ({"gone": gone} if gone else {})
+            assert repr(json.loads(line)) == repr(expected)
+            assert line_time(line) == line_time(line + "\n") == 0.02
+            assert hashed_part(line) == line
+            marked = with_real_time(line, {"CAN.z": [1.0, "}"]})
+            assert json.loads(marked)["real_time"] == {"CAN.z": [1.0, "}"]}
+            assert line_time(marked) == 0.02
+            assert hashed_part(marked) == (line if some or gone else "")
 
 
-def test_floats_are_written_as_python_writes_them() -> None:
+def test_the_time_of_a_line_is_its_first_item() -> None:
+    nasty = {'custom["t"]': '"t": 7, {"t":8}', "t": 9, "a": ["}", {"t": 3, "real_time": {}}]}
+    line = trace_line(1.25, nasty, ["t"])
+    assert line_time(line) == json.loads(line)["t"] == 1.25
+    assert hashed_part(line) == hashed_part(with_real_time(line, {"x": '"t": 5}'})) == line
+
+
+def test_floats_are_written_with_all_their_digits() -> None:
     chance = random.Random(7)
     some = [chance.uniform(-1, 1) * 10.0 ** chance.randrange(-20, 25) for _ in range(2000)]
     some += [sign * 10.0**exponent * near for exponent in range(-8, 24) for near in (1, 1 - 1e-16) for sign in (1, -1)]
     some += [2.0**exponent for exponent in range(-1074, 1024)]
     values: dict[str, object] = {f"p{number}": value for number, value in enumerate(some)}
-    line = TraceLines().format(0.02, values, [], {})
-    assert line == json.dumps({"set": values, "t": 0.02}, sort_keys=True)
+    line = trace_line(0.02, values)
+    assert list(json.loads(line)["set"].values()) == some
+    assert hashed_part(with_real_time(line, {"p": 1.0})) == line

@@ -6,13 +6,13 @@ same with ``type:`` for the topics' types, and `MODE` and `POSE`, which `hal_dat
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from typing import Any
 
 import ntcore
 
 from ....hal import modes
+from ....runtime.trace_lines import trace_line
 from ..network_paths import MODE, POSE, TYPE, VALUE
 from ..scene import Pose
 from .structs import StructReader
@@ -58,7 +58,7 @@ class NetworkTrace:
         lost = [path for path in gone if values.pop(path, None) is not None]
         if changed or lost:
             values.update(changed)
-            self._lines.append(json.dumps({"gone": lost, "set": changed, "t": round(now, 6)}) + "\n")
+            self._lines.append(trace_line(round(now, 6), changed, lost) + "\n")
 
     def skip(self, now: float) -> None:
         """Take over what has changed by `now` without a line: it is known from the run before."""
