@@ -237,7 +237,7 @@ def test_the_hal_reports_devices_values_and_writes() -> None:
     program = """
 import gc
 from hal.simulation import getSimDeviceHandle, getSimValueHandle
-from pyfrc_core.compat.hal_callbacks import HalNotes, WriteFlags
+from pyfrc_core.compat.hal_callbacks import HalNotes, Report, WriteFlags
 
 notes = HalNotes()
 notes.note_devices(7)
@@ -248,7 +248,8 @@ value = device.createDouble("Angle", 0, 1.0)
 print(list(notes.take()))
 other = device.createDouble("Infinity", 0, 1.0)  # the C library would read a number
 list(notes.take())
-flags = WriteFlags([getSimValueHandle(getSimDeviceHandle("Arm"), name) for name in ("Angle", "Infinity")])
+values = [getSimValueHandle(getSimDeviceHandle("Arm"), name) for name in ("Angle", "Infinity")]
+flags = WriteFlags([[Report("SimValueChanged", (value,))] for value in values])
 print(flags.take())
 value.set(1.0)
 value.set(2.0)
@@ -283,7 +284,7 @@ def test_threads_that_write_while_others_read_do_not_block_each_other() -> None:
 import threading
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
-from pyfrc_core.compat.hal_callbacks import HalNotes, WriteFlags
+from pyfrc_core.compat.hal_callbacks import HalNotes, Report, WriteFlags
 
 device = hal.SimDevice("Arm")
 value = device.createDouble("Angle", 0, 1.0)
@@ -291,7 +292,7 @@ handle = hs.getSimDeviceHandle("Arm")
 notes = HalNotes()
 notes.note_devices(7)
 notes.note_new_values(handle, 8)
-flags = WriteFlags([hs.getSimValueHandle(handle, "Angle")])
+flags = WriteFlags([[Report("SimValueChanged", (hs.getSimValueHandle(handle, "Angle"),))]])
 stop = threading.Event()
 
 def write():

@@ -10,7 +10,8 @@ from typing import Any
 
 import hal
 import pytest
-import wpilib
+import wpilib.simulation
+from announced_resets import announced_resets
 from hal import simulation as hs
 
 from pyfrc_core.hal import HalData
@@ -21,13 +22,14 @@ from pyfrc_core.hal.output_gate import OutputGate
 LOOKS = 60
 
 
-@pytest.fixture
-def tree() -> Iterator[HalData]:
-    hs.resetDriverStationData()
-    hs.resetSimDeviceData()
-    yield HalData()
-    gc.collect()
-    hs.resetSimDeviceData()
+@pytest.fixture(params=[False, True], ids=["", "announced"])
+def tree(request: pytest.FixtureRequest) -> Iterator[HalData]:
+    with announced_resets(request.param):
+        hs.resetDriverStationData()
+        hs.resetSimDeviceData()
+        yield HalData()
+        gc.collect()
+        hs.resetSimDeviceData()
 
 
 def make(count: int, start: int = 0) -> list[Any]:
@@ -199,6 +201,7 @@ def test_signs_of_zero_and_nan_beside_other_changes(tree: HalData) -> None:
 
 
 def test_currents_of_a_power_distribution_module_are_found(tree: HalData) -> None:
+    wpilib.simulation.PowerDistributionSim(1).resetData()
     module = wpilib.PowerDistribution(1, wpilib.PowerDistribution.ModuleType.kRev)
     changes = after_many_looks(tree)
     for channel in (0, 23):

@@ -1,7 +1,7 @@
-"""The HAL's callbacks for SimDevices that its C interface has and its Python interface lacks.
+"""The HAL's callbacks through its C interface: those that its Python interface lacks, and callbacks without Python.
 
-The C interface says when a SimDevice or a value of one is created, and when a device is freed. It is documented
-(``hal/simulation/SimDeviceData.h``); the library is the one that WPILib's Python packages have loaded.
+The C interface also says when a SimDevice or a value of one is created, and when a device is freed. It is documented
+(``hal/simulation/*Data.h``); the library is the one that WPILib's Python packages have loaded.
 """
 
 from __future__ import annotations
@@ -26,14 +26,35 @@ _CALLBACK = ctypes.CFUNCTYPE(None, ctypes.c_size_t, ctypes.c_size_t)
 _KEPT: list[object] = []
 
 
+class Report(NamedTuple):
+    """A change that the HAL reports.
+
+    :param event: what changes, in the name of the C function: ``PWMSpeed`` of ``HALSIM_RegisterPWMSpeedCallback``
+    :param subject: the numbers that say of what: a channel, a module and its channel, a handle, or nothing. Changes of
+        one joystick are reported as those of each
+    """
+
+    event: str
+    subject: tuple[int, ...]
+
+    @property
+    def exists(self) -> bool:
+        """Whether this version of the HAL has it."""
+        return hasattr(_library(), f"HALSIM_Register{self.event}Callback")
+
+    @property
+    def of_sim_device(self) -> bool:
+        return self.event.startswith("Sim")
+
+
 class Registered(NamedTuple):
     """A callback in the HAL.
 
     :param number: what the HAL has returned for it
-    :param resets: how many times all callbacks have been removed before
+    :param resets: how many times all callbacks of SimDevices have been removed before
     """
 
-    event: str
+    report: Report
     number: int
     resets: int
 
@@ -42,6 +63,29 @@ class Registered(NamedTuple):
 #: write values then. When a device is freed and created again, the HAL returns the same numbers again.
 _REGISTERED: dict[Registered, int] = {}
 _resets = 0
+
+
+class Resets:
+    """Resets of the roboRIO's data in the HAL. They remove all callbacks of a device, without a sign.
+
+    Attributes:
+        announced: whether `announce` is called before each of them, so that a callback can be relied on
+        number: how many were announced
+    """
+
+    def __init__(self) -> None:
+        self.announced = False
+        self.number = 0
+
+    def announce(self) -> None:
+        """Cancel all callbacks of the roboRIO's devices: those of the devices that are not reset, too."""
+        self.number += 1
+        for registered, parameter in list(_REGISTERED.items()):
+            if not registered.report.of_sim_device:
+                _cancel(registered, parameter)
+
+
+resets = Resets()
 
 
 @cache
@@ -72,29 +116,26 @@ class HalNotes:
 
     def note_devices(self, number: int) -> None:
         """Note `number` whenever a SimDevice is created or freed, until `resetSimDeviceData` is called."""
-        self._register("SimDeviceCreated", b"", number)
-        self._register("SimDeviceFreed", b"", number)
+        _register(Report("SimDeviceCreated", ()), number, self._callback)
+        _register(Report("SimDeviceFreed", ()), number, self._callback)
 
     def note_new_values(self, device: int, number: int) -> None:
         """Note `number` whenever the SimDevice with this handle gets a new value."""
-        self._register("SimValueCreated", ctypes.c_int32(device), number)
-
-    def _register(self, event: str, subject: Any, number: int) -> None:
-        _register(event, subject, number, self._callback)
+        _register(Report("SimValueCreated", (device,)), number, self._callback)
 
 
 class WriteFlags:
-    """Flags that show which values of SimDevices have been written.
+    """Flags that show what has been written.
 
     The callback is ``strtod(text, end)`` of the C library: it stores in ``*end`` where it has stopped reading, which is
     never 0. The HAL passes the name of the value, which is the text, and the address that was registered, which is that
     of the value's flag. So a report takes less time than reading the value, and needs no lock of Python's.
 
-    :param values: the handles of the values
+    :param reports: for each flag, what sets it
     """
 
-    def __init__(self, values: Sequence[int]) -> None:
-        self._flags = (ctypes.c_size_t * max(1, len(values)))()
+    def __init__(self, reports: Sequence[Iterable[Report]]) -> None:
+        self._flags = (ctypes.c_size_t * max(1, len(reports)))()
         self._view = memoryview(self._flags).cast("B").cast("P")
         #: The flags at the last look, of which only those of `_kept` are set.
         self._before = bytearray(self._flags)
@@ -104,8 +145,9 @@ class WriteFlags:
         _FLAGS[begin] = self._flags
         #: What is registered, and the address of its flag.
         self._registered = [
-            (_register("SimValueChanged", ctypes.c_int32(value), address, callback), address)
-            for address, value in zip(count(begin, size), values, strict=False)
+            (_register(report, address, callback), address)
+            for address, of_flag in zip(count(begin, size), reports, strict=False)
+            for report in of_flag
         ]
 
     def take(self) -> list[int]:
@@ -150,9 +192,15 @@ def _strtod() -> ctypes.c_void_p:
     return ctypes.cast(library.strtod, ctypes.c_void_p)
 
 
-def _register(event: str, subject: Any, parameter: int, callback: Any) -> Registered:
-    register = getattr(_library(), f"HALSIM_Register{event}Callback")
-    registered = Registered(event, register(subject, ctypes.c_void_p(parameter), callback, 0), _resets)
+def _register(report: Report, parameter: int, callback: Any) -> Registered:
+    register = getattr(_library(), f"HALSIM_Register{report.event}Callback")
+    subject, address = map(ctypes.c_int32, report.subject), ctypes.c_void_p(parameter)
+    if report.of_sim_device:
+        # The C functions for devices have the beginning of a name first, those for values a handle.
+        number = register(*(subject if report.subject else (b"",)), address, callback, 0)
+    else:
+        number = register(*subject, callback, address, 0)
+    registered = Registered(report, number, _resets)
     _REGISTERED[registered] = parameter
     return registered
 
@@ -161,14 +209,18 @@ def _cancel(registered: Registered, parameter: int) -> None:
     """Cancel a callback, unless it has been removed with its device or by a reset: its number may be another's then."""
     if _REGISTERED.get(registered) == parameter:
         del _REGISTERED[registered]
-        getattr(_library(), f"HALSIM_Cancel{registered.event}Callback")(registered.number)
+        report = registered.report
+        # All joysticks have their callbacks in one list.
+        subject = () if report.event.startswith(("Sim", "Joystick")) else report.subject
+        getattr(_library(), f"HALSIM_Cancel{report.event}Callback")(*subject, registered.number)
 
 
 def forget_registered() -> None:
-    """Forget what was registered, after `resetSimDeviceData` has removed it."""
+    """Forget what was registered for SimDevices, after `resetSimDeviceData` has removed it."""
     global _resets
     _resets += 1
-    _REGISTERED.clear()
+    for registered in [each for each in _REGISTERED if each.report.of_sim_device]:
+        del _REGISTERED[registered]
 
 
 @atexit.register

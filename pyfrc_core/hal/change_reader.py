@@ -73,6 +73,28 @@ class ChangeReader:
                 changed.append((paths[position], old, new))
         return Changes(changed, [])
 
+    def look_at_values(self) -> tuple[dict[str, Any], list[str]]:
+        """Return the values that have changed or come, by path, and the paths that no longer exist; faster than `look`.
+
+        Values that compare equal to the old ones, such as 0.0 and -0.0, are left out.
+        """
+        source, version = self._source, self._version
+        source.refresh()
+        self._version = source.version
+        changed: dict[str, Any] = {}
+        if source.version == version:
+            return changed, []
+        if source.paths is not self._paths:
+            found, gone = self._compare_all()
+            return {path: new for path, old, new in found if old != new}, gone
+        paths, before, now = self._paths, self._values, source.values
+        for position in source.changed_since(version):
+            old, new = before[position], now[position]
+            before[position] = new
+            if old != new and (old == old or new == new):  # NaN differs from itself
+                changed[paths[position]] = new
+        return changed, []
+
     def skip(self, refresh: bool = True) -> None:
         """Look without finding what has changed, which takes less time.
 

@@ -1,10 +1,8 @@
 """Reads many values of the HAL, in a time that depends on how many of them are written.
 
-A value of a SimDevice is read only after the HAL has reported a write, which takes less time than a read. Those that
-are written in most packets are read in all, so that their reports need not be found and cleared.
-
-The other devices' values are read at each look. Their number is limited by the roboRIO, and their callbacks are lost
-without a sign when code resets their data.
+A value is read only after the HAL has reported a write, which takes less time than a read. Those that are written in
+most packets are read in all, so that their reports need not be found and cleared. Values that may change without a
+report are read at each look: there are few.
 """
 
 from __future__ import annotations
@@ -16,9 +14,9 @@ from math import copysign
 from operator import ne
 from typing import Any, NamedTuple
 
-from ..compat.hal_callbacks import WriteFlags
+from ..compat.hal_callbacks import Report, WriteFlags, resets
 
-#: How many looks decide which values of SimDevices are written often, and for how many looks this holds: a second.
+#: How many looks decide which values are written often, and for how many looks this holds: a second.
 _CHOOSING_LOOKS, _LOOKS_BETWEEN = 3, 50
 
 
@@ -27,13 +25,13 @@ class Leaf(NamedTuple):
 
     :param path: its path
     :param read: returns the plain value
-    :param handle: of a value of a SimDevice; 0 for others
+    :param reports: as in `Slot`
     :param convert: returns the plain value from what `read` returns, where that takes long
     """
 
     path: str
     read: Callable[[], Any]
-    handle: int = 0
+    reports: tuple[Report, ...] = ()
     convert: Callable[[Any], Any] | None = None
 
 
@@ -46,43 +44,50 @@ def same(old: object, new: object) -> bool:
     return repr(old) == repr(new)
 
 
+def are_reported(reports: Sequence[Report]) -> bool:
+    """Return whether each change will be reported, until a reset that is announced."""
+    return bool(reports) and all(report.of_sim_device or (resets.announced and report.exists) for report in reports)
+
+
 class ChangingValues:
-    """The current values of some leaves.
+    """The current values of some leaves, in a list that the caller keeps.
 
     Attributes:
-        values: the values at the last look
+        values: the values when this is created, in order
     """
 
     def __init__(self, leaves: Sequence[Leaf]) -> None:
-        #: The positions of each value of a SimDevice, which may have several paths.
-        positions: dict[int, list[int]] = {}
+        #: The positions of each reported value, which may have several paths.
+        positions: dict[tuple[Report, ...], list[int]] = {}
+        unreported = []
         for position, leaf in enumerate(leaves):
-            if leaf.handle:
-                positions.setdefault(leaf.handle, []).append(position)
+            if are_reported(leaf.reports):
+                positions.setdefault(leaf.reports, []).append(position)
+            else:
+                unreported.append(position)
         self._leaves = leaves
         self._reported = list(positions.values())
         self._flags = WriteFlags(list(positions))
-        found = [leaf.read() for leaf in leaves]
-        self._others = _Polled([(at, leaf, found[at]) for at, leaf in enumerate(leaves) if not leaf.handle])
+        #: What each leaf was last read as.
+        self._found = [leaf.read() for leaf in leaves]
+        self._unreported = self._polled(unreported)
         #: The values that are often written, and how many more looks these are. They are chosen again now and then, so
         #: that values which are no longer written take no time.
-        self._often = _Polled([])
+        self._often = self._polled([])
         self._looks_left = 0
         #: What was written in the looks in which they are chosen, and how many of these looks follow.
         self._chosen: set[int] = set()
         self._choosing = _CHOOSING_LOOKS
-        self.values = [
-            value if leaf.convert is None else leaf.convert(value) for leaf, value in zip(leaves, found, strict=True)
-        ]
+        self.values = [_converted(leaf, found) for leaf, found in zip(leaves, self._found, strict=True)]
 
-    def look(self) -> list[int]:
-        """Read what may have changed; return the positions of the changed values, in order."""
-        changed = self._read_written()
-        changed += self._others.read(self.values)
+    def look(self, values: list[Any]) -> list[int]:
+        """Read what may have changed into `values`; return the positions of the changed values, in order."""
+        changed = self._read_written(values)
+        changed += self._unreported.read(values)
         changed.sort()
         return changed
 
-    def _read_written(self) -> list[int]:
+    def _read_written(self, values: list[Any]) -> list[int]:
         looks_left, flags, changed = self._looks_left, self._flags, []
         if looks_left:
             self._looks_left -= 1
@@ -90,14 +95,16 @@ class ChangingValues:
                 flags.keep(())
         written = flags.take()
         if looks_left:
-            changed = self._often.read(self.values)
+            changed = self._often.read(values)
         if written:
-            values, leaves, reported = self.values, self._leaves, self._reported
+            leaves, found, reported = self._leaves, self._found, self._reported
             for number in written:
                 for position in reported[number]:
-                    old, new = values[position], leaves[position].read()
+                    leaf = leaves[position]
+                    old, new = found[position], leaf.read()
                     if (old != new and new == new) or not same(old, new):  # NaN differs from itself
-                        values[position] = new
+                        found[position] = new
+                        values[position] = _converted(leaf, new)
                         changed.append(position)
             if not looks_left:
                 self._choose(written)
@@ -108,46 +115,55 @@ class ChangingValues:
         self._chosen.update(written)
         self._choosing -= 1
         if not self._choosing:
-            often = sorted(position for number in self._chosen for position in self._reported[number])
-            self._often = _Polled([(at, self._leaves[at], self.values[at]) for at in often])
+            self._often = self._polled(sorted(at for number in self._chosen for at in self._reported[number]))
             self._flags.keep(self._chosen)
             self._chosen, self._choosing, self._looks_left = set(), _CHOOSING_LOOKS, _LOOKS_BETWEEN
+
+    def _polled(self, positions: Sequence[int]) -> _Polled:
+        return _Polled(positions, [self._leaves[position] for position in positions], self._found)
 
     def close(self) -> None:
         """End the HAL's reports."""
         self._flags.close()
 
 
+def _converted(leaf: Leaf, found: Any) -> Any:
+    return found if leaf.convert is None else leaf.convert(found)
+
+
 class _Polled:
     """Values that are read at each look.
 
-    :param leaves: the position, the leaf, and what it was last read as
+    :param positions: their positions among all values
+    :param found: what all values were last read as
     """
 
-    def __init__(self, leaves: Sequence[tuple[int, Leaf, Any]]) -> None:
-        self._positions = [position for position, _, _ in leaves]
-        self._reads = [leaf.read for _, leaf, _ in leaves]
-        self._converts = [leaf.convert for _, leaf, _ in leaves]
-        self._last = [value for _, _, value in leaves]
+    def __init__(self, positions: Sequence[int], leaves: Sequence[Leaf], found: list[Any]) -> None:
+        self._positions, self._leaves, self._found = positions, leaves, found
+        self._reads = [leaf.read for leaf in leaves]
+        self._last = [found[position] for position in positions]
         self._packed = marshal.dumps(self._last, 2)
 
     def read(self, values: list[Any]) -> list[int]:
         """Update `values`; return the positions of those that have changed."""
-        found, last, positions, converts = [read() for read in self._reads], self._last, self._positions, self._converts
+        last, now = self._last, [read() for read in self._reads]
         places = []
-        for place in compress(count(), map(ne, last, found)):
-            old, new = last[place], found[place]
+        for place in compress(count(), map(ne, last, now)):
+            old, new = last[place], now[place]
             last[place] = new
             if (type(new) is float and new == new) or not same(old, new):  # NaN differs from itself
                 places.append(place)
         # What is left may be equal and not the same, such as 0.0 and -0.0. Version 2 of the format does not depend on
         # which objects are shared.
-        packed = marshal.dumps(found, 2)
+        packed = marshal.dumps(now, 2)
         if packed != (marshal.dumps(last, 2) if places else self._packed):
-            places += [place for place, pair in enumerate(zip(last, found, strict=True)) if not same(*pair)]
-            self._last = found
+            places += [place for place, pair in enumerate(zip(last, now, strict=True)) if not same(*pair)]
+            self._last = now
         self._packed = packed
+        changed = []
         for place in places:
-            convert, new = converts[place], found[place]
-            values[positions[place]] = new if convert is None else convert(new)
-        return [positions[place] for place in places]
+            position, new = self._positions[place], now[place]
+            self._found[position] = new
+            values[position] = _converted(self._leaves[place], new)
+            changed.append(position)
+        return changed

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from pyfrc_core.errors import nearest
 
+from ..compat.hal_callbacks import Report
 from .builtin_types import LiveMapping, LiveSequence
 from .kinds import ANY, UnknownKey, ValueKind, WrongIndex, WrongType, WrongValue
 from .paths import join
@@ -42,7 +43,7 @@ class Slot(NamedTuple):
     :param recorded: whether the value cannot be derived from other fields
     :param remedy: the advice in the error when the value cannot be written
     :param unset: the value to write for None, at an output of the robot; None where None cannot be written
-    :param handle: of a value of a SimDevice; 0 for others
+    :param reports: what the HAL reports when the value may have changed; none where it may change without a report
     :param raw: another way to read a value that takes long to read
     """
 
@@ -54,7 +55,7 @@ class Slot(NamedTuple):
     recorded: bool = True
     remedy: str | None = None
     unset: Any = None
-    handle: int = 0
+    reports: tuple[Report, ...] = ()
     raw: Raw | None = None
 
 

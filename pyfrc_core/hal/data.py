@@ -51,8 +51,8 @@ class HalData(LiveDict):
     @staticmethod
     def _values() -> dict[str, Slot]:
         return {
-            "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim),
-            "fpga_button": devices.FPGA_BUTTON.slot(sim.RoboRioSim),
+            "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim, "DriverStation"),
+            "fpga_button": devices.FPGA_BUTTON.slot(sim.RoboRioSim, "RoboRio"),
             "user_program_state": Slot(driver_station.program_state, None),
             "error_data": stored(),
             "pwm_loop_timing": stored(40),
@@ -62,20 +62,22 @@ class HalData(LiveDict):
     def _branch_builders(self) -> dict[str, Callable[[], Any]]:
         modules = self.modules
         return {
-            "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL),
-            "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME),
+            "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL, "DriverStation"),
+            "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME, "DriverStation"),
             "event": driver_station.EventData,
             "joysticks": driver_station.joysticks,
             "robot": lambda: RobotDict(self["CAN"]),
-            "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER),
+            "accelerometer": lambda: group(
+                "accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER, "Accelerometer", 0
+            ),
             **{kind.name: kind.devices for kind in devices.KINDS},
             "pcm": lambda: modules.pcm,
             "ph": lambda: modules.ph,
             "pcm_compressor": lambda: modules.pcm_compressor,
             "ph_compressor": lambda: modules.ph_compressor,
             "pdp": lambda: modules.pdp,
-            "power": lambda: group("power", sim.RoboRioSim, devices.POWER),
-            "roborio": lambda: group("roborio", sim.RoboRioSim, devices.ROBORIO),
+            "power": lambda: group("power", sim.RoboRioSim, devices.POWER, "RoboRio"),
+            "roborio": lambda: group("roborio", sim.RoboRioSim, devices.ROBORIO, "RoboRio"),
             "CAN": SimDevices,
         }
 

@@ -78,6 +78,7 @@ KINDS = (
             F("zero_latch", "ZeroLatch", BOOL),
             F("elim_deadband", default=False),
         ),
+        reported_as="PWM",
     ),
     DeviceKind(
         "dio",
@@ -91,6 +92,7 @@ KINDS = (
             F("pulse_length", "PulseLength", FLOAT),
             F("filter_idx", "FilterIndex", INT32),
         ),
+        reported_as="DIO",
     ),
     DeviceKind(
         "encoder",
@@ -113,6 +115,7 @@ KINDS = (
             F("min_rate", default=0.0),
         ),
         config=encoder_channels,
+        reported_as="Encoder",
     ),
     DeviceKind(
         "analog_in",
@@ -147,6 +150,7 @@ KINDS = (
             F("lsb_weight", default=1),
             F("offset", default=65535),
         ),
+        reported_as="AnalogIn",
     ),
     DeviceKind(
         "analog_out",
@@ -154,6 +158,7 @@ KINDS = (
         sim.AnalogOutputSim,
         (INITIALIZED, F("voltage", "Voltage", FLOAT, unset=NOT_SET)),
         real=2,
+        reported_as="AnalogOut",
     ),
     DeviceKind(
         "analog_gyro",
@@ -168,6 +173,7 @@ KINDS = (
             F("offset", default=0.0),
             F("center", default=0),
         ),
+        reported_as="AnalogGyro",
     ),
     DeviceKind(
         "analog_trigger",
@@ -181,6 +187,7 @@ KINDS = (
             F("trig_type"),
             F("trig_state", default=False),
         ),
+        reported_as="AnalogTrigger",
     ),
     DeviceKind(
         "relay",
@@ -198,6 +205,7 @@ KINDS = (
             F("fwd", "Forward", BOOL, unset=False),
             F("rev", "Reverse", BOOL, unset=False),
         ),
+        reported_as="Relay",
     ),
     DeviceKind(
         "d0_pwm",
@@ -205,12 +213,14 @@ KINDS = (
         sim.DigitalPWMSim.createForIndex,
         (INITIALIZED, F("duty_cycle", "DutyCycle", FLOAT, unset=NOT_SET), F("pin", "Pin", INT32)),
         real=6,
+        reported_as="DigitalPWM",
     ),
     DeviceKind(
         "duty_cycle",
         8,
         sim.DutyCycleSim.createForIndex,
         (INITIALIZED, F("frequency", "Frequency", INT32), F("output", "Output", FLOAT)),
+        reported_as="DutyCycle",
     ),
     DeviceKind(
         "addressable_led",
@@ -227,9 +237,11 @@ KINDS = (
                 ValueKind("a list of [red, green, blue], each 0 to 255", _colours, []),
                 get=led_data,
                 put=_set_led_data,
+                also_reported=("Length",),
                 raw=raw_led_data,
             ),
         ),
+        reported_as="AddressableLED",
     ),
     DeviceKind("mxp", 16, None, (F("initialized", default=False),)),
     DeviceKind("filter", 3, None, (F("enabled", default=False), F("period", default=0))),

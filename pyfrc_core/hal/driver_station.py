@@ -21,6 +21,7 @@ from hal.simulation import (
 from wpilib import DriverStation
 from wpilib.simulation import DriverStationSim
 
+from ..compat.hal_callbacks import Report
 from .containers import LiveDict, LiveList, Slot, ValueList, stored
 from .fields import HAS_SOURCE, DeviceField
 from .kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
@@ -71,6 +72,9 @@ def program_state() -> str | None:
 class EventData(LiveDict):
     """The match, as sent by the field."""
 
+    #: What the HAL reports after a change.
+    reports = (Report("MatchInfo", ()),)
+
     def __init__(self) -> None:
         super().__init__("event", self._all)
         self._info = hal.MatchInfo()
@@ -120,6 +124,10 @@ class JoystickData(LiveDict):
     The robot sees `axis_count` axes, `button_count` buttons and `pov_count` POVs; writing a later one raises its count.
     Values are read from WPILib's buffer, so an axis has the precision of a C float.
     """
+
+    #: What the HAL reports after a change of the controls, and of the data sent back: of any joystick.
+    reports = tuple(Report(f"Joystick{what}", (0,)) for what in ("Axes", "Buttons", "POVs"))
+    output_reports = (Report("JoystickOutputs", (0,)),)
 
     def __init__(self, port: int) -> None:
         super().__init__(join("joysticks", port), self._all)
@@ -212,17 +220,25 @@ class JoystickData(LiveDict):
         hs.getJoystickAxes(self._port, self._axes)
         return self._axis_values.tolist()  # type: ignore[return-value]
 
+    @property
+    def plugged(self) -> bool:
+        """Whether the robot sees any control; if not, its data are sent to nothing."""
+        return self.counts() != (0, 0, 0)
+
+    def outputs(self) -> tuple[int, int, int]:
+        """Return what the robot sends back: the outputs' bits, the left and the right rumble."""
+        return getJoystickOutputs(self._port)
+
     def fingerprint(self) -> object:
-        """Return a value that differs after any change of the controls, or of the data sent back."""
+        """Return a value that differs after any change of the controls."""
         port = self._port
         counts = getJoystickCounts(port)
-        if counts == (0, 0, 0):  # unplugged: the robot sees no control, and its data are sent to nothing
+        if counts == (0, 0, 0):
             return counts
         getJoystickAxes(port, self._axes)
         getJoystickPOVs(port, self._povs)
         getJoystickButtons(port, self._buttons)
-        axes, povs = self._axis_values.tobytes(), self._pov_values.tobytes()
-        return axes, povs, self._buttons.buttons, counts, getJoystickOutputs(port)
+        return self._axis_values.tobytes(), self._pov_values.tobytes(), self._buttons.buttons, counts
 
     def controls(self) -> tuple[list[float], list[bool], list[int]]:
         """Return the axes, buttons and POVs that the robot sees."""

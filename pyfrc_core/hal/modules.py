@@ -9,6 +9,7 @@ from typing import Any
 from wpilib import simulation as sim
 
 from ..compat import hal_callbacks
+from ..compat.hal_callbacks import Report
 from .containers import LiveDict, LiveList, Raw, Slot, ValueList
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, group
 from .kinds import BOOL, FLOAT, choice
@@ -18,6 +19,9 @@ HUB_COMPRESSOR = choice({"disabled": 0, "digital": 1, "analog": 2, "hybrid": 3})
 
 MODULES = 63  # CAN device numbers 0 to 62; the HAL does not check beyond
 CHANNELS = 24  # of a power distribution module
+
+#: How the names of their reports begin.
+_PCM, _HUB, _DISTRIBUTION = "CTREPCM", "REVPH", "PowerDistribution"
 
 COMPRESSOR = (
     INITIALIZED,
@@ -49,15 +53,22 @@ DISTRIBUTION = (
 )
 
 
-def solenoid(module: Any, path: str, channel: int) -> LiveDict:
-    """Return a solenoid of a pneumatics module; it is initialized when its module is."""
+def solenoid(module: Any, path: str, report: Report) -> LiveDict:
+    """Return a solenoid of a pneumatics module; it is initialized when its module is.
+
+    :param report: what the HAL reports when it switches, with the numbers of the module and of the channel
+    """
+    channel = report.subject[1]
 
     def build() -> dict[str, Slot]:
         def watch(fire: Callable[[], None]) -> object:
             return module.registerSolenoidOutputCallback(channel, lambda *_: fire(), False)
 
         get, put = partial(module.getSolenoidOutput, channel), partial(module.setSolenoidOutput, channel)
-        return {"initialized": INITIALIZED.slot(module), "value": Slot(get, put, BOOL, watch, unset=False)}
+        return {
+            "initialized": INITIALIZED.slot(module),
+            "value": Slot(get, put, BOOL, watch, unset=False, reports=(report,)),
+        }
 
     return LiveDict(path, build)
 
@@ -66,10 +77,11 @@ def distribution(path: str, number: int, module: sim.PowerDistributionSim) -> Li
     """Return a power distribution module. Both kinds show the HAL's 24 channels."""
 
     def build() -> dict[str, Slot]:
-        slots = {field.name: field.slot(module) for field in DISTRIBUTION}
+        slots = {field.name: field.slot(module, _DISTRIBUTION, number) for field in DISTRIBUTION}
         currents = ValueList(join(path, "current"), FLOAT, lambda: CHANNELS, module.getCurrent, module.setCurrent)
         read = partial(hal_callbacks.current_bytes, number, hal_callbacks.current_buffer(CHANNELS))
-        slots["current"] = Slot(lambda: currents, None, watch=watch, raw=Raw(read, _currents))
+        reports = tuple(Report(f"{_DISTRIBUTION}Current", (number, channel)) for channel in range(CHANNELS))
+        slots["current"] = Slot(lambda: currents, None, watch=watch, reports=reports, raw=Raw(read, _currents))
         # Computed like the HAL's value for the robot.
         slots["total_current"] = Slot(
             lambda: float(sum(currents)),
@@ -128,13 +140,13 @@ class Modules:
         self._pcm_sim = lru_cache(None)(sim.CTREPCMSim)
         self._hub_sim = lru_cache(None)(sim.REVPHSim)
         self._power_sim = lru_cache(None)(sim.PowerDistributionSim)
-        self._hub_solenoids = lru_cache(None)(lambda n: self._solenoids("ph", self._hub_sim(n), n, 16))
-        self._pcm_solenoids = lru_cache(None)(lambda n: self._solenoids("pcm", self._pcm_sim(n), n, 8))
+        self._hub_solenoids = lru_cache(None)(lambda n: self._solenoids("ph", self._hub_sim(n), _HUB, n, 16))
+        self._pcm_solenoids = lru_cache(None)(lambda n: self._solenoids("pcm", self._pcm_sim(n), _PCM, n, 8))
         self._hub_compressor = lru_cache(None)(
-            lambda n: group(join("ph_compressor", n), self._hub_sim(n), HUB_COMPRESSOR_FIELDS)
+            lambda n: group(join("ph_compressor", n), self._hub_sim(n), HUB_COMPRESSOR_FIELDS, _HUB, n)
         )
         self._pcm_compressor = lru_cache(None)(
-            lambda n: group(join("pcm_compressor", n), self._pcm_sim(n), PCM_COMPRESSOR)
+            lambda n: group(join("pcm_compressor", n), self._pcm_sim(n), PCM_COMPRESSOR, _PCM, n)
         )
         distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), n, self._power_sim(n)))
         self.ph = ModuleDict("ph", self._has_hub, self._hub_solenoids)
@@ -155,9 +167,10 @@ class Modules:
         return self._hub_solenoids(module) if is_hub else self._pcm_solenoids(module)
 
     @staticmethod
-    def _solenoids(key: str, module: Any, number: int, count: int) -> LiveList:
+    def _solenoids(key: str, module: Any, reported_as: str, number: int, count: int) -> LiveList:
         path = join(key, number)
-        return LiveList(path, [solenoid(module, join(path, channel), channel) for channel in range(count)])
+        reports = [Report(f"{reported_as}SolenoidOutput", (number, channel)) for channel in range(count)]
+        return LiveList(path, [solenoid(module, join(path, at), report) for at, report in enumerate(reports)])
 
     @property
     def solenoid(self) -> LiveList:

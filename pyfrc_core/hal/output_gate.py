@@ -17,11 +17,11 @@ from wpilib import simulation as sim
 
 from . import modes
 from .can_outputs import CanOutputs
+from .created_devices import CreatedDevices
 from .fields import INITIALIZED, DeviceField
 from .kinds import BOOL
 from .modules import MODULES
 from .motor_getters import MotorGetters
-from .tree_reader import CreatedDevices
 
 #: The pulse that stops a PWM motor controller, in microseconds: within the deadband of all of them. Not 0, as on the
 #: robot's wire, since physics that computes with pulses would treat it as full speed backwards.

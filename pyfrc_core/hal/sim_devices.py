@@ -14,6 +14,7 @@ import hal
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
+from ..compat.hal_callbacks import Report
 from ..compat.real_time_devices import real_time_devices
 from .containers import LiveDict, Slot
 from .kinds import ANY, BOOL, FLOAT, INT32, INT64, UnknownKey, choice
@@ -86,7 +87,8 @@ def _slot(device: SimDeviceSim, handle: int, name: str) -> Slot:
         kind = choice({option: i for i, option in enumerate(SimDeviceSim.getEnumOptions(value))})
         load = kind.load or int
         get = lambda: load(value.get())  # noqa: E731
-    return Slot(get, value.set, kind, watch, handle=hs.getSimValueHandle(handle, name))
+    report = Report("SimValueChanged", (hs.getSimValueHandle(handle, name),))
+    return Slot(get, value.set, kind, watch, reports=(report,))
 
 
 class SimDevices(LiveDict):

@@ -19,6 +19,7 @@ from hal.simulation import (
     stepTiming,
 )
 
+from ..compat.hal_callbacks import resets
 from .counters import forget_written_counts
 
 #: Advance HAL time by this many microseconds; wake the notifiers of C++ code that become due.
@@ -30,6 +31,7 @@ deliver_packet = notifyDriverStationNewData
 
 def forget_inputs() -> None:
     """Reset all sensors and outputs to their initial values."""
+    resets.announce()
     resetAllSimData()
     forget_written_counts()
 

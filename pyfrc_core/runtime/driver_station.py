@@ -30,7 +30,7 @@ def patches(current_run: _CurrentRun) -> list[Patch]:
 
     :param current_run: returns the run that is active in this process
     """
-    return [*_match_information(current_run), _waiting(current_run), *_packets(current_run), *_resets(current_run)]
+    return [*_match_information(current_run), _waiting(current_run), *_packets(current_run)]
 
 
 def _text(characters: memoryview) -> str:
@@ -105,24 +105,4 @@ def _packets(current_run: _CurrentRun) -> list[Patch]:
     return [
         delivering(wpilib.simulation.DriverStationSim, "notifyNewData", refreshes=True),
         delivering(hal.simulation, "notifyDriverStationNewData", refreshes=False),
-    ]
-
-
-def _resets(current_run: _CurrentRun) -> list[Patch]:
-    """Return the functions by which a test resets the driver station's data: that must not end the connection."""
-
-    def resetting(owner: object, name: str) -> Patch:
-        real = getattr(owner, name)
-
-        def reset() -> None:
-            real()
-            if current_run() is not None:
-                hal.simulation.setDriverStationDsAttached(True)
-
-        return Patch(owner, name, reset)
-
-    return [
-        resetting(wpilib.simulation.DriverStationSim, "resetData"),
-        resetting(hal.simulation, "resetDriverStationData"),
-        resetting(hal.simulation, "resetAllSimData"),
     ]

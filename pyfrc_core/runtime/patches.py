@@ -21,11 +21,12 @@ import wpilib
 import wpilib.simulation
 
 from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
+from ..compat.hal_callbacks import resets
 from ..compat.object_hashes import hash_by_number, object_base
 from ..compat.wpilib_noise import replace_chance
 from ..compat.wpilib_private import LOOP_FUNCTION
 from ..hal import timing
-from . import cooperative, counters, data_logs, driver_station, locks, robot_stack, sysid_logs, udp_ports
+from . import cooperative, counters, data_logs, driver_station, hal_resets, locks, robot_stack, sysid_logs, udp_ports
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
 from .deferred_imports import deferred_imports
@@ -70,6 +71,7 @@ class Patches:
         for owner, name, replacement in self._patches():
             original = vars(owner).get(name, getattr(owner, name, None))
             self._table.patch(owner, name, as_original(owner, name, original, replacement))
+        resets.announced = True
         replace_chance()
         robot_stack.show_robots_lines(lambda: self._files)
         deferred_imports.install()
@@ -77,6 +79,7 @@ class Patches:
     def uninstall(self) -> None:
         """Restore the original names."""
         self._table.undo()
+        resets.announced = False
         deferred_imports.uninstall()
         cooperative.scope.forget_project()
         robot_stack.show_all_lines()
@@ -90,6 +93,7 @@ class Patches:
             *self._waiting_in_wpilib(),
             *self._stepping_in_tests(),
             *driver_station.patches(lambda: active_run.run),
+            *hal_resets.patches(lambda: active_run.run),
             *self._timed_robot(),
             *self._directories(),
             Patch(wpilib.RobotController, "isBrownedOut", _is_browned_out),

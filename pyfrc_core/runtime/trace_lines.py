@@ -7,7 +7,8 @@ shortest digits of a number, though not always in the same form: 0.00001 is 1e-0
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import cache
 from typing import Any
 
 #: The key of a line's values that do not repeat.
@@ -54,10 +55,15 @@ def repeatable_part(change: dict[str, object]) -> dict[str, Any] | None:
     return change if change["set"] or "gone" in change else None
 
 
-def _to_json(content: Mapping[str, object]) -> str:
+@cache
+def _writer() -> Callable[..., bytes]:
     from pydantic_core import to_json  # only here: most commands trace nothing
 
+    return to_json
+
+
+def _to_json(content: Mapping[str, object]) -> str:
     try:
-        return to_json(content, inf_nan_mode="constants").decode()
+        return _writer()(content, inf_nan_mode="constants").decode()
     except ValueError:  # half of a surrogate pair, which UTF-8 lacks
         return json.dumps(content, separators=(",", ":"))

@@ -14,7 +14,7 @@ from hal import simulation as hs
 from pyfrc_core.errors import RobotCodeError
 from pyfrc_core.hal import ds_connection, modes
 from pyfrc_core.hal.ds_connection import DriverStationConnection
-from pyfrc_core.runtime import cooperative, driver_station
+from pyfrc_core.runtime import cooperative, driver_station, hal_resets
 from pyfrc_core.runtime.clock import PACKET_US, PHYSICS
 from pyfrc_core.runtime.exceptions import WrongThread
 from pyfrc_core.runtime.robot import RobotRun
@@ -264,7 +264,8 @@ def test_waiting_for_a_connection_takes_robot_time(run: RobotRun) -> None:
 
 
 def test_packets_out_of_turn_and_resets(run: RobotRun) -> None:
-    table = {(owner.__name__, name): value for owner, name, value in driver_station.patches(lambda: run)}
+    rows = [*driver_station.patches(lambda: run), *hal_resets.patches(lambda: run)]
+    table = {(owner.__name__, name): value for owner, name, value in rows}
     calls: list[str] = []
 
     class Recorder:

@@ -100,8 +100,24 @@ def test_a_trace_without_a_file_has_the_same_hash() -> None:
     quiet, written = Trace(tree), Trace(tree, out)  # type: ignore[arg-type]
     for trace in (quiet, written):
         trace.look(0.0199999999)
-    assert json.loads(out.getvalue().splitlines()[1]) == {"t": 0.02, "set": {"a": 1.5}}
     assert quiet.finish() == written.finish()
+    assert json.loads(out.getvalue().splitlines()[1]) == {"t": 0.02, "set": {"a": 1.5}}
+
+
+def test_lines_that_are_asked_for_are_written_before_their_batch_is_full() -> None:
+    tree, out = Tree(), io.StringIO()
+    tree.paths, tree.values = ["a", "b"], [0, [0]]
+    trace = Trace(tree, out)  # type: ignore[arg-type]
+    for number in range(35):
+        tree.values = [number, [number]]
+        trace.look(float(number))
+        if number % 7 == 3:
+            trace.write_lines()
+            trace.write_lines()
+            assert json.loads(out.getvalue().splitlines()[-1])["set"] == {"a": number, "b": [number]}
+    trace.finish()
+    lines = [json.loads(line) for line in out.getvalue().splitlines()[1:-1]]
+    assert [(line["t"], line["set"]["a"]) for line in lines] == [(number, number) for number in range(35)]
 
 
 def test_lines_are_json_that_returns_each_value() -> None:

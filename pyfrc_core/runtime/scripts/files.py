@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from ...processes.exit import before_sudden_exit
 from ..robot import RobotRun
 from ..trace import Trace
 from .recorder import Recorder
@@ -27,8 +28,17 @@ def traced(run: RobotRun, file: Path, then: Callable[[], object] | None = None) 
             if then is not None:
                 then()
 
+        def write() -> None:
+            trace.write_lines()
+            out.flush()
+
         run.observe(look)
-        yield trace
+        before_sudden_exit["trace"] = write
+        try:
+            yield trace
+        finally:
+            before_sudden_exit.pop("trace", None)  # robot code may have forked this process
+            trace.write_lines()
         trace.finish()
 
 

@@ -14,6 +14,8 @@ class _Lines(list[str]):
     def write(self, line: str) -> None:
         self.append(line)
 
+    writelines = list.extend
+
 
 class Traces:
     """Both traces.
@@ -48,11 +50,13 @@ class Traces:
         """Note what changes from now on."""
         if not self.is_on:
             self._trace.look(now)
+            self._trace.write_lines()
             self._lines.clear()
             self.is_on = True
 
     def take(self) -> tuple[str, ...]:
         """Return the new lines of `hal_data`."""
+        self._trace.write_lines()
         lines = tuple(self._lines)
         self._lines.clear()
         return lines
