@@ -278,6 +278,35 @@ print(list(notes.take()))
     assert said_by(program) == expected, wpilib_private.NATIVE_HAL.gone
 
 
+def test_the_memory_of_a_value_stays_where_it_is() -> None:
+    program = """
+from hal import simulation as hs
+from pyfrc_core.compat.hal_memory import value_memory
+
+device = hal.SimDevice("Arm")
+made = [
+    device.createDouble("d", 0, 1.5), device.createInt("i", 0, -2), device.createLong("l", 0, 1 << 40),
+    device.createEnum("e", 0, ["a", "b", "c"], 2), device.createBoolean("b", 0, True),
+]
+handle = hs.getSimDeviceHandle("Arm")
+memory = value_memory(handle)
+names = {hs.getSimValueHandle(handle, name): name for name in "dileb"}
+print({names[value]: place.value for value, place in memory.items()})
+more = [device.createDouble(f"more {number}", 0, 0.0) for number in range(500)]
+others = [hal.SimDevice(f"Other {number}") for number in range(200)]
+made[0].set(-0.0), made[1].set(7), made[2].set(-1 << 40), made[3].set(1), made[4].set(False)
+print({names[value]: place.value for value, place in memory.items()})
+made[0].reset()
+print({names[value]: place.value for value, place in memory.items()}["d"])
+"""
+    expected = [
+        str({"d": 1.5, "i": -2, "l": 1 << 40, "e": 2}),
+        str({"d": -0.0, "i": 7, "l": -1 << 40, "e": 1}),
+        "0.0",
+    ]
+    assert said_by(program) == expected, wpilib_private.NATIVE_HAL.gone
+
+
 def test_threads_that_write_while_others_read_do_not_block_each_other() -> None:
     """The HAL reports with its lock held, so nothing that waits for this lock may keep Python's."""
     program = """

@@ -8,16 +8,21 @@ report are read at each look: there are few.
 from __future__ import annotations
 
 import marshal
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
 from itertools import compress, count
 from math import copysign
 from operator import ne
 from typing import Any, NamedTuple
 
 from ..compat.hal_callbacks import Report, WriteFlags, resets
+from ..compat.hal_memory import Memory, value_memory
 
 #: How many looks decide which values are written often, and for how many looks this holds: a second.
 _CHOOSING_LOOKS, _LOOKS_BETWEEN = 3, 50
+
+
+_SCALARS = frozenset((float, int, bool, str, bytes))
 
 
 class Leaf(NamedTuple):
@@ -35,11 +40,14 @@ class Leaf(NamedTuple):
     convert: Callable[[Any], Any] | None = None
 
 
-def same(old: object, new: object) -> bool:
+def same(old: Any, new: Any) -> bool:
     """Return whether two values are written alike: -0.0 is not 0.0, True is not 1, and NaN is NaN."""
     if old is new:
         return True
-    if type(old) is type(new) is float:  # the text of a float takes long to make
+    kind = type(old)
+    if kind is type(new) and kind in _SCALARS:  # texts take long to make
+        if kind is not float:
+            return bool(old == new)
         return copysign(1, old) == copysign(1, new) if old == new else old != old and new != new
     return repr(old) == repr(new)
 
@@ -52,11 +60,13 @@ def are_reported(reports: Sequence[Report]) -> bool:
 class ChangingValues:
     """The current values of some leaves, in a list that the caller keeps.
 
+    :param devices: the handles of the SimDevices
+
     Attributes:
         values: the values when this is created, in order
     """
 
-    def __init__(self, leaves: Sequence[Leaf]) -> None:
+    def __init__(self, leaves: Sequence[Leaf], devices: Sequence[int] = ()) -> None:
         #: The positions of each reported value, which may have several paths.
         positions: dict[tuple[Report, ...], list[int]] = {}
         unreported = []
@@ -65,15 +75,15 @@ class ChangingValues:
                 positions.setdefault(leaf.reports, []).append(position)
             else:
                 unreported.append(position)
-        self._leaves = leaves
+        self._leaves, self._devices = leaves, devices
         self._reported = list(positions.values())
         self._flags = WriteFlags(list(positions))
         #: What each leaf was last read as.
         self._found = [leaf.read() for leaf in leaves]
-        self._unreported = self._polled(unreported)
+        self._unreported = unreported
         #: The values that are often written, and how many more looks these are. They are chosen again now and then, so
         #: that values which are no longer written take no time.
-        self._often = self._polled([])
+        self._often = _OftenWritten((), leaves, self._found, {})
         self._looks_left = 0
         #: What was written in the looks in which they are chosen, and how many of these looks follow.
         self._chosen: set[int] = set()
@@ -83,9 +93,19 @@ class ChangingValues:
     def look(self, values: list[Any]) -> list[int]:
         """Read what may have changed into `values`; return the positions of the changed values, in order."""
         changed = self._read_written(values)
-        changed += self._unreported.read(values)
+        for position in self._unreported:
+            self._read(position, values, changed)
         changed.sort()
         return changed
+
+    def _read(self, position: int, values: list[Any], changed: list[int]) -> None:
+        """Read one value; if it has changed, add its position to `changed`."""
+        leaf, found = self._leaves[position], self._found
+        old, new = found[position], leaf.read()
+        if (old != new and new == new) or not same(old, new):  # NaN differs from itself
+            found[position] = new
+            values[position] = _converted(leaf, new)
+            changed.append(position)
 
     def _read_written(self, values: list[Any]) -> list[int]:
         looks_left, flags, changed = self._looks_left, self._flags, []
@@ -95,17 +115,11 @@ class ChangingValues:
                 flags.keep(())
         written = flags.take()
         if looks_left:
-            changed = self._often.read(values)
+            changed = self._often.read_all(values)
         if written:
-            leaves, found, reported = self._leaves, self._found, self._reported
             for number in written:
-                for position in reported[number]:
-                    leaf = leaves[position]
-                    old, new = found[position], leaf.read()
-                    if (old != new and new == new) or not same(old, new):  # NaN differs from itself
-                        found[position] = new
-                        values[position] = _converted(leaf, new)
-                        changed.append(position)
+                for position in self._reported[number]:
+                    self._read(position, values, changed)
             if not looks_left:
                 self._choose(written)
         return changed
@@ -115,12 +129,19 @@ class ChangingValues:
         self._chosen.update(written)
         self._choosing -= 1
         if not self._choosing:
-            self._often = self._polled(sorted(at for number in self._chosen for at in self._reported[number]))
+            often = sorted(at for number in self._chosen for at in self._reported[number])
+            self._often = _OftenWritten(often, self._leaves, self._found, self._memory)
             self._flags.keep(self._chosen)
             self._chosen, self._choosing, self._looks_left = set(), _CHOOSING_LOOKS, _LOOKS_BETWEEN
 
-    def _polled(self, positions: Sequence[int]) -> _Polled:
-        return _Polled(positions, [self._leaves[position] for position in positions], self._found)
+    @cached_property
+    def _memory(self) -> dict[tuple[Report, ...], Memory]:
+        """Where the HAL keeps values of SimDevices."""
+        return {
+            (Report("SimValueChanged", (value,)),): memory
+            for device in self._devices
+            for value, memory in value_memory(device).items()
+        }
 
     def close(self) -> None:
         """End the HAL's reports."""
@@ -131,39 +152,69 @@ def _converted(leaf: Leaf, found: Any) -> Any:
     return found if leaf.convert is None else leaf.convert(found)
 
 
-class _Polled:
+#: -0.0 in the format of `marshal`.
+_MINUS_ZERO = marshal.dumps(-0.0, 2)
+
+
+class _OftenWritten:
     """Values that are read at each look.
 
     :param positions: their positions among all values
+    :param leaves: all leaves
     :param found: what all values were last read as
+    :param memory: where the HAL keeps the values of these reports
     """
 
-    def __init__(self, positions: Sequence[int], leaves: Sequence[Leaf], found: list[Any]) -> None:
-        self._positions, self._leaves, self._found = positions, leaves, found
-        self._reads = [leaf.read for leaf in leaves]
-        self._last = [found[position] for position in positions]
-        self._packed = marshal.dumps(self._last, 2)
+    def __init__(
+        self,
+        positions: Iterable[int],
+        leaves: Sequence[Leaf],
+        found: list[Any],
+        memory: Mapping[tuple[Report, ...], Memory],
+    ) -> None:
+        in_memory, others = {}, []
+        for position in positions:
+            leaf = leaves[position]
+            place = memory.get(leaf.reports)
+            # What is at this address has to be what the HAL returns.
+            if place is not None and same(place.value, leaf.read()):
+                in_memory[position] = place
+            else:
+                others.append(position)
+        self._found = found
+        self._positions = [*in_memory, *others]
+        self._memory = list(in_memory.values())
+        self._reads = [leaves[position].read for position in others]
+        converts = {position: leaves[position].convert for position in others}
+        self._converts = {position: convert for position, convert in converts.items() if convert is not None}
+        self._last = [found[position] for position in self._positions]
+        #: Which of them were -0.0.
+        self._minus_zeros = _minus_zeros(self._last)
 
-    def read(self, values: list[Any]) -> list[int]:
+    def read_all(self, values: list[Any]) -> list[int]:
         """Update `values`; return the positions of those that have changed."""
-        last, now = self._last, [read() for read in self._reads]
-        places = []
-        for place in compress(count(), map(ne, last, now)):
-            old, new = last[place], now[place]
-            last[place] = new
-            if (type(new) is float and new == new) or not same(old, new):  # NaN differs from itself
-                places.append(place)
-        # What is left may be equal and not the same, such as 0.0 and -0.0. Version 2 of the format does not depend on
-        # which objects are shared.
-        packed = marshal.dumps(now, 2)
-        if packed != (marshal.dumps(last, 2) if places else self._packed):
-            places += [place for place, pair in enumerate(zip(last, now, strict=True)) if not same(*pair)]
-            self._last = now
-        self._packed = packed
-        changed = []
-        for place in places:
-            position, new = self._positions[place], now[place]
-            self._found[position] = new
-            values[position] = _converted(self._leaves[place], new)
-            changed.append(position)
-        return changed
+        last, positions, found = self._last, self._positions, self._found
+        now = [place.value for place in self._memory]
+        now += [read() for read in self._reads]
+        self._last = now
+        places = compress(count(), map(ne, last, now))
+        changed = [at for at in places if now[at] == now[at] or not same(last[at], now[at])]  # NaN differs from itself
+        # What is left is equal, but 0.0 and -0.0 are not the same.
+        before, self._minus_zeros = self._minus_zeros, _minus_zeros(now)
+        changed += [at for at in before ^ self._minus_zeros if last[at] == now[at]]
+        result = []
+        for at in changed:
+            position = positions[at]
+            found[position] = values[position] = now[at]
+            result.append(position)
+        for position in self._converts.keys() & result if self._converts else ():
+            values[position] = self._converts[position](found[position])
+        return result
+
+
+def _minus_zeros(values: list[Any]) -> frozenset[int]:
+    """Return the positions of -0.0."""
+    if _MINUS_ZERO not in marshal.dumps(values, 2):
+        return frozenset()
+    zeros = [at for at, value in enumerate(values) if not value]
+    return frozenset(at for at in zeros if type(values[at]) is float and copysign(1, values[at]) < 0)

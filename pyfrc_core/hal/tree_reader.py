@@ -127,7 +127,7 @@ class TreeReader:
         """List the devices' values, and have the HAL report their changes."""
         leaves = [*self._always, *self._present(), *self._bridged()]
         self._live.close()
-        self._live = ChangingValues(leaves)
+        self._live = ChangingValues(leaves, [handle for _, handle, _ in self._signature or ()])
         self._live_paths = [leaf.path for leaf in leaves]
         self._parts.register()
         self._assemble(self._live.values)
