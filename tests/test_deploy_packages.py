@@ -155,6 +155,23 @@ def test_what_is_not_missing(problems: Problems, files: dict[str, str], missing:
     assert problems(files, missing) == []
 
 
+def test_the_imports_of_one_package_are_one_problem(problems: Problems) -> None:
+    files = {
+        "robot.py": "import arm, drive\n\nimport rev, typo_a\n\nimport typo_b\n",
+        "arm.py": "from phoenix6.hardware import TalonFX\nimport phoenix6.configs\nimport phoenix6.controls\n",
+        "drive.py": "import phoenix6\ntry:\n    import phoenix6.signals\nexcept ImportError:\n    pass\n",
+    }
+    found = problems(files, ("phoenix6", "rev", "typo_a", "typo_b"))
+    assert [str(each).partition(": the robot")[0] for each in found if "typo" not in str(each)] == [
+        "arm.py:1: import phoenix6, and 3 more imports",
+        "robot.py:3: import rev",
+    ]
+    assert [str(each).partition(": neither")[0] for each in found if "typo" in str(each)] == [
+        "robot.py:3: import typo_a",
+        "robot.py:5: import typo_b",
+    ]
+
+
 def test_an_import_that_perhaps_never_runs_is_only_a_warning(problems: Problems) -> None:
     files = {"robot.py": "import wpilib\n\ndef autonomous():\n    import commands2\n"}
     (found,) = problems(files, ("commands2",))

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import sys
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..config.robotpy import COMPONENT_MODULES, COMPONENTS, RobotPackages
+from ..wording import counted
 from .agent.imports import is_there
 from .local_checks import ask_to_continue
 from .program_imports import ProgramImports
@@ -105,6 +106,8 @@ class ImportSearch:
         return sorted(set(found), key=lambda each: (not each.certain, each.where))
 
     def _outside(self, facts: RobotFacts, packages: RobotPackages) -> Iterator[PackageProblem]:
+        """Yield one problem for all imports that fail for the same reason, such as those of one package."""
+        failing: dict[tuple[str, str, str, bool], set[tuple[str, int, str]]] = {}
         for found in self._found().outside:
             module = self._missing(found.wanted.module, facts)
             if module is None or (
@@ -113,8 +116,13 @@ class ImportSearch:
                 continue
             if self._found().changes_path and self._found().named_alike(module):
                 continue  # probably in a directory that the program adds to sys.path
-            text, remedy = self._explanation(module, facts, packages)
-            yield PackageProblem(found.where, f"import {module}: {text}", remedy, found.wanted.certain)
+            top = module.partition(".")[0]
+            reason = (top, *self._explanation(module, facts, packages), found.wanted.certain)
+            failing.setdefault(reason, set()).add((found.file, found.wanted.line, module))
+        for (_, text, remedy, certain), imports in failing.items():
+            file, line, module = min(imports)
+            more = f", and {counted(len(imports) - 1, 'more import')}" if len(imports) > 1 else ""
+            yield PackageProblem(f"{file}:{line}", f"import {module}{more}: {text}", remedy, certain)
 
     def _missing(self, module: str, facts: RobotFacts) -> str | None:
         """Return the part of a dotted module name that neither the program nor the robot has, or None."""
@@ -143,8 +151,6 @@ class ImportSearch:
 
     def _explanation(self, module: str, facts: RobotFacts, packages: RobotPackages) -> tuple[str, str]:
         """Return why the robot does not have a module, and what to do."""
-        from importlib.metadata import packages_distributions
-
         from packaging.utils import canonicalize_name
 
         top = module.partition(".")[0]
@@ -155,7 +161,7 @@ class ImportSearch:
         if top in sys.stdlib_module_names:
             text = f"Python {facts.python} on the robot has no such module"
             return text, "That Python's library does not have it: use another module."
-        distribution = next(iter(packages_distributions().get(top, ())), COMPONENT_MODULES.get(top))
+        distribution = next(iter(_distributions().get(top, ())), COMPONENT_MODULES.get(top))
         if distribution is None:
             return self._not_ours(module, facts)
         if canonicalize_name(distribution) in facts.packages:
@@ -190,6 +196,14 @@ def _asked_for(module: str) -> Sequence[str]:
     if not top:
         return ()
     return (top, module) if module != top and is_there(module) else (top,)
+
+
+@cache
+def _distributions() -> Mapping[str, list[str]]:
+    """Return the installed packages by module. Finding them takes a third of a second, so this is done once."""
+    from importlib.metadata import packages_distributions
+
+    return packages_distributions()
 
 
 def _is_virtual(facts: RobotFacts) -> bool:
