@@ -35,6 +35,8 @@ TESTS = (
     "tests/test_hal_data.py",
     "tests/test_hal_paths.py",
     "tests/test_hal_recording.py",
+    "tests/test_hal_reports.py",
+    "tests/test_hal_scaling.py",
     "tests/test_deploy_watching.py",
 )
 COPIED = ("pyfrc", "pyfrc_cli", "pyfrc_core", "tests", "pyproject.toml")
