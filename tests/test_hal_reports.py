@@ -63,6 +63,19 @@ def changed(value: Any) -> Any:
     return 0.5 if value != 0.5 else -0.25
 
 
+def test_each_recorded_value_is_reported(tree: HalData) -> None:
+    """A name that the HAL does not have would only cost time: the value would be read in each packet."""
+    create_all(tree)
+    lists = [tree[kind.name][0] for kind in KINDS if kind.reported_as]
+    singles = [tree[name] for name in ("control", "accelerometer", "power", "roborio")]
+    modules = [tree["pcm"][3][0], tree["ph"][4][0], tree["pcm_compressor"][3], tree["ph_compressor"][4], tree["pdp"][5]]
+    for place in [*lists, *singles, *modules]:
+        for key, slot in place._slots.items():
+            if slot.recorded:
+                assert slot.reports, f"{place._path}.{key}"
+                assert all(report.exists for report in slot.reports), slot.reports
+
+
 def after_many_looks(tree: HalData) -> ChangeReader:
     changes = tree.changes()
     for _ in range(LOOKS):
