@@ -202,7 +202,8 @@ def _cost(cost: Cost, samples: int) -> Iterator[str]:
     parts = [f"{cost.timing_ns / 1e6:.1f} ms for timing ({cost.call_ns / 1e3:.2f} µs a call)"]
     parts.append(f"{cost.sampling_ns / 1e6:.1f} ms for {counted(samples, 'sample')}")
     if cost.profiled_calls:
-        parts.append(f"{cost.calls_ns / 1e6:.1f} ms for {counted(cost.profiled_calls, 'call')} in cProfile, which the times above include")
+        calls = counted(cost.profiled_calls, "call")
+        parts.append(f"{cost.calls_ns / 1e6:.1f} ms for {calls} in cProfile, which the times above include")
     text = f"Cost of measuring: {', '.join(parts)}"
     if cost.share is not None:
         robot_ms = (cost.robot_ns / 1e6) / (1 + cost.share)
