@@ -40,7 +40,7 @@ _MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
 _NOT_COMPARED = READ_LATER | {"PYTHONDONTWRITEBYTECODE", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
 
 #: Modules that a new interpreter does not have.
-_OF_THE_SUITE = ("warm_start", "warm_processes", "large_pages")
+_OF_THE_SUITE = ("warm_start", "warm_processes", "warm_pytest", "large_pages")
 
 StartInterpreter = Callable[[spawn.Start], spawn.Interpreter]
 
