@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Protocol
 
+from ..collector import collector_paused
 from .owner import end_with
 
 #: Where no module of the user's is in Python's way, and where this package is found.
@@ -113,5 +114,6 @@ def main() -> None:
         end_with(job.owner)
     sys.path[:] = job.path
     os.chdir(job.directory)
-    call: Callable[[], object] = pickle.loads(job.call)
+    with collector_paused():
+        call: Callable[[], object] = pickle.loads(job.call)
     call()
