@@ -240,9 +240,9 @@ def _fork_processes_of_tests(server: socket.socket, interrupted: object) -> tupl
 
 
 def _become(job: _Job, of_tests: str) -> None:
-    """Be what Python is after ``python -m program arguments``.
+    """Be the process of a job.
 
-    :param of_tests: where processes of isolated tests are forked
+    :param of_tests: where processes of isolated tests, and commands of this command, are forked
     """
     for target, descriptor in enumerate(job.streams):
         os.dup2(descriptor, target)
@@ -252,6 +252,11 @@ def _become(job: _Job, of_tests: str) -> None:
         import warm_processes
 
         warm_processes.start_warm(lambda: address, of_tests)
+    run_program(program, arguments, directory, environment)
+
+
+def run_program(program: str, arguments: list[str], directory: str, environment: Mapping[str, str]) -> NoReturn:
+    """Do what ``python -m program arguments`` does in this directory and this environment, and end this process."""
     os.chdir(directory)
     os.environ.clear()
     os.environ.update(environment)

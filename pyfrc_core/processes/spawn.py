@@ -6,11 +6,11 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Protocol
+from typing import IO, Any, Protocol
 
 from ..collector import collector_paused
 from .owner import end_with
@@ -87,6 +87,16 @@ def start(how: Start) -> Interpreter:
     with suppress(OSError):  # it has ended already
         process.stdin.close()
     return process
+
+
+def run_python(arguments: Sequence[str], stdout: IO[Any]) -> int:
+    """Run a new interpreter with these arguments until it ends, and return its exit code.
+
+    Always called as an attribute of this module, as `start` is.
+
+    :param stdout: a stream with a file descriptor; what goes elsewhere is this process's
+    """
+    return subprocess.run([sys.executable, *arguments], stdout=stdout, check=False).returncode
 
 
 def open_interpreter(how: Start) -> subprocess.Popen[bytes]:
