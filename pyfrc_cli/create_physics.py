@@ -6,6 +6,8 @@ from pathlib import Path
 
 import click
 
+from pyfrc_core.collector import collector_paused
+
 from .project_options import chosen_project, from_here, project_options
 from .verbosity import hint
 
@@ -24,7 +26,8 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
     Exit codes: 0 the files exist, written now or before,
     1 the robot's code failed, 2 wrong usage.
     """
-    from pyfrc_core.physics.create.files import create_physics
+    with collector_paused():
+        from pyfrc_core.physics.create.files import create_physics
 
     project = chosen_project(directory, main, robot_class)
     done = create_physics(project)

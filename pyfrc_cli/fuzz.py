@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from pyfrc_core._version import requirement
+from pyfrc_core.collector import collector_paused
 from pyfrc_core.wording import counted
 
 from .project_options import chosen_project, project_options
@@ -132,11 +133,12 @@ def command(
     for each in directories:
         if not each.is_dir():
             raise click.BadParameter(f"there is no directory {each}", param_hint="DIRECTORIES")
-    from pyfrc_core.compat.real_time_devices import explain_real_time
-    from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
-    from pyfrc_core.fuzz.stream import Shard
-    from pyfrc_core.processors import usable_processors
-    from pyfrc_core.runtime.scripts.inputs_file import load_inputs
+    with collector_paused():
+        from pyfrc_core.compat.real_time_devices import explain_real_time
+        from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
+        from pyfrc_core.fuzz.stream import Shard
+        from pyfrc_core.processors import usable_processors
+        from pyfrc_core.runtime.scripts.inputs_file import load_inputs
 
     project = chosen_project(directory, main, robot_class)
     if merge:

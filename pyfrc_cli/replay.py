@@ -8,6 +8,8 @@ from pathlib import Path
 
 import click
 
+from pyfrc_core.collector import collector_paused
+
 from .project_options import chosen_project, project_options
 from .verbosity import hint
 
@@ -50,8 +52,9 @@ def command(
     Exit codes: 0 the trace equals the recorded one, or none was recorded, or a vendor's devices do not repeat;
     1 it differs, or the robot's code failed; 2 wrong usage, or no such script.
     """
-    from pyfrc_core.compat.real_time_devices import explain_real_time
-    from pyfrc_core.replay import replay
+    with collector_paused():
+        from pyfrc_core.compat.real_time_devices import explain_real_time
+        from pyfrc_core.replay import replay
 
     project = chosen_project(directory, main, robot_class)
     if picture is not None:

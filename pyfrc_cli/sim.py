@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from pyfrc_core.collector import collector_paused
+
 from .project_options import chosen_project, project_options
 from .verbosity import verbosity
 
@@ -94,7 +96,8 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None, 
     \b
     Exit codes: 0 all went well, 1 the robot's code failed, 2 wrong usage.
     """
-    from pyfrc_core.sim.simulate import SimRequest, simulate
+    with collector_paused():
+        from pyfrc_core.sim.simulate import SimRequest, simulate
 
     project = chosen_project(directory, main, robot_class)
     sys.exit(simulate(project, SimRequest(**request, quiet=verbosity().quiet), partial(click.echo, nl=False)))

@@ -8,6 +8,8 @@ from typing import Literal
 
 import click
 
+from pyfrc_core.collector import collector_paused
+
 from .project_options import chosen_project, project_options
 from .verbosity import verbosity
 
@@ -112,8 +114,9 @@ def command(
     )
     with measuring(project, coverage_options) as measured:
         # Imported here, so that lines of the robot's modules are counted while they are imported.
-        from pyfrc_core.test_support.options import TestOptions
-        from pyfrc_core.test_support.run_tests import run_tests
+        with collector_paused():
+            from pyfrc_core.test_support.options import TestOptions
+            from pyfrc_core.test_support.run_tests import run_tests
 
         options = TestOptions.combined(
             project.settings.test,

@@ -196,7 +196,7 @@ TROUBLED_TESTS = """
 
 HANGS_SOON = """
     [tool.pyfrc.test]
-    hang_seconds = 1
+    hang_seconds = 0.25
 """
 
 
@@ -295,7 +295,7 @@ def test_an_endless_loop_is_ended_and_named(
     block = report.blocks()[f"test_teleop[{trouble}]"]
     number = number_in(first_line(block), "robot.py")
     assert troubled.line("robot.py", begin) <= number <= troubled.line("robot.py", end)
-    assert f"{who} hangs here: robot time has stood at 0.02 s through 1 s of computing." in first_line(block)
+    assert f"{who} hangs here: robot time has stood at 0.02 s through 0.25 s of computing." in first_line(block)
     assert "Is it an endless loop?" in block
 
 
@@ -418,7 +418,7 @@ def test_hangs_that_no_python_code_can_end_are_named_too(make_project: MakeProje
     project = make_project(
         {
             "robot.py": HANGS,
-            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.5\n",
+            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.2\n",
             "tests/test_it.py": """
             def test_keeps_python(control, robot):
                 control.set_operator_control()

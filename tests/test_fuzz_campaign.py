@@ -170,7 +170,7 @@ FAULTY = """
 @pytest.mark.parametrize("kind", FAULTS)
 def test_what_is_a_failure(kind: str, make_project) -> None:
     code, message = FAULTS[kind]
-    slow = "hang_seconds = 0.2\n    out_of_range = true"
+    slow = f"hang_seconds = {0.1 if kind == 'hangs' else 0.2}\n    out_of_range = true"
     project = make_project({"robot.py": FAULTY.format(code), "pyproject.toml": SHORT_MATCHES.format(6, slow)})
     result = project.run("fuzz", "--runs", "2")
     assert result.code == 1, result.output

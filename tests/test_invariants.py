@@ -210,7 +210,7 @@ def test_a_file_whose_only_decorator_is_misspelled_is_named(project) -> None:
 
 
 def test_a_rule_that_hangs_is_named(project) -> None:
-    settings = SETTINGS.replace("match_seconds = 10", "match_seconds = 2\n    hang_seconds = 0.2")
+    settings = SETTINGS.replace("match_seconds = 10", "match_seconds = 2\n    hang_seconds = 0.1")
     project.write({RULES: rule("while True: pass"), "pyproject.toml": settings})
     result = project.run("fuzz", "--runs", "1")
     assert f"{RULES}:3: it_holds() hangs" in result.output, result.output

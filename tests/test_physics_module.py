@@ -620,7 +620,7 @@ def test_physics_that_never_comes_back_is_named(make_project) -> None:
         {
             "robot.py": ROBOT,
             "tests/test_it.py": RUNS,
-            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.5\n",
+            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.2\n",
             "physics.py": """
                 class PhysicsEngine:
                     def __init__(self, physics_controller):

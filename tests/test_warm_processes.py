@@ -217,6 +217,40 @@ def test_a_deploys_check_starts_warm(make_project: MakeProject, tmp_path: Path) 
     assert (tmp_path / "found").read_text() == "True\n"
 
 
+def test_a_deploys_tests_find_what_they_find_in_a_new_interpreter(make_project: MakeProject, tmp_path: Path) -> None:
+    tests = f"""
+        import json
+        import os
+        import stat
+        import sys
+
+        kinds = [stat.S_IFMT(os.fstat(descriptor).st_mode) for descriptor in range(3)]
+        environment = {{name: os.environ[name] for name in os.environ if name != "PYTEST_VERSION"}}
+        found = [sys.path, sys.argv, sys.orig_argv, os.getcwd(), environment, kinds, hash("robot")]
+        with open({str(tmp_path)!r} + "/found", "a") as file:
+            print(json.dumps(found), file=file)
+            print(json.dumps("warm_start.py" in open(f"/proc/{{os.getppid()}}/cmdline").read()), file=file)
+
+        def test_it():
+            print("printed", flush=True)
+            os.write(2, b"written")
+            assert False
+        """
+    robot = "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+    project = make_project({"robot.py": robot, "tests/test_it.py": tests})
+    words = ["deploy", "--robot", "127.0.0.1:1"]
+    for quiet in ([], ["--quiet"]):
+        warm, cold = (project.run(*words, *quiet, cold=cold) for cold in (False, True))
+        assert warm.blocks() == cold.blocks()
+        assert "written" in warm.blocks()["test_it"]
+        assert (warm.code, warm.stderr) == (cold.code, cold.stderr)
+        assert "the tests failed" in warm.stderr
+    found = [json.loads(line) for line in (tmp_path / "found").read_text().splitlines()]
+    assert found[1::2] == [True, False, True, False]
+    assert found[0] == found[2]
+    assert found[4] == found[6]
+
+
 @pytest.mark.parametrize(("seed", "is_warm"), [("0", True), ("1", False), ("random", False)])
 def test_a_seed_that_is_asked_for_is_the_seed(seed: str, is_warm: bool) -> None:
     assert warm_processes._the_same({"PYTHONHASHSEED": seed}, {"PYTHONHASHSEED": "0"}) is is_warm

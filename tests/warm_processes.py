@@ -21,13 +21,13 @@ import subprocess
 import sys
 import types
 import weakref
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import IO, Any, NamedTuple
 
 from large_pages import use_large_pages
-from warm_start import LARGEST, READ_AT_START, READ_LATER, end_like_python
+from warm_start import LARGEST, READ_AT_START, READ_LATER, end_like_python, run_program
 
 from pyfrc_core.processes import spawn
 from pyfrc_core.sim.engine import host_process
@@ -40,9 +40,10 @@ _MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
 _NOT_COMPARED = READ_LATER | {"PYTHONDONTWRITEBYTECODE", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
 
 #: Modules that a new interpreter does not have.
-_OF_THE_SUITE = ("warm_start", "warm_processes", "large_pages")
+_OF_THE_SUITE = ("warm_start", "warm_processes", "warm_pytest", "large_pages")
 
 StartInterpreter = Callable[[spawn.Start], spawn.Interpreter]
+RunPython = Callable[[Sequence[str], IO[Any]], int]
 
 
 class WarmProcesses:
@@ -72,9 +73,12 @@ def start_warm(address: Callable[[], str], of_tests: str | None = None) -> None:
     """Have this process's simulations ask for their hosts, and `run_in_subprocess` for its processes.
 
     :param address:  returns where, when the first is asked for
-    :param of_tests: where to ask for the processes of isolated tests; without it, they are new interpreters
+    :param of_tests: where to ask for commands, and for the processes of isolated tests; without it, they are new
+        interpreters
     """
     spawn.start = functools.partial(_start, address, of_tests, spawn.start)
+    if of_tests is not None:
+        spawn.run_python = functools.partial(_run_python, address, of_tests, spawn.run_python)
 
 
 def _start(
@@ -90,8 +94,27 @@ def _start(
         streams = how.stdout, how.stdout if kind == "host" else how.stderr
         output, errors = (_descriptor(stream, own, unread) for own, stream in enumerate(streams, 1))
         where = of_tests if kind == "test" and of_tests is not None else address()
-        warm = _ask(where, kind, sys.path, environment, how.job(), [output, errors])
+        their_end, our_end = os.pipe()
+        with os.fdopen(our_end, "wb") as file:
+            try:
+                warm = _ask(where, [kind, sys.path, environment, []], [their_end, output, errors])
+            finally:
+                os.close(their_end)
+            if warm is not None:
+                with suppress(OSError):  # it has ended already
+                    file.write(how.job())
+                    file.flush()
     return warm or cold(how)
+
+
+def _run_python(
+    address: Callable[[], str], of_tests: str, cold: RunPython, arguments: Sequence[str], stdout: IO[Any]
+) -> int:
+    option, program, *words = arguments
+    assert option == "-m", arguments
+    command = [program, words, str(Path.cwd()), address(), of_tests]
+    warm = _ask(of_tests, ["command", [*sys.path, command[2]], dict(os.environ), command], [0, stdout.fileno(), 2])
+    return cold(arguments, stdout) if warm is None else warm.wait()
 
 
 def _descriptor(stream: int | IO[bytes] | None, own: int, unread: IO[bytes]) -> int:
@@ -103,25 +126,19 @@ def _descriptor(stream: int | IO[bytes] | None, own: int, unread: IO[bytes]) -> 
     return (unread if isinstance(stream, int) else stream).fileno()
 
 
-def _ask(
-    address: str, kind: str, path: list[str], environment: Mapping[str, str], stdin: bytes, output: list[int]
-) -> _WarmProcess | None:
-    """Have a process forked; return None where a fork would not do."""
+def _ask(address: str, request: list[object], streams: list[int]) -> _WarmProcess | None:
+    """Have a process forked; return None where a fork would not do.
+
+    :param request: all but the last two of a `_Request`
+    """
     server = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     server.connect(address)
-    their_end, our_end = os.pipe()
-    with os.fdopen(our_end, "wb") as file:
-        request = json.dumps([kind, path, dict(environment)]).encode()
-        socket.send_fds(server, [request], [their_end, *output])
-        os.close(their_end)
-        if not (pid := server.recv(LARGEST)):
-            raise RuntimeError("the process that forks others has ended: its traceback is on standard error")
-        if pid == b"cold":
-            server.close()
-            return None
-        with suppress(OSError):  # it has ended already
-            file.write(stdin)
-            file.flush()
+    socket.send_fds(server, [json.dumps(request).encode()], streams)
+    if not (pid := server.recv(LARGEST)):
+        raise RuntimeError("the process that forks others has ended: its traceback is on standard error")
+    if pid == b"cold":
+        server.close()
+        return None
     return _WarmProcess(int(pid), server)
 
 
@@ -158,11 +175,18 @@ class _WarmProcess:
 
 
 class _Request(NamedTuple):
-    """A process to become: its kind, `sys.path`, environment, three streams, and whom to send its number."""
+    """A process to become.
+
+    :param kind: "host", "call", "test" or "command"
+    :param path: `sys.path`; of a command, where its modules will be found, besides others
+    :param command: a program, its arguments and directory, and the two addresses for `start_warm`
+    :param asking: where to send its number
+    """
 
     kind: str
     path: list[str]
     environment: dict[str, str]
+    command: list[Any]
     streams: list[int]
     asking: socket.socket
 
@@ -232,6 +256,11 @@ def _become(request: _Request) -> None:
         os.setsid()
     for target, descriptor in enumerate(request.streams):
         os.dup2(descriptor, target)
+    if request.kind == "command":
+        program, arguments, directory, address, of_tests = request.command
+        start_warm(lambda: address, of_tests)
+        _tell_number(request)
+        run_program(program, arguments, directory, request.environment)
     os.environ.clear()
     os.environ.update(request.environment)
     sys.dont_write_bytecode = bool(os.environ.get("PYTHONDONTWRITEBYTECODE"))
@@ -245,11 +274,15 @@ def _become(request: _Request) -> None:
     sys.modules["__main__"] = types.ModuleType("__main__")
     for name in _OF_THE_SUITE:
         sys.modules.pop(name, None)
+    _tell_number(request)
+    spawn.main()
+    end_like_python(0)
+
+
+def _tell_number(request: _Request) -> None:
     request.asking.send(str(os.getpid()).encode())
     request.asking.detach()
     os.closerange(3, os.sysconf("SC_OPEN_MAX"))
-    spawn.main()
-    end_like_python(0)
 
 
 def serve(listener: socket.socket, interrupted: object) -> None:

@@ -11,7 +11,6 @@ import contextlib
 import gc
 import importlib
 import inspect
-import io
 import json
 import os
 import runpy
@@ -21,12 +20,10 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import threading
 import types
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from importlib.metadata import PathDistribution
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
@@ -48,7 +45,7 @@ _IMPORTED = (
     "ntcore",
     "click",
     "numpy.random",
-    "pint",
+    "pyfrc_core.physics.registry",  # pint, without what pint alone would import
     "encodings.idna",
     "pydantic",
     "pydantic.dataclasses",
@@ -243,9 +240,9 @@ def _fork_processes_of_tests(server: socket.socket, interrupted: object) -> tupl
 
 
 def _become(job: _Job, of_tests: str) -> None:
-    """Be what Python is after ``python -m program arguments``.
+    """Be the process of a job.
 
-    :param of_tests: where processes of isolated tests are forked
+    :param of_tests: where processes of isolated tests, and commands of this command, are forked
     """
     for target, descriptor in enumerate(job.streams):
         os.dup2(descriptor, target)
@@ -255,6 +252,11 @@ def _become(job: _Job, of_tests: str) -> None:
         import warm_processes
 
         warm_processes.start_warm(lambda: address, of_tests)
+    run_program(program, arguments, directory, environment)
+
+
+def run_program(program: str, arguments: list[str], directory: str, environment: Mapping[str, str]) -> NoReturn:
+    """Do what ``python -m program arguments`` does in this directory and this environment, and end this process."""
     os.chdir(directory)
     os.environ.clear()
     os.environ.update(environment)
@@ -281,64 +283,6 @@ def end_like_python(code: int) -> NoReturn:
     _exit_now(code & 0xFF)
 
 
-def _import_plugins_of_pytest() -> None:
-    """Import the plugins that each run of pytest imports, in the way it does: the module of a plugin that was
-    imported in another way would make it warn.
-    """
-    import pytest
-
-    with tempfile.TemporaryDirectory() as empty, contextlib.redirect_stdout(io.StringIO()):
-        here = Path.cwd()
-        os.chdir(empty)
-        try:
-            pytest.main(["-VV"])
-        finally:
-            os.chdir(here)
-
-
-def _read_metadata_once() -> None:
-    """Keep what is read of installed packages: each run of pytest reads the entry points of all of them, twice."""
-    read = PathDistribution.read_text
-    known: dict[tuple[object, str], str | None] = {}
-
-    def read_text(self: PathDistribution, filename: str) -> str | None:
-        key = self._path, filename  # type: ignore[attr-defined]
-        if key not in known:
-            known[key] = read(self, filename)
-        return known[key]
-
-    PathDistribution.read_text = read_text  # type: ignore[method-assign]
-
-
-def _search_plugins_once() -> None:
-    """Keep which plugins and classes of plugins have no fixtures: each run of pytest searches all their attributes."""
-    from _pytest import fixtures, nodes
-
-    if not hasattr(fixtures, "FixtureFunctionDefinition"):  # pytest before 8.4
-        return
-
-    def has_fixtures(holder: object) -> bool:
-        return any(isinstance(getattr(holder, name, None), fixtures.FixtureFunctionDefinition) for name in dir(holder))
-
-    def is_pytests(name: str) -> bool:
-        return name.partition(".")[0] in ("_pytest", "xdist")
-
-    modules = [module for name, module in sys.modules.items() if is_pytests(name)]
-    values = [value for module in modules for value in vars(module).values()]
-    # Nodes are not searched themselves: they stand for users' modules and classes.
-    classes = {each for each in values if isinstance(each, type) and is_pytests(each.__module__)}
-    holders = [*modules, *(each for each in classes if not issubclass(each, nodes.Node))]
-    without = {holder for holder in holders if not has_fixtures(holder)}
-    search = fixtures.FixtureManager.parsefactories
-
-    def parsefactories(self: fixtures.FixtureManager, *args: object, **kwargs: object) -> None:
-        holder = kwargs["holder"] if "holder" in kwargs else args[0]
-        if holder.__hash__ is None or (holder not in without and type(holder) not in without):
-            search(self, *args, **kwargs)  # type: ignore[call-overload]
-
-    fixtures.FixtureManager.parsefactories = parsefactories  # type: ignore[assignment]
-
-
 def _fix_the_seed() -> None:
     """Where `pyfrc` would start Python again: it has the seed already."""
     os.environ["PYTHONHASHSEED"] = "0"
@@ -349,18 +293,19 @@ def main() -> None:
     server = socket.socket(fileno=int(sys.argv[1]))
     import warm_processes  # noqa: F401 - not to be found without the path's first entry
     from large_pages import use_large_pages
+    from warm_pytest import prepare_pytest
 
     del sys.path[0]
     interrupted = signal.signal(signal.SIGINT, signal.SIG_IGN)
     for name in _IMPORTED:
         importlib.import_module(name)
-    _read_metadata_once()
-    _import_plugins_of_pytest()
-    _search_plugins_once()
+    prepare_pytest()
     from pyfrc_cli import main as commands
     from pyfrc_cli import start
+    from pyfrc_core.compat.wpilib_noise import replace_chance
     from pyfrc_core.config import settings
     from pyfrc_core.deploy.agent_package import agent_package
+    from pyfrc_core.project.loaded_modules import loaded_modules
 
     for module, _ in commands.COMMANDS.values():
         importlib.import_module(module)
@@ -369,6 +314,8 @@ def main() -> None:
     assert callable(start._restart_with_fixed_seed)  # under another name, each command would start cold
     start._restart_with_fixed_seed = _fix_the_seed
     inspect.stack()  # resolves the files of all modules, which measuring coverage begins with
+    replace_chance()
+    loaded_modules.look()
     server.send(json.dumps(list(sys.modules)).encode())
     gc.collect()
     gc.freeze()

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import tempfile
 import threading
 from datetime import datetime
 from typing import IO, TYPE_CHECKING
 
 from ..errors import PyfrcError, RobotCodeError
+from ..processes import spawn
 from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
 from .errors import RefusedError
@@ -47,12 +46,12 @@ def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = Fa
     else:
         which = ["--main", str(project.main_file)]
     which += [f"--robot-class={project.class_name}"] if project.class_name else []
-    command = [sys.executable, "-m", "pyfrc", "test", *which, *(["--builtin"] if builtin else [])]
+    command = ["-m", "pyfrc", "test", *which, *(["--builtin"] if builtin else [])]
     output.flush()
     if not quiet:
-        return subprocess.run(command, stdout=output, check=False).returncode == 0
+        return spawn.run_python(command, output) == 0
     with tempfile.TemporaryFile() as printed:
-        passed = subprocess.run([*command, "--quiet"], stdout=printed, check=False).returncode == 0
+        passed = spawn.run_python([*command, "--quiet"], printed) == 0
         if not passed:
             printed.seek(0)
             output.write(printed.read().decode(errors="replace"))

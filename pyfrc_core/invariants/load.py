@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType, ModuleType
-from typing import Any
 
 from ..errors import UsageError, nearest
 from ..project import Project
+from ..project.loaded_modules import loaded_modules
 from ..runtime.loading import import_file
 from .decorator import MARK
 
@@ -105,13 +105,9 @@ def _parameters(function: Callable[..., object], place: str) -> tuple[str, ...]:
 
 def _loaded(file: Path) -> ModuleType | None:
     """Return the module of this file if it is imported, as pytest does with test files."""
-    for module in list(sys.modules.values()):
-        origin: Any = getattr(module, "__file__", None)
-        if (
-            isinstance(origin, str)
-            and origin.endswith(file.name)
-            and os.path.realpath(origin) == os.path.realpath(file)
-        ):
+    for module in loaded_modules.look():
+        origin = str(module.__file__)
+        if origin.endswith(file.name) and os.path.realpath(origin) == os.path.realpath(file):
             return module
     return None
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import platform
 import sys
-import sysconfig
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from hashlib import sha256
@@ -14,6 +13,7 @@ from pathlib import Path
 from .._version import __version__
 from ..file_hash import hash_file
 from ..project import Project
+from ..project.loaded_modules import PACKAGES, loaded_modules
 
 #: Directories and files that the robot, its tests or other tools write, and no test reads.
 _DIRECTORIES_WRITTEN = {"__pycache__", "build", "ctre_sim", "dist", "htmlcov"}
@@ -21,7 +21,6 @@ _FILES_WRITTEN = {"coverage.xml", "networktables.json", "networktables.json.bck"
 _SUFFIXES_WRITTEN = (".hoot", ".pyc", ".rrd", ".wpilog")
 #: The length of a hash, in hexadecimal.
 _HASH_LETTERS = 24
-_PACKAGES = ("site-packages", "dist-packages")
 
 
 @dataclass(frozen=True)
@@ -90,6 +89,18 @@ def hash_of_file(file: Path) -> str:
         return "unreadable"
 
 
+def version_of_file(file: Path) -> str:
+    """Return the size of a file outside the project and the time of its last change, as of an installed package.
+
+    These are many files where pyfrc itself is installed as an editable package: reading them takes longer than a test.
+    """
+    try:
+        status = file.stat()
+    except OSError:
+        return "unreadable"
+    return f"{status.st_size} {status.st_mtime_ns}"
+
+
 def hash_of(content: bytes) -> str:
     """Return a hash of the content."""
     return sha256(content).hexdigest()[:_HASH_LETTERS]
@@ -103,7 +114,7 @@ def environment() -> str:
     """
     facts = [sys.version, platform.machine(), platform.system(), __version__]
     for place in sys.path:
-        if place.endswith(_PACKAGES):
+        if place.endswith(PACKAGES):
             try:
                 with os.scandir(place) as entries:
                     facts += sorted(
@@ -118,13 +129,6 @@ def environment() -> str:
 
 def loaded_from_elsewhere(project: Project) -> set[str]:
     """Return the source files that this process has imported from outside the project, Python and its packages."""
-    standard = (sysconfig.get_path("stdlib") + os.sep, sysconfig.get_path("platstdlib") + os.sep)
-    found = set()
-    packages, more_packages = (f"{os.sep}{name}{os.sep}" for name in _PACKAGES)
-    for name, module in list(sys.modules.items()):
-        file = getattr(module, "__file__", None)
-        if not isinstance(file, str) or file.startswith(standard) or packages in file or more_packages in file:
-            continue
-        if name != "__main__" and not project.files.is_project_file(file) and Path(file).is_absolute():
-            found.add(file)
-    return found
+    is_ours = project.files.is_project_file
+    files = {str(module.__file__) for module in loaded_modules.look() if module.__name__ != "__main__"}
+    return {file for file in files if not is_ours(file)}.union(loaded_modules.files_of_pyfrc())

@@ -15,14 +15,15 @@ from ..config.settings import DEFAULT_SEED
 from ..project import TEST_FILES, Project
 from ..text_files import keep_out_of_version_control, write_whole
 from .blocks import MODULE, blocks_of
-from .contents import Contents, environment, hash_of, hash_of_file, read_contents
+from .contents import Contents, environment, hash_of, read_contents, version_of_file
 from .ran_functions import Place
 
 #: In the robot project, and out of version control.
 _FILE = Path(".pyfrc", "passes.json")
 _FORMAT = 1
 
-#: What a test has read: a source file of the project, a block of it, and the block's hash; or a file from elsewhere.
+#: What a test has read: a source file of the project, a block of it, and the block's hash; or a file from elsewhere and
+#: its version.
 _Read = tuple[str, str, str]
 #: In place of a block: the whole file, which is not the project's.
 _ELSEWHERE = "*"
@@ -61,7 +62,7 @@ class Passes:
         self._basis = _basis_of(self._begin, [seed, builtin, project.main_file.name, project.class_name, rules])
         self._kept = _load(self._file)
         self._blocks = cache(lambda path: blocks_of((project.root / path).read_bytes()))
-        self._hash_elsewhere = cache(lambda file: hash_of_file(Path(file)))
+        self._version_elsewhere = cache(lambda file: version_of_file(Path(file)))
 
     # -- single tests ----------------------------------------------------------------------------------------------
 
@@ -72,9 +73,9 @@ class Passes:
         return all(self._now(file, block) == known for file, block, known in reads)
 
     def _now(self, file: str, block: str) -> str | None:
-        """Return the hash of a block now; None if there is no such block."""
+        """Return the hash of a block, or the version of a file, now; None if there is no such block."""
         if block == _ELSEWHERE:
-            return self._hash_elsewhere(file)
+            return self._version_elsewhere(file)
         return self._blocks(file).hashes.get(block) if file in self._begin.sources else None
 
     def record(self, test: str, places: Iterable[Place], modules: Iterable[str], elsewhere: Iterable[str]) -> None:
@@ -113,7 +114,7 @@ class Passes:
             self._kept.green = {
                 "at": datetime.now().astimezone().isoformat(timespec="seconds"),
                 "hash": self._green_hash(),
-                "elsewhere": {file: self._hash_elsewhere(file) for file in sorted(elsewhere)},
+                "elsewhere": {file: self._version_elsewhere(file) for file in sorted(elsewhere)},
             }
 
     def green_since(self) -> datetime | None:
@@ -121,7 +122,7 @@ class Passes:
         green = self._kept.green
         if green is None or green["hash"] != self._green_hash():
             return None
-        if any(self._hash_elsewhere(file) != known for file, known in green["elsewhere"].items()):
+        if any(self._version_elsewhere(file) != known for file, known in green["elsewhere"].items()):
             return None
         return datetime.fromisoformat(green["at"])
 

@@ -6,12 +6,13 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Protocol
+from typing import IO, Any, Protocol
 
+from ..collector import collector_paused
 from .owner import end_with
 
 #: Where no module of the user's is in Python's way, and where this package is found.
@@ -88,6 +89,16 @@ def start(how: Start) -> Interpreter:
     return process
 
 
+def run_python(arguments: Sequence[str], stdout: IO[Any]) -> int:
+    """Run a new interpreter with these arguments until it ends, and return its exit code.
+
+    Always called as an attribute of this module, as `start` is.
+
+    :param stdout: a stream with a file descriptor; what goes elsewhere is this process's
+    """
+    return subprocess.run([sys.executable, *arguments], stdout=stdout, check=False).returncode
+
+
 def open_interpreter(how: Start) -> subprocess.Popen[bytes]:
     """Start a new interpreter whose standard input stays open: what follows the job is for what it calls."""
     process = subprocess.Popen(
@@ -113,5 +124,6 @@ def main() -> None:
         end_with(job.owner)
     sys.path[:] = job.path
     os.chdir(job.directory)
-    call: Callable[[], object] = pickle.loads(job.call)
+    with collector_paused():
+        call: Callable[[], object] = pickle.loads(job.call)
     call()

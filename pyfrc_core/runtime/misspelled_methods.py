@@ -8,12 +8,13 @@ refers to it; a function inside another method, only if it has such a name and a
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from types import CodeType, FunctionType, ModuleType
+from types import CodeType, FunctionType
 from typing import TYPE_CHECKING
+
+from ..project.loaded_modules import loaded_modules
 
 if TYPE_CHECKING:
     from ..project import Project
@@ -64,9 +65,8 @@ def find_misspelled_methods(project: Project) -> list[MisspelledMethod]:
 
 
 def _classes(project: Project) -> Iterator[type]:
-    for module in list(sys.modules.values()):
-        file = getattr(module, "__file__", None) if isinstance(module, ModuleType) else None
-        if not isinstance(file, str) or not project.files.is_robot_code(file):
+    for module in loaded_modules.look():
+        if not project.files.is_robot_code(str(module.__file__)):
             continue
         for value in list(vars(module).values()):
             if isinstance(value, type) and value.__module__ == module.__name__:
@@ -150,9 +150,9 @@ def _distance(one: str, other: str) -> int:
 def _is_referred_to(name: str, project: Project) -> bool:
     """Return whether the project uses this name anywhere besides its definition."""
     reference = re.compile(rf"(?<!def )\b{re.escape(name)}\b")
-    for module in list(sys.modules.values()):
-        file = getattr(module, "__file__", None) if isinstance(module, ModuleType) else None
-        if isinstance(file, str) and project.files.is_robot_code(file):
+    for module in loaded_modules.look():
+        file = str(module.__file__)
+        if project.files.is_robot_code(file):
             lines = Path(file).read_text("utf-8", "replace").splitlines()
             if any(reference.search(line.partition("#")[0]) for line in lines):
                 return True

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,6 +12,7 @@ from ..passes.contents import loaded_from_elsewhere
 from ..passes.memory import Passes
 from ..passes.ran_functions import Place, RanFunctions
 from ..project import Project
+from ..project.loaded_modules import loaded_modules
 from ..wording import counted
 from .options import TestOptions
 
@@ -38,10 +38,12 @@ class RanPlugin:
 
     def ran_here(self) -> Ran:
         """Return what has run in this process until now."""
-        files = (getattr(module, "__file__", None) for module in list(sys.modules.values()))
-        is_ours = self._project.files.is_project_file
-        modules = frozenset(file for file in files if isinstance(file, str) and is_ours(file))
+        files = (str(module.__file__) for module in loaded_modules.look())
+        modules = frozenset(filter(self._project.files.is_project_file, files))
         return frozenset(self._functions.places), modules, frozenset(loaded_from_elsewhere(self._project))
+
+    def pytest_collection_finish(self) -> None:
+        loaded_modules.look()  # not in each fork again
 
 
 class RememberedPasses:

@@ -68,6 +68,8 @@ def run_tests(
                 status = preforked.take_over("; ".join(reasons))
                 warn_of_misspelled_methods(project)  # the other process has not imported them
                 return status
+            if preforked is not None:
+                preforked.dismiss()  # as long as it lives, what this process writes to is copied
         passes = RememberedPasses(project, options, pytest_args, builtin)
         plugins = [plugin, IsolatedTests(plugin), SummaryPlugin(project), _NoUnusedHypothesis(), passes, *ran]
         return int(pytest.main(args, plugins=plugins))

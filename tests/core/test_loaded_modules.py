@@ -1,0 +1,81 @@
+"""The modules from elsewhere than Python and its packages: found once, and looked up again at each look."""
+
+from __future__ import annotations
+
+import json
+from types import ModuleType, SimpleNamespace
+
+import pytest
+
+from pyfrc_core.project import loaded_modules as module_under_test
+from pyfrc_core.project.loaded_modules import LoadedModules
+
+
+@pytest.fixture
+def modules(monkeypatch: pytest.MonkeyPatch) -> dict[str, ModuleType]:
+    """What takes the place of `sys.modules` in a test."""
+    made: dict[str, ModuleType] = {}
+    monkeypatch.setattr(module_under_test, "sys", SimpleNamespace(modules=made))
+    return made
+
+
+def module(name: str, file: str | None) -> ModuleType:
+    made = ModuleType(name)
+    if file is not None:
+        made.__file__ = file
+    return made
+
+
+def names(loaded: LoadedModules) -> list[str]:
+    return [each.__name__ for each in loaded.look()]
+
+
+def test_python_its_packages_and_pyfrc_are_left_out(modules: dict[str, ModuleType]) -> None:
+    for name, file in [
+        ("json", json.__file__),
+        ("wpilib", "/usr/lib/python3/site-packages/wpilib/__init__.py"),
+        ("apt", "/usr/lib/python3/dist-packages/apt.py"),
+        ("built_in", None),
+        ("relative", "robot.py"),
+        ("robot", "/home/team/robot.py"),
+        ("teamlib", "/home/team/lib/teamlib.py"),
+        ("pyfrc_core.project", module_under_test.__file__),
+    ]:
+        modules[name] = module(name, file)
+    loaded = LoadedModules()
+    assert names(loaded) == ["robot", "teamlib"]
+    assert loaded.files_of_pyfrc() == [module_under_test.__file__]
+
+
+def test_each_look_finds_what_is_new_and_leaves_out_what_is_gone(modules: dict[str, ModuleType]) -> None:
+    loaded = LoadedModules()
+    expected = []
+    for number in range(400):  # more than one step of the search
+        name = f"m{number}"
+        modules[name] = module(name, f"/robot/{name}.py")
+        expected.append(name)
+        if number % 150 == 0:
+            assert names(loaded) == expected
+    assert names(loaded) == expected
+    del modules["m399"], modules["m7"]  # the newest one, by which the next look finds its place, and another
+    modules["last"] = module("last", "/robot/last.py")
+    assert names(loaded) == [name for name in expected if name not in ("m399", "m7")] + ["last"]
+    modules["m7"] = module("again", "/robot/m7.py")
+    assert "again" in names(loaded)
+
+
+def test_a_module_that_was_imported_again_is_the_new_one(modules: dict[str, ModuleType]) -> None:
+    modules["robot"] = module("robot", "/robot/robot.py")
+    loaded = LoadedModules()
+    loaded.look()
+    modules["robot"] = changed = module("robot", "/robot/robot.py")
+    assert loaded.look() == [changed]
+
+
+def test_what_is_no_module_is_left_out(modules: dict[str, object]) -> None:
+    modules["odd"] = modules["older"] = None
+    modules["robot"] = module("robot", "/robot/robot.py")
+    loaded = LoadedModules()
+    assert names(loaded) == ["robot"]
+    modules["robot"] = None
+    assert names(loaded) == []
