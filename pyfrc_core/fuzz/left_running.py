@@ -9,7 +9,7 @@ and the field disables it between two modes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import CodeType, FrameType
 from typing import Any
@@ -77,16 +77,14 @@ class MotorsLeftRunning:
             self._set.clear()
         self._mode, self._mode_since_us = mode, now_us
 
-    def found(self, now_us: int) -> Iterator[SetMotor]:
-        """Yield each motor that still runs, once."""
+    def found(self, now_us: int) -> Sequence[SetMotor]:
+        """Return the motors that still run, each once."""
         if not self._set or self._mode != "teleop" or now_us - self._mode_since_us < STOPS_WITHIN_US:
-            return
+            return ()
         noted = list(self._set.values())
         self._set.clear()
-        for each in noted:
-            if (
-                abs(each.power) > _NEGLIGIBLE_POWER
-                and each.motor.get() == each.power
-                and not self._in_group(each.motor)
-            ):
-                yield each
+        return [
+            each
+            for each in noted
+            if abs(each.power) > _NEGLIGIBLE_POWER and each.motor.get() == each.power and not self._in_group(each.motor)
+        ]

@@ -18,7 +18,6 @@ from ..hal import modes
 from ..hal.driver_station import program_state
 from ..project import Project
 from ..project.robot_files import RobotFiles
-from ..runtime.clock import Clock
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript
 from ..runtime.timed_loop import Periodic
@@ -37,8 +36,6 @@ _LEAVES_WITHIN_US = 3_000_000
 _ROUNDING = 1e-6
 #: Powers up to this one do not move a motor.
 _NEGLIGIBLE_POWER = 0.02
-
-_CLOCK_RUNS = Clock.run_until.__code__
 
 
 #: Called with each misbehavior; returns whether the run ends with it.
@@ -94,8 +91,10 @@ class _Oracle:
         self._mode_since_us = run.clock.now_us
         #: When the robot was last in the selected mode.
         self._agreed_us = run.clock.now_us
+        #: Whether it was in the last packet: then it is, until another mode is selected.
+        self._agrees = False
         #: A call of the clock that no robot code has made, directly or not.
-        self._clock_frame: FrameType | None = None
+        self._outer_call: object = None
         #: The line at which robot code was waiting when a packet came during its loop.
         self._waiting_at = ("", "")
 
@@ -145,16 +144,25 @@ class _Oracle:
 
     def before_packet(self, now: float) -> None:
         """Note the mode, after all inputs of a packet were written."""
-        mode: str = modes.get_mode() if modes.is_attached() else "disabled"
+        mode: str = modes.get_mode()
+        if mode != "disabled" and not modes.is_attached():
+            mode = "disabled"
         if mode != self._mode:
             self._mode, self._mode_since_us = mode, self._run.clock.now_us
+            self._agrees = False
             self._left_running.on_mode(mode, self._run.clock.now_us)
 
     def after_packet(self, now: float) -> None:
         """Check the run after a packet; robot code may be in the middle of a longer call."""
-        frame = self._waiting_frame(get_frame(1))
-        if frame is not None:
-            self._waiting_at = place_of(frame, self._files)
+        # Between two turns of the robot's loop, the clock is in the same call for many packets. What has made this call
+        # is looked at once.
+        frame = None
+        if (call := self._run.clock.call) is None or call is not self._outer_call:
+            frame = user_frame(get_frame(1), self._files)
+            if frame is not None:
+                self._waiting_at = place_of(frame, self._files)
+            else:
+                self._outer_call = call
         if self._reports is not None and (report := self._reports.error()) is not None:
             self._misbehaved(f"the HAL reports an error: {report}", "hal_errors", ("", ""))
         if self._settings.stuck_modes:
@@ -167,34 +175,20 @@ class _Oracle:
             )
             self._misbehaved(what, "motors_left_running", (place, motor.code.co_name if motor.code else ""))
 
-    def _waiting_frame(self, frame: FrameType | None) -> FrameType | None:
-        """Return the frame of robot code that waits for this packet, if there is one.
-
-        Between two turns of the robot's loop, the clock is in the same call of `run_until` for many packets. What
-        has made this call is looked at once.
-        """
-        clock_frame = None
-        while frame is not None:
-            if frame is self._clock_frame:
-                return None
-            code = frame.f_code
-            if self._files.is_robot_code(code.co_filename):
-                return frame
-            if code is _CLOCK_RUNS:
-                clock_frame = clock_frame or frame
-            frame = frame.f_back
-        self._clock_frame = clock_frame
-        return None
-
     def _check_mode(self, frame: FrameType | None) -> None:
         run = self._run
         if run.started and not run.alive:
             self._misbehaved("the robot program has ended by itself", "stuck_modes", ("", ""))
             return
+        now_us = run.clock.now_us
+        if self._agrees:
+            self._agreed_us = now_us
+            return
         state = program_state()
-        if state == self._mode or state not in modes.MODES or modes.is_stopped():
-            self._agreed_us = run.clock.now_us
-        elif run.clock.now_us - self._agreed_us > _LEAVES_WITHIN_US:
+        self._agrees = state == self._mode
+        if self._agrees or state not in modes.MODES or modes.is_stopped():
+            self._agreed_us = now_us
+        elif now_us - self._agreed_us > _LEAVES_WITHIN_US:
             place = place_of(frame, self._files) if frame is not None else self._place_of_own_loop()
             what = f"the robot is still in {state} mode, {_LEAVES_WITHIN_US / 1e6:g} s after that mode ended"
             self._misbehaved(what, "stuck_modes", place)
