@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, nullcontext
+from contextlib import closing as closed
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -37,6 +38,7 @@ from .fuzz_run import FuzzRun
 from .goals import Goal
 from .input_generator import InputGenerator
 from .inputs import Input
+from .journal import Journal
 from .lines import RobotLines
 from .match_hints import HintWatch, MatchHints
 from .match_plan import MatchEvent, length_of, plan_match
@@ -237,7 +239,7 @@ def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: Fuz
             asked_controls=closing.enter_context(watch_controls()).targets,
         )
         generator.left_out = task.schedule.left_out_at(boot.at_us)
-        journal = closing.enter_context(task.journal.open("ab", 0)) if task.journal else None
+        journal = closing.enter_context(closed(Journal(task.journal))) if task.journal else None
         fuzz_run = FuzzRun(run, generator, journal)
         fuzz_run.may_lack_targets = task.schedule.base is not None
         states = RobotStates(run, project.files, task.known)

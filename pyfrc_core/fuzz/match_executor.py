@@ -31,9 +31,9 @@ from ..runtime.scripts.script import InputScript
 from .asked_controls import prepare_control_watch
 from .boots import MEANWHILE
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
-from .fuzz_run import read_journal
 from .goals import Line
 from .inputs import prepare_sensor_search
+from .journal import read_journal
 from .match import (
     ROBOT_SEED,
     FuzzTask,
