@@ -12,7 +12,7 @@ from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.targets import MODE, RESTART
 from .avoidance import LeftOut, without
 from .base_match import BaseMatch
-from .dashboard_generator import DashboardGenerator, find_dashboard
+from .dashboard_generator import DashboardFinder, DashboardGenerator
 from .gamepads import find_gamepads
 from .inputs import Input, SensorFinder, find_controls
 from .joystick_generator import JoystickGenerator
@@ -87,6 +87,7 @@ class InputGenerator:
         self._sensors = SensorGenerator(rng, self._hal_data, constants)
         self._sensor_finder = SensorFinder(self._hal_data, constants)
         self._dashboard = DashboardGenerator(rng, network_reads, constants)
+        self._dashboard_finder = DashboardFinder()
         #: Applies writes at once, while the robot starts. Set by the match.
         self.write_at_once: Callable[[Mapping[str, Value]], None] | None = None
         if network_reads is not None:
@@ -134,17 +135,20 @@ class InputGenerator:
             self._find_inputs(now_us)
         if now_us >= self._check_us:
             self._check_physics(now_us)
-        parts: list[JoystickGenerator | SensorGenerator | DashboardGenerator] = [self._sensors]
-        if self._attached:  # else no input of the drivers arrives
-            parts += [self._sticks, self._dashboard]
-        for part in parts if now_us >= self._from_us else ():
-            if part.next_us <= now_us:
-                part.write(now_us, found)
+        sensors, sticks, dashboard = self._sensors, self._sticks, self._dashboard
+        if now_us >= self._from_us:
+            if sensors.next_us <= now_us:
+                sensors.write(now_us, found)
+            if self._attached:  # else no input of the drivers arrives
+                if sticks.next_us <= now_us:
+                    sticks.write(now_us, found)
+                if dashboard.next_us <= now_us:
+                    dashboard.write(now_us, found)
         if self.left_out:
             found = without(self.left_out, found)
-        plan = self._plan[self._planned].at_us if self._planned < len(self._plan) else self._end_us
-        parts_us = max(self._from_us, min(part.next_us for part in parts))
-        self.next_us = min(self._find_us, self._check_us, plan, parts_us)
+        plan_us = self._plan[self._planned].at_us if self._planned < len(self._plan) else self._end_us
+        parts_us = min(sensors.next_us, sticks.next_us, dashboard.next_us) if self._attached else sensors.next_us
+        self.next_us = min(self._find_us, self._check_us, plan_us, max(self._from_us, parts_us))
         return found
 
     def resume(self, now_us: int) -> None:
@@ -188,7 +192,7 @@ class InputGenerator:
         self._remember(sensors)
         self._sensors.set_inputs(sensors)
         self._sensors.excluded = {each.device for each in sensors if each.target in self._driven}
-        self._remember(self._dashboard.set_inputs(sorted(find_dashboard())))
+        self._remember(self._dashboard.set_inputs(self._dashboard_finder.find()))
 
     def _before_first_read(self, read: NetworkRead) -> None:
         """Write an entry before the robot first reads it, as if it had been there before the robot was started."""

@@ -111,6 +111,10 @@ _NAMED: tuple[tuple[str, InputKind], ...] = (
 )
 
 
+#: Modules on the CAN bus are looked for in the first searches, and in every fourth later: there are 189 possible ones.
+_FIRST_SEARCHES, _SEARCHES_FOR_MODULES = 4, 4
+
+
 class SensorFinder:
     """Finds what the robot's sensors measure; searches again only after a device was created or removed."""
 
@@ -119,6 +123,8 @@ class SensorFinder:
         self._constants = constants
         self._seen: object = None
         self._found: list[Input] = []
+        self._searches = 0
+        self._there: tuple[bool, ...] = ()
 
     def find(self) -> list[Input]:
         """Return the sensors' values in order: the same list until the robot's devices change."""
@@ -130,9 +136,11 @@ class SensorFinder:
 
     def _devices(self) -> _Devices:
         hal_data = self._hal_data
-        modules = tuple([exists() for exists in _modules()])
+        if self._searches < _FIRST_SEARCHES or self._searches % _SEARCHES_FOR_MODULES == 0:
+            self._there = tuple([exists() for exists in _modules()])
+        self._searches += 1
         accelerometer, sim_devices = hal_data["accelerometer"]["active"], hal_data["CAN"].signature()
-        return _Devices(_used(), modules, accelerometer, sim_devices, counted_channels())
+        return _Devices(_used(), self._there, accelerometer, sim_devices, counted_channels())
 
 
 class _Devices(NamedTuple):

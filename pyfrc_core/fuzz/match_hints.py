@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -101,8 +102,10 @@ class HintWatch:
 
     def after_packet(self, now_us: int) -> None:
         """Look at the robot once in each packet."""
-        self._growths.after_packet(now_us)
-        self._commands.after_packet()
+        if now_us >= self._growths.next_us:
+            self._growths.after_packet(now_us)
+        if not self._commands.watching and "commands2" in sys.modules:
+            self._commands.begin()
 
     def hints(self) -> MatchHints:
         """Return what the match shows; it is over."""
