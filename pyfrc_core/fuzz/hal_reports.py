@@ -6,10 +6,11 @@ import mmap
 import os
 import re
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import IO
+
+from ..processes.memory_file import memory_file
 
 _ERROR = re.compile(rb"^Error at ([^\n]*)\n", re.MULTILINE)
 #: Reports that are no fault of the robot's code: joysticks that are not plugged in; slow loops, which are detected in a
@@ -72,7 +73,7 @@ def hal_reports() -> Iterator[HalReports]:
     """
     stderr = sys.stderr
     stderr.flush()
-    with tempfile.TemporaryFile(buffering=0) as file:
+    with memory_file() as file:
         real = os.dup(2)
         os.dup2(file.fileno(), 2)
         sys.stderr = open(file.fileno(), "w", encoding="utf-8", errors="replace", buffering=1, closefd=False)  # noqa: SIM115
