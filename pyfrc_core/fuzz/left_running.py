@@ -51,6 +51,8 @@ class MotorsLeftRunning:
 
     def __init__(self, in_group: Callable[[object], bool]) -> None:
         self._in_group = in_group
+        #: Whether calls are to be noted: in autonomous, and until no motor is left that it has set.
+        self.counts_calls = False
         self._mode = ""
         self._mode_since_us = 0
         self._set: dict[int, SetMotor] = {}
@@ -61,8 +63,8 @@ class MotorsLeftRunning:
         :param frame: where it is called
         """
         if self._mode != "autonomous":
-            if self._set:
-                self._set.pop(id(motor), None)
+            self._set.pop(id(motor), None)
+            self.counts_calls = bool(self._set)
         elif isinstance(motor, wpilib.PWMMotorController):
             caller = user_frame(frame, files)
             code, line = (caller.f_code, caller.f_lineno) if caller is not None else (None, 0)
@@ -76,6 +78,7 @@ class MotorsLeftRunning:
         elif mode in ("autonomous", "test"):
             self._set.clear()
         self._mode, self._mode_since_us = mode, now_us
+        self.counts_calls = mode == "autonomous" or bool(self._set)
 
     def found(self, now_us: int) -> Sequence[SetMotor]:
         """Return the motors that still run, each once."""

@@ -26,7 +26,7 @@ from .hal_reports import HalReports, hal_reports
 from .inert_motors import InertMotors
 from .left_running import STOPS_WITHIN_US, MotorsLeftRunning
 from .misbehavior_notes import LastMisbehavior
-from .motor_calls import intercept_motor_calls
+from .motor_calls import MotorCalls, watch_motor_calls
 
 #: How long after it was disabled a robot may still command its motors: its loop has to come round.
 _STOPS_WITHIN_US = 500_000
@@ -47,11 +47,10 @@ def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends
     """Watch a run, which is open and has not started, until the context ends."""
     with ExitStack() as closing:
         reports = closing.enter_context(hal_reports()) if settings.hal_errors else None
-        oracle = _Oracle(run, files, settings, reports, ends_run)
         of_motors = (settings.not_a_number, settings.out_of_range, settings.motors_while_disabled)
-        if any(of_motors) or settings.motors_left_running:
-            closing.enter_context(intercept_motor_calls(oracle.on_motor_call))
-            closing.enter_context(oracle.inert_motors.watched())
+        is_watched = any(of_motors) or settings.motors_left_running
+        calls = closing.enter_context(watch_motor_calls()) if is_watched else MotorCalls()
+        oracle = _Oracle(run, files, settings, reports, calls, ends_run)
         if settings.slow_loops:
             run.timed_loop.after_calls.append(oracle.after_call)
         run.clock.before_packet.append(oracle.before_packet)
@@ -78,6 +77,7 @@ class _Oracle:
         files: RobotFiles,
         settings: FuzzSettings,
         reports: HalReports | None,
+        calls: MotorCalls,
         ends_run: EndsRun,
     ) -> None:
         self._run = run
@@ -85,8 +85,9 @@ class _Oracle:
         self._settings = settings
         self._reports = reports
         self._ends_run = ends_run
-        self.inert_motors = InertMotors(run.hal_data)
-        self._left_running = MotorsLeftRunning(self.inert_motors.in_group)
+        calls.listener = self._on_motor_call
+        self._inert_motors = InertMotors(run.hal_data, calls.members)
+        self._left_running = MotorsLeftRunning(self._inert_motors.in_group)
         self._mode = ""
         self._mode_since_us = run.clock.now_us
         #: When the robot was last in the selected mode.
@@ -108,10 +109,10 @@ class _Oracle:
 
     # -- motors ------------------------------------------------------------------------------------------------
 
-    def on_motor_call(self, motor: object, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
+    def _on_motor_call(self, motor: object, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
         """Check a call of a motor controller or a drive."""
         settings = self._settings
-        if settings.motors_left_running:
+        if settings.motors_left_running and self._left_running.counts_calls:
             self._left_running.on_call(motor, get_frame(1), self._files)
         for number in numbers:
             if number != number:  # NaN
@@ -125,7 +126,7 @@ class _Oracle:
                 abs(number) > _NEGLIGIBLE_POWER
                 and settings.motors_while_disabled
                 and self._is_long_disabled()
-                and not self.inert_motors.is_inert(motor)
+                and not self._inert_motors.is_inert(motor)
             ):
                 what = f"{name}() commands a motor to move while the robot is disabled"
                 self._misbehaved(what, "motors_while_disabled", self._caller())
