@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import sys
 from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -31,8 +32,11 @@ _SECOND_US = 1_000_000
 #: Robots create their joysticks when they start: they are not searched for later than this time after that.
 _GAMEPADS_WITHIN_US = 2 * _SECOND_US
 
-#: Interval of the checks whether the robot's simulation drives its sensors.
-_CHECK_EVERY_US = 5 * PACKET_US
+#: For how long after the start everything is searched for in each second; later, in every other one.
+_OFTEN_FOR_US = 4 * _SECOND_US
+
+#: Interval of the checks whether the robot's simulation drives its sensors; and where none is known.
+_CHECK_EVERY_US, _CHECK_SELDOM_US = 5 * PACKET_US, 25 * PACKET_US
 
 #: How long a robot with a simulation is enabled before its sensors are written: the simulation drives some of them.
 _DRIVEN_US = 5 * _SECOND_US
@@ -83,6 +87,8 @@ class InputGenerator:
         self._planned = 0
         self._constants = constants
         self._models = {} if base else choose_models(rng)
+        #: The controls and the gamepads that were found last.
+        self._controls: tuple[list[Input], dict[int, str]] | None = None
         self._sticks = JoystickGenerator(rng, asked_controls, constants)
         self._sensors = SensorGenerator(rng, self._hal_data, constants)
         self._sensor_finder = SensorFinder(self._hal_data, constants)
@@ -98,7 +104,9 @@ class InputGenerator:
         self._enabled_us = 0
         self._attached = True
         self._find_us = self._check_us = PACKET_US
+        self._check_every_us = _CHECK_EVERY_US
         self._gamepads_until_us = _GAMEPADS_WITHIN_US
+        self._often_until_us = _OFTEN_FOR_US
         #: What the match does without from now on.
         self.left_out: LeftOut = frozenset()
         #: `writes` returns nothing before this time.
@@ -159,6 +167,7 @@ class InputGenerator:
             self._planned += 1
         self._find_us = self._check_us = now_us + PACKET_US
         self._gamepads_until_us = now_us + _GAMEPADS_WITHIN_US
+        self._often_until_us = now_us + _OFTEN_FOR_US
 
     def _apply_event(self, now_us: int, event: Mapping[str, Value], found: dict[str, Value]) -> None:
         found |= event
@@ -181,16 +190,21 @@ class InputGenerator:
             self._sticks.change_pose(now_us)
 
     def _find_inputs(self, now_us: int) -> None:
-        """Search again: robots may create devices and dashboard entries at any time."""
-        self._find_us += _SECOND_US
+        """Search again: robots may create devices and dashboard entries at any time, and mostly do when they start."""
+        self._find_us += _SECOND_US if now_us < self._often_until_us else 2 * _SECOND_US
         if now_us <= self._gamepads_until_us and not self._sticks.unplugged:  # unplugged joysticks have no controls
             gamepads = find_gamepads(self._run.robot)
             controls = list(find_controls(self._hal_data, gamepads))
-            self._sticks.set_controls(controls, gamepads)
-            self._remember(controls)
+            if (controls, gamepads) != self._controls:
+                self._controls = controls, gamepads
+                self._sticks.set_controls(controls, gamepads)
+                self._remember(controls)
         sensors = self._sensor_finder.find()
         self._remember(sensors)
         self._sensors.set_inputs(sensors)
+        # Subsystems of commands2 have simulations of their own, and so do devices on the CAN bus.
+        simulated = "commands2" in sys.modules or any(each.target.startswith("CAN") for each in sensors)
+        self._check_every_us = _CHECK_EVERY_US if simulated or _is_simulated(self._run) else _CHECK_SELDOM_US
         self._sensors.excluded = {each.device for each in sensors if each.target in self._driven}
         self._remember(self._dashboard.set_inputs(self._dashboard_finder.find()))
 
@@ -208,7 +222,7 @@ class InputGenerator:
         self.inputs |= {each.target: each for each in inputs}
 
     def _check_physics(self, now_us: int) -> None:
-        self._check_us += _CHECK_EVERY_US
+        self._check_us += self._check_every_us
         for each in self._sensors.find_driven():
             self._driven.add(each.target)
             self._sensors.excluded.add(each.device)

@@ -31,7 +31,15 @@ from .boots import NextBoot, play_boots
 from .failure import FuzzFailure, failure_of
 from .fuzz_run import FuzzRun
 from .goals import Goal
-from .imported_robot import imported_devices, invariants_of, load, next_tree, robot_constants, robot_lines
+from .imported_robot import (
+    game_messages,
+    imported_devices,
+    invariants_of,
+    load,
+    next_tree,
+    robot_constants,
+    robot_lines,
+)
 from .input_generator import InputGenerator
 from .inputs import Input
 from .journal import Journal
@@ -167,7 +175,7 @@ def _plan(project: Project, schedule: SeedSchedule) -> _Start:
     if schedule.base is not None:
         return _Start(rng, schedule.base.plan())
     seconds = match_seconds(project, schedule)
-    return _Start(rng, plan_match(rng, seconds, project.settings.match, project.game_specific_messages))
+    return _Start(rng, plan_match(rng, seconds, project.settings.match, game_messages(project)))
 
 
 def _fuzz(
@@ -207,20 +215,22 @@ def _fuzz(
 
         def step(now: float) -> None:
             nonlocal before_us
-            now_us = run.clock.now_us
+            now_us = clock.now_us
             if now_us <= reseed_until_us:
                 task.schedule.reseed(rng, before_us, now_us)
                 generator.left_out = task.schedule.left_out_at(now_us)
             before_us = now_us
             states.after_packet(now_us)
-            watch.after_packet(now_us)
+            if now_us >= watch.next_us:
+                watch.after_packet(now_us)
             if not fuzz_run.on_packet(now) or now_us >= ends_us:
-                run.clock.halted = True
+                clock.halted = True
 
-        run.clock.before_packet.insert(0, step)
-        run.clock.limit_us = max(run.clock.limit_us, to_us(seconds) + PACKET_US)
+        clock = run.clock
+        clock.before_packet.insert(0, step)
+        clock.limit_us = max(clock.limit_us, to_us(seconds) + PACKET_US)
         failure = None
-        with lines.watched(task.known, task.known_to_all, lambda: run.clock.now_us) as reached:
+        with lines.watched(task.known, task.known_to_all, lambda: clock.now_us) as reached:
             try:
                 construct(project, run, load(project))
                 if before is None:
@@ -231,7 +241,7 @@ def _fuzz(
                     fuzz_run.resume(before.script.steps, boot.entries)
                 run.start()
                 watch.measure_loops()
-                run.run_until(run.clock.limit_us + 1)
+                run.run_until(clock.limit_us + 1)
             except (TestEnded, TestRanTooLong):
                 pass
             except BaseException as error:  # robot code may call exit(), too

@@ -18,6 +18,7 @@ from ..hal import modes
 from ..hal.driver_station import program_state
 from ..project import Project
 from ..project.robot_files import RobotFiles
+from ..runtime.clock import OBSERVE, PACKET_US
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript
 from ..runtime.timed_loop import Periodic
@@ -52,9 +53,9 @@ def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends
         calls = closing.enter_context(watch_motor_calls()) if is_watched else MotorCalls()
         oracle = _Oracle(run, files, settings, reports, calls, ends_run)
         if settings.slow_loops:
-            run.timed_loop.after_calls.append(oracle.after_call)
+            run.timed_loop.after_waits.append(oracle.after_wait)
         run.clock.before_packet.append(oracle.before_packet)
-        run.observe(oracle.after_packet)
+        run.clock.every(PACKET_US, OBSERVE, oracle.after_packet)
         yield
 
 
@@ -95,7 +96,7 @@ class _Oracle:
         #: Whether it was in the last packet: then it is, until another mode is selected.
         self._agrees = False
         #: A call of the clock that no robot code has made, directly or not.
-        self._outer_call: object = None
+        self._outer_call: object = self
         #: The line at which robot code was waiting when a packet came during its loop.
         self._waiting_at = ("", "")
 
@@ -123,7 +124,8 @@ class _Oracle:
                     what = f"{name}() was called with a power of {'more than 1' if number > 0 else 'less than -1'}"
                     self._misbehaved(what, "out_of_range", self._caller())
             elif (
-                abs(number) > _NEGLIGIBLE_POWER
+                self._mode == "disabled"
+                and abs(number) > _NEGLIGIBLE_POWER
                 and settings.motors_while_disabled
                 and self._is_long_disabled()
                 and not self._inert_motors.is_inert(motor)
@@ -132,11 +134,7 @@ class _Oracle:
                 self._misbehaved(what, "motors_while_disabled", self._caller())
 
     def _is_long_disabled(self) -> bool:
-        return (
-            self._run.started
-            and self._mode == "disabled"
-            and self._run.clock.now_us - self._mode_since_us > _STOPS_WITHIN_US
-        )
+        return self._run.started and self._run.clock.now_us - self._mode_since_us > _STOPS_WITHIN_US
 
     def _caller(self) -> tuple[str, str]:
         return place_of(user_frame(get_frame(2), self._files), self._files)
@@ -153,39 +151,34 @@ class _Oracle:
             self._agrees = False
             self._left_running.on_mode(mode, self._run.clock.now_us)
 
-    def after_packet(self, now: float) -> None:
+    def after_packet(self) -> None:
         """Check the run after a packet; robot code may be in the middle of a longer call."""
         # Between two turns of the robot's loop, the clock is in the same call for many packets. What has made this call
         # is looked at once.
-        frame = None
-        if (call := self._run.clock.call) is None or call is not self._outer_call:
+        frame, clock = None, self._run.clock
+        if clock.call is not self._outer_call:
             frame = user_frame(get_frame(1), self._files)
             if frame is not None:
                 self._waiting_at = place_of(frame, self._files)
             else:
-                self._outer_call = call
+                self._outer_call = clock.call
         if self._reports is not None and (report := self._reports.error()) is not None:
             self._misbehaved(f"the HAL reports an error: {report}", "hal_errors", ("", ""))
         if self._settings.stuck_modes:
-            self._check_mode(frame)
-        for motor in self._left_running.found(self._run.clock.now_us):
-            place = f"{self._files.relative(motor.code.co_filename)}:{motor.line}" if motor.code else ""
-            what = (
-                f"the motor still runs at {motor.power:.2f}, as autonomous has set it here, "
-                f"{STOPS_WITHIN_US / 1e6:g} s after the beginning of teleop: no code has set it since"
-            )
-            self._misbehaved(what, "motors_left_running", (place, motor.code.co_name if motor.code else ""))
+            loop = self._run.timed_loop
+            if self._agrees and loop.in_place and not loop.stopped:  # then the robot is alive
+                self._agreed_us = clock.now_us
+            else:
+                self._check_mode(frame)
+        if self._left_running.counts_calls:
+            self._check_left_running()
 
     def _check_mode(self, frame: FrameType | None) -> None:
         run = self._run
         if run.started and not run.alive:
             self._misbehaved("the robot program has ended by itself", "stuck_modes", ("", ""))
             return
-        now_us = run.clock.now_us
-        if self._agrees:
-            self._agreed_us = now_us
-            return
-        state = program_state()
+        now_us, state = run.clock.now_us, program_state()
         self._agrees = state == self._mode
         if self._agrees or state not in modes.MODES or modes.is_stopped():
             self._agreed_us = now_us
@@ -194,6 +187,15 @@ class _Oracle:
             what = f"the robot is still in {state} mode, {_LEAVES_WITHIN_US / 1e6:g} s after that mode ended"
             self._misbehaved(what, "stuck_modes", place)
 
+    def _check_left_running(self) -> None:
+        for motor in self._left_running.found(self._run.clock.now_us):
+            place = f"{self._files.relative(motor.code.co_filename)}:{motor.line}" if motor.code else ""
+            what = (
+                f"the motor still runs at {motor.power:.2f}, as autonomous has set it here, "
+                f"{STOPS_WITHIN_US / 1e6:g} s after the beginning of teleop: no code has set it since"
+            )
+            self._misbehaved(what, "motors_left_running", (place, motor.code.co_name if motor.code else ""))
+
     def _place_of_own_loop(self) -> tuple[str, str]:
         thread = self._run.own_loop
         frame = current_frames().get(thread.ident) if thread is not None and thread.ident is not None else None
@@ -201,8 +203,8 @@ class _Oracle:
 
     # -- loops --------------------------------------------------------------------------------------------------
 
-    def after_call(self, callback: Periodic) -> None:
-        """Check how long a callback of a `TimedRobot` took."""
+    def after_wait(self, callback: Periodic) -> None:
+        """Check how long a callback of a `TimedRobot` took, in which robot time has passed."""
         took_us = self._run.clock.now_us - self._run.timed_loop.loop_start_us
         if took_us > callback.period_us:
             what = f"a loop with a period of {callback.period_us / 1e6:g} s waits here for longer than its period"

@@ -18,8 +18,8 @@ from ..project import Project
 from ..runtime.deferred_imports import deferred_imports
 from ..runtime.patch_table import PatchTable
 from .asked_controls import prepare_control_watch
-from .imported_robot import imported_devices, next_tree, robot_constants, robot_lines
-from .inputs import prepare_sensor_search
+from .imported_robot import game_messages, imported_devices, next_tree, robot_constants, robot_lines
+from .inputs import prepare_search
 from .match import FuzzTask, ReplayTask, Task
 from .motor_calls import prepare_motor_watch
 from .network_reads import prepare_network_watch
@@ -42,7 +42,7 @@ class Preparation:
             for file in {function.__code__.co_filename for function in lines.functions}:
                 linecache.getlines(file)  # WPILib asks for the lines that create a device
         devices_exist()
-        prepare_sensor_search()
+        prepare_search()
         _build(next_tree())
         _read_settings(project)
         # It would start a thread, and no one reads what matches log.
@@ -70,15 +70,14 @@ class Preparation:
 
 def _build(tree: HalData) -> None:
     """Build the parts of the tree that every match uses: they are built when they are first used."""
-    for branch in ("control", "event", "time", "power"):
+    for branch in ("control", "event", "time", "power", "accelerometer", "CAN"):
         dict(tree[branch])
     for stick in tree["joysticks"]:
-        for controls in ("axes", "buttons", "povs"):
-            stick[controls]
+        dict(stick)
 
 
 def _read_settings(project: Project) -> None:
     """Read ``sim/config.json``. What is wrong in it is a matter of the robot's run."""
     with suppress(PyfrcError), warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        project.game_specific_messages  # noqa: B018 - read, and kept
+        game_messages(project)

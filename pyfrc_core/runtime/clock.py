@@ -93,7 +93,8 @@ class Clock:
         def again() -> None:
             nonlocal due
             due += period_us
-            self.at(due, rank, again)
+            self._order += 1
+            heappush(self._queue, (due, rank, self._order, again))  # as `at`
             action()
 
         self.at(due, rank, again)
@@ -120,10 +121,11 @@ class Clock:
         outer, self.call = self.call, object()
         try:
             while queue[0][0] <= end:  # there always is a next packet
-                # As `_run_next`, whose call takes as long as the rest.
+                # As `_run_next` and `_move_to`: calling them would take as long as the rest.
                 due_us, _, _, action = heappop(self._queue)
                 if due_us > self.now_us:
-                    self._move_to(due_us)
+                    step_us(due_us - self.now_us)
+                    self.now_us = self.moment[0] = due_us
                 self.actions += 1
                 action()
                 if self.halted:
@@ -180,8 +182,9 @@ class Clock:
 
     def _packet(self) -> None:
         __tracebackhide__ = True
-        self._next_packet += PACKET_US
-        self.at(self._next_packet, PACKET, self._packet)
+        self._next_packet = due_us = self._next_packet + PACKET_US
+        self._order += 1
+        heappush(self._queue, (due_us, PACKET, self._order, self._packet))  # as `at`
         for listener in self.before_packet:
             listener(self.now_us / 1_000_000)
         self.deliver_packet()

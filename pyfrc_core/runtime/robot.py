@@ -322,7 +322,8 @@ class RobotRun:
 
     def observe(self, look: Any) -> None:
         """Have `look` called after every packet, when the robot has done its part: ``look(now_in_seconds)``."""
-        self.clock.every(PACKET_US, OBSERVE, lambda: look(self.clock.now))
+        clock = self.clock
+        clock.every(PACKET_US, OBSERVE, lambda: look(clock.now_us / 1_000_000))
 
     def overruns_until_now(self) -> tuple[int, int]:
         """Return how many turns of the loop took longer than its period, and the longest, in microseconds.

@@ -51,17 +51,18 @@ class Countdown:
     """The match's time: so many seconds are left at one moment, and less and less from then on."""
 
     def __init__(self) -> None:
-        self._ends_us: int | None = None
+        #: When it ends; None before it was started.
+        self.ends_us: int | None = None
 
     def start(self, left: float, now_us: int) -> None:
-        self._ends_us = now_us + to_us(left)
+        self.ends_us = now_us + to_us(left)
 
     def stop(self) -> None:
-        self._ends_us = None
+        self.ends_us = None
 
     def left(self, now_us: int) -> float | None:
         """The seconds left; None before it was started."""
-        return None if self._ends_us is None else max(0, self._ends_us - now_us) / 1_000_000
+        return None if self.ends_us is None else max(0, self.ends_us - now_us) / 1_000_000
 
 
 class Targets:
@@ -144,9 +145,8 @@ class Targets:
 
     def count_down(self, now_us: int) -> None:
         """Called at each packet: the match's time goes on."""
-        left = self._countdown.left(now_us)
-        if left is not None:
-            modes.set_match_time(left)
+        if (ends_us := self._countdown.ends_us) is not None:
+            modes.set_match_time(max(0, ends_us - now_us) / 1_000_000)  # as `Countdown.left`
 
     @staticmethod
     def _is_path(target: str) -> bool:
