@@ -82,7 +82,8 @@ def measure(directory: Path, matches: int) -> tuple[float, float]:
     with open_match_executor(project, 1) as executor:
         before = cpu_seconds()
         for number in range(matches):
-            (played,) = executor.play([FuzzTask(SeedSchedule(((0, f"fuzz 1 {number}"),)), known, known)])
+            task = FuzzTask(SeedSchedule(((0, f"fuzz 1 {number}"),)), known, known, returns_inputs=False)
+            (played,) = executor.play([task])
             known = known.union(played.reached)
             now = cpu_seconds()
             if played.failure is None:

@@ -57,6 +57,17 @@ print(wpilib_private.simulation_periodic_of(wpilib.TimedRobot()))
     ], "WPILib's loop calls the robot's functions otherwise: " + wpilib_private.LOOP_FUNCTION.used_for
 
 
+def test_network_tables_call_the_function_that_starts_their_log() -> None:
+    program = """
+import ntcore
+from pyfrc_core.compat import wpilib_private
+owner, name = wpilib_private.NETWORK_LOG.place
+setattr(owner, name, lambda instance: print("log of", type(instance).__name__))
+ntcore.NetworkTableInstance.getDefault().startLocal()
+"""
+    assert said_by(program) == ["log of NetworkTableInstance"], wpilib_private.NETWORK_LOG.used_for
+
+
 def test_a_call_from_a_function_of_the_same_name_reaches_wpilibs_own() -> None:
     program = """
 from pyfrc_core.compat import wpilib_private

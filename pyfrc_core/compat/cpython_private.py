@@ -26,6 +26,15 @@ allocate_lock = _thread.allocate_lock
 LockType = _thread.LockType
 RLockType = _thread.RLock
 
+
+def start_bare_thread(call: Callable[[], object]) -> None:
+    """Call a function in a thread of its own, which nothing waits for.
+
+    `Thread.start` waits for the new thread, and needs half a millisecond in a process that was just forked.
+    """
+    _thread.start_new_thread(call, ())
+
+
 PYTHON_RLOCK = PrivateName(
     "threading:_PyRLock", "runtime.locks derives the robot's reentrant lock from it, which is made of a lock (_block)"
 )

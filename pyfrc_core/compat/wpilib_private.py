@@ -52,8 +52,8 @@ NATIVE_HAL = PrivateName(
     "hal_data shows the channels of an encoder by it, and compat.hal_callbacks has the HAL report changes by it",
 )
 NETWORK_LOG = PrivateName(
-    "ntcore._logutil:NtLogForwarder",
-    "NetworkTables imports it when it starts: fuzz.match_executor does so once, before the matches' processes",
+    "ntcore._logutil:NtLogForwarder.onInstanceStart",
+    "NetworkTables calls it when it starts: fuzz.match_executor replaces it, since no one reads what matches log",
 )
 
 #: Those that are attributes of modules and classes.

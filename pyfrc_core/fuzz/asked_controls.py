@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from functools import cache
 from typing import Any, NamedTuple
 
 import wpilib
 from wpilib.interfaces import GenericHID
 
-from ..runtime.patch_table import Patch, patched
+from ..runtime.patch_table import Patch
+from .prepared_patches import PreparedPatches
 
 #: Returns the key in `hal_data` and the number of the control that a call with these arguments reads.
 _Reads = Callable[..., "tuple[str, int]"]
@@ -76,17 +77,17 @@ class AskedControls:
         self.targets[f"joysticks[{port}].{kind}[{number}]"] = None
 
 
-@contextmanager
-def watch_controls() -> Iterator[AskedControls]:
+def watch_controls() -> AbstractContextManager[AskedControls]:
     """Watch until the context ends."""
-    asked = AskedControls()
-    with patched(_patches(asked)):
-        yield asked
+    return _watches.watching(AskedControls)
 
 
-def prepare_control_watch() -> None:
-    """Find the functions that read controls: forks of this process then have them."""
-    _reading_functions()
+def prepare_control_watch(prepare: bool = True) -> None:
+    """Prepare `watch_controls` for the forks of this process, or undo that."""
+    if prepare:
+        _watches.prepare(AskedControls())
+    else:
+        _watches.undo()
 
 
 class _Reading(NamedTuple):
@@ -105,6 +106,9 @@ def _patches(asked: AskedControls) -> Iterator[Patch]:
     for owner, name, real, reads in _reading_functions():
         wrapped = asked.wrap_static(real, reads) if isinstance(reads, str) else asked.wrap(real, reads)
         yield Patch(owner, name, wrapped)
+
+
+_watches = PreparedPatches(_patches)
 
 
 @cache

@@ -288,7 +288,9 @@ class _Runner:
     def _play(self, matches: Sequence[_Match]) -> None:
         progress = self.campaign.progress
         known_to_all = frozenset.intersection(*(stream.reached for stream in self._streams))
-        tasks = [FuzzTask(match.schedule, match.stream.reached, known_to_all) for match in matches]
+        tasks = [
+            FuzzTask(match.schedule, match.stream.reached, known_to_all, returns_inputs=False) for match in matches
+        ]
         with closing(self._executor.play(tasks)) as results:
             for match, played in zip(matches, results, strict=True):
                 match.stream.learn(match.schedule, match.number, played)

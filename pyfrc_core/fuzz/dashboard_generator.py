@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -31,30 +31,49 @@ _UNREAD = 0.15
 #: How often an entry has a value when the robot starts.
 _BEFORE_START = 0.5
 
+#: After so many searches at most, all entries are looked at again: a chooser may have another option.
+_UNCHANGED = 5
+
 #: Types whose values show them, so that a target does not name them.
 _PLAIN = ("boolean", "double", "string")
 _NUMBERS = ("int", "float", "double")
 
 
-def find_dashboard() -> Iterator[Input]:
-    """Return the choosers' options, the commands' buttons, and plain entries."""
-    network = ntcore.NetworkTableInstance.getDefault()
-    for topic in network.getTopics():
-        name = topic.getName()
-        table, _, entry = name.rpartition("/")
-        if not name.startswith(_DASHBOARD_TABLES) or entry.startswith("."):
-            continue
-        sort, made_by = topic.getType(), network.getEntry(f"{table}/.type").getString("")
-        if made_by == "String Chooser":
-            if entry == "options" and (options := network.getEntry(name).getStringArray([])):
-                yield Input(f"{NETWORK}{table}/selected", "choice", table, tuple(options))
-        elif made_by == "Command":
-            if entry == "running":
-                yield Input(NETWORK + name, "command", table)
-        elif sort == ntcore.NetworkTableType.kBoolean:
-            yield Input(NETWORK + name, "flag", name)
-        elif sort == ntcore.NetworkTableType.kDouble:
-            yield Input(NETWORK + name, "number", name)
+class DashboardFinder:
+    """Finds the inputs of dashboards; looks at the entries again only after there are others, and now and then."""
+
+    def __init__(self) -> None:
+        self._network = ntcore.NetworkTableInstance.getDefault()
+        self._names: list[str] = []
+        self._found: list[Input] = []
+        self._searches = 0
+
+    def find(self) -> list[Input]:
+        """Return the choosers' options, the commands' buttons, and plain entries, in order."""
+        topics = self._network.getTopics()
+        names = [topic.getName() for topic in topics]
+        if names != self._names or self._searches % _UNCHANGED == 0:
+            self._names, self._found = names, sorted(self._inputs(topics, names))
+        self._searches += 1
+        return self._found
+
+    def _inputs(self, topics: Sequence[ntcore.Topic], names: Sequence[str]) -> Iterator[Input]:
+        network = self._network
+        for topic, name in zip(topics, names, strict=True):
+            table, _, entry = name.rpartition("/")
+            if not name.startswith(_DASHBOARD_TABLES) or entry.startswith("."):
+                continue
+            sort, made_by = topic.getType(), network.getEntry(f"{table}/.type").getString("")
+            if made_by == "String Chooser":
+                if entry == "options" and (options := network.getEntry(name).getStringArray([])):
+                    yield Input(f"{NETWORK}{table}/selected", "choice", table, tuple(options))
+            elif made_by == "Command":
+                if entry == "running":
+                    yield Input(NETWORK + name, "command", table)
+            elif sort == ntcore.NetworkTableType.kBoolean:
+                yield Input(NETWORK + name, "flag", name)
+            elif sort == ntcore.NetworkTableType.kDouble:
+                yield Input(NETWORK + name, "number", name)
 
 
 class DashboardGenerator:

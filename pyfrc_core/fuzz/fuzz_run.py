@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import pickle
-from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
-from typing import IO
+from collections.abc import Iterable, Mapping
 
 from ..errors import PyfrcError
 from ..runtime.clock import PACKET_US
@@ -14,6 +11,7 @@ from ..runtime.scripts.boots import PersistentEntry, what_stays, without_entries
 from ..runtime.scripts.script import InputScript, Step
 from ..runtime.scripts.targets import RESTART, Targets
 from .input_generator import InputGenerator
+from .journal import Journal
 from .values import Value
 
 
@@ -22,10 +20,10 @@ class FuzzRun:
 
     :param run: the robot has been constructed, and not started
     :param generator: generates the inputs
-    :param journal: a file to which each step is written before it is applied
+    :param journal: where each step is written before it is applied
     """
 
-    def __init__(self, run: RobotRun, generator: InputGenerator, journal: IO[bytes] | None = None) -> None:
+    def __init__(self, run: RobotRun, generator: InputGenerator, journal: Journal | None = None) -> None:
         self.steps: list[Step] = []
         self._run = run
         self._generator = generator
@@ -70,7 +68,7 @@ class FuzzRun:
             writes = {target: value for target, value in writes.items() if self._is_there(target)}
         self.steps.append(Step(now_us, writes))
         if self._journal is not None:
-            self._journal.write(pickle.dumps(self.steps[-1]))
+            self._journal.add(self.steps[-1])
         if writes.get(RESTART):
             self.restarts = True
             return
@@ -88,14 +86,3 @@ class FuzzRun:
     def script(self, robot: str, seed: int) -> InputScript:
         """Return the inputs up to now as a script that ends after this packet."""
         return InputScript(tuple(self.steps), self._run.clock.now_us + PACKET_US, robot=robot, seed=seed)
-
-
-def read_journal(journal: Path) -> Iterator[Step]:
-    """Return the steps in a journal."""
-    if journal.is_file():
-        with journal.open("rb") as file:
-            while True:
-                try:
-                    yield pickle.load(file)
-                except EOFError:
-                    return

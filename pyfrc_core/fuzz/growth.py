@@ -45,13 +45,14 @@ class Growths:
     def __init__(self, containers: Containers) -> None:
         self._containers = containers
         self._counts: dict[str, list[int]] = {}
-        self._next_us = _EVERY_US
+        #: When it is time for the next count.
+        self.next_us = _EVERY_US
 
     def after_packet(self, now_us: int) -> None:
         """Count when it is time."""
-        if now_us < self._next_us:
+        if now_us < self.next_us:
             return
-        self._next_us = now_us + _EVERY_US
+        self.next_us = now_us + _EVERY_US
         self._count(NETWORK_TABLES, len(ntcore.NetworkTableInstance.getDefault().getTopics()))
         for path, (owner, name) in self._containers().items():
             thing = owner.get(name)

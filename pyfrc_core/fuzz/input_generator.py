@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+import sys
 from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.targets import MODE, RESTART
 from .avoidance import LeftOut, without
 from .base_match import BaseMatch
-from .dashboard_generator import DashboardGenerator, find_dashboard
+from .dashboard_generator import DashboardFinder, DashboardGenerator
 from .gamepads import find_gamepads
 from .inputs import Input, SensorFinder, find_controls
 from .joystick_generator import JoystickGenerator
@@ -31,8 +32,11 @@ _SECOND_US = 1_000_000
 #: Robots create their joysticks when they start: they are not searched for later than this time after that.
 _GAMEPADS_WITHIN_US = 2 * _SECOND_US
 
-#: Interval of the checks whether the robot's simulation drives its sensors.
-_CHECK_EVERY_US = 5 * PACKET_US
+#: For how long after the start everything is searched for in each second; later, in every other one.
+_OFTEN_FOR_US = 4 * _SECOND_US
+
+#: Interval of the checks whether the robot's simulation drives its sensors; and where none is known.
+_CHECK_EVERY_US, _CHECK_SELDOM_US = 5 * PACKET_US, 25 * PACKET_US
 
 #: How long a robot with a simulation is enabled before its sensors are written: the simulation drives some of them.
 _DRIVEN_US = 5 * _SECOND_US
@@ -83,10 +87,13 @@ class InputGenerator:
         self._planned = 0
         self._constants = constants
         self._models = {} if base else choose_models(rng)
+        #: The controls and the gamepads that were found last.
+        self._controls: tuple[list[Input], dict[int, str]] | None = None
         self._sticks = JoystickGenerator(rng, asked_controls, constants)
         self._sensors = SensorGenerator(rng, self._hal_data, constants)
         self._sensor_finder = SensorFinder(self._hal_data, constants)
         self._dashboard = DashboardGenerator(rng, network_reads, constants)
+        self._dashboard_finder = DashboardFinder()
         #: Applies writes at once, while the robot starts. Set by the match.
         self.write_at_once: Callable[[Mapping[str, Value]], None] | None = None
         if network_reads is not None:
@@ -97,7 +104,9 @@ class InputGenerator:
         self._enabled_us = 0
         self._attached = True
         self._find_us = self._check_us = PACKET_US
+        self._check_every_us = _CHECK_EVERY_US
         self._gamepads_until_us = _GAMEPADS_WITHIN_US
+        self._often_until_us = _OFTEN_FOR_US
         #: What the match does without from now on.
         self.left_out: LeftOut = frozenset()
         #: `writes` returns nothing before this time.
@@ -134,17 +143,20 @@ class InputGenerator:
             self._find_inputs(now_us)
         if now_us >= self._check_us:
             self._check_physics(now_us)
-        parts: list[JoystickGenerator | SensorGenerator | DashboardGenerator] = [self._sensors]
-        if self._attached:  # else no input of the drivers arrives
-            parts += [self._sticks, self._dashboard]
-        for part in parts if now_us >= self._from_us else ():
-            if part.next_us <= now_us:
-                part.write(now_us, found)
+        sensors, sticks, dashboard = self._sensors, self._sticks, self._dashboard
+        if now_us >= self._from_us:
+            if sensors.next_us <= now_us:
+                sensors.write(now_us, found)
+            if self._attached:  # else no input of the drivers arrives
+                if sticks.next_us <= now_us:
+                    sticks.write(now_us, found)
+                if dashboard.next_us <= now_us:
+                    dashboard.write(now_us, found)
         if self.left_out:
             found = without(self.left_out, found)
-        plan = self._plan[self._planned].at_us if self._planned < len(self._plan) else self._end_us
-        parts_us = max(self._from_us, min(part.next_us for part in parts))
-        self.next_us = min(self._find_us, self._check_us, plan, parts_us)
+        plan_us = self._plan[self._planned].at_us if self._planned < len(self._plan) else self._end_us
+        parts_us = min(sensors.next_us, sticks.next_us, dashboard.next_us) if self._attached else sensors.next_us
+        self.next_us = min(self._find_us, self._check_us, plan_us, max(self._from_us, parts_us))
         return found
 
     def resume(self, now_us: int) -> None:
@@ -155,6 +167,7 @@ class InputGenerator:
             self._planned += 1
         self._find_us = self._check_us = now_us + PACKET_US
         self._gamepads_until_us = now_us + _GAMEPADS_WITHIN_US
+        self._often_until_us = now_us + _OFTEN_FOR_US
 
     def _apply_event(self, now_us: int, event: Mapping[str, Value], found: dict[str, Value]) -> None:
         found |= event
@@ -177,18 +190,23 @@ class InputGenerator:
             self._sticks.change_pose(now_us)
 
     def _find_inputs(self, now_us: int) -> None:
-        """Search again: robots may create devices and dashboard entries at any time."""
-        self._find_us += _SECOND_US
+        """Search again: robots may create devices and dashboard entries at any time, and mostly do when they start."""
+        self._find_us += _SECOND_US if now_us < self._often_until_us else 2 * _SECOND_US
         if now_us <= self._gamepads_until_us and not self._sticks.unplugged:  # unplugged joysticks have no controls
             gamepads = find_gamepads(self._run.robot)
             controls = list(find_controls(self._hal_data, gamepads))
-            self._sticks.set_controls(controls, gamepads)
-            self._remember(controls)
+            if (controls, gamepads) != self._controls:
+                self._controls = controls, gamepads
+                self._sticks.set_controls(controls, gamepads)
+                self._remember(controls)
         sensors = self._sensor_finder.find()
         self._remember(sensors)
         self._sensors.set_inputs(sensors)
+        # Subsystems of commands2 have simulations of their own, and so do devices on the CAN bus.
+        simulated = "commands2" in sys.modules or any(each.target.startswith("CAN") for each in sensors)
+        self._check_every_us = _CHECK_EVERY_US if simulated or _is_simulated(self._run) else _CHECK_SELDOM_US
         self._sensors.excluded = {each.device for each in sensors if each.target in self._driven}
-        self._remember(self._dashboard.set_inputs(sorted(find_dashboard())))
+        self._remember(self._dashboard.set_inputs(self._dashboard_finder.find()))
 
     def _before_first_read(self, read: NetworkRead) -> None:
         """Write an entry before the robot first reads it, as if it had been there before the robot was started."""
@@ -204,7 +222,7 @@ class InputGenerator:
         self.inputs |= {each.target: each for each in inputs}
 
     def _check_physics(self, now_us: int) -> None:
-        self._check_us += _CHECK_EVERY_US
+        self._check_us += self._check_every_us
         for each in self._sensors.find_driven():
             self._driven.add(each.target)
             self._sensors.excluded.add(each.device)

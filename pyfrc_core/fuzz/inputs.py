@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from wpilib.simulation import SimDeviceSim
 
-from ..hal import HalData, format_path
+from ..hal import HalData, format_path, modes
 from ..hal.counters import counted_channels
 from ..hal.devices import KINDS
 from ..hal.modules import Modules
@@ -45,14 +45,17 @@ class Input:
 def find_controls(hal_data: HalData, gamepads: Mapping[int, str]) -> Iterator[Input]:
     """Return the axes, buttons and POVs of the joysticks that are plugged in."""
     for number, stick in enumerate(hal_data["joysticks"]):
-        axes, buttons, povs = stick.counts()
-        name, triggers = f"joysticks[{number}]", TRIGGERS.get(gamepads.get(number, ""), ())
-        for axis in range(axes):
-            yield Input(f"{name}.axes[{axis}]", "trigger" if axis in triggers else "axis", name)
-        for button in range(1, buttons + 1):
-            yield Input(f"{name}.buttons[{button}]", "button", name)
-        for pov in range(povs):
-            yield Input(f"{name}.povs[{pov}]", "pov", name)
+        yield from _controls(number, *stick.counts(), TRIGGERS.get(gamepads.get(number, ""), ()))
+
+
+@cache
+def _controls(number: int, axes: int, buttons: int, povs: int, triggers: tuple[int, ...]) -> tuple[Input, ...]:
+    name = f"joysticks[{number}]"
+    return (
+        *(Input(f"{name}.axes[{axis}]", "trigger" if axis in triggers else "axis", name) for axis in range(axes)),
+        *(Input(f"{name}.buttons[{button}]", "button", name) for button in range(1, buttons + 1)),
+        *(Input(f"{name}.povs[{pov}]", "pov", name) for pov in range(povs)),
+    )
 
 
 # -- sensors ---------------------------------------------------------------------------------------------------------
@@ -111,6 +114,10 @@ _NAMED: tuple[tuple[str, InputKind], ...] = (
 )
 
 
+#: Modules on the CAN bus are looked for in the first searches, and in every fourth later: there are 189 possible ones.
+_FIRST_SEARCHES, _SEARCHES_FOR_MODULES = 4, 4
+
+
 class SensorFinder:
     """Finds what the robot's sensors measure; searches again only after a device was created or removed."""
 
@@ -119,20 +126,24 @@ class SensorFinder:
         self._constants = constants
         self._seen: object = None
         self._found: list[Input] = []
+        self._searches = 0
+        self._there: tuple[bool, ...] = ()
 
     def find(self) -> list[Input]:
         """Return the sensors' values in order: the same list until the robot's devices change."""
         there = self._devices()
         if there != self._seen:
             self._seen = there
-            self._found = sorted(find_sensors(self._hal_data, self._constants))
+            self._found = sorted(find_sensors(self._hal_data, self._constants, any(self._there)))
         return self._found
 
     def _devices(self) -> _Devices:
         hal_data = self._hal_data
-        modules = tuple([exists() for exists in _modules()])
+        if self._searches < _FIRST_SEARCHES or self._searches % _SEARCHES_FOR_MODULES == 0:
+            self._there = tuple([exists() for exists in _modules()])
+        self._searches += 1
         accelerometer, sim_devices = hal_data["accelerometer"]["active"], hal_data["CAN"].signature()
-        return _Devices(_used(), modules, accelerometer, sim_devices, counted_channels())
+        return _Devices(_used(), self._there, accelerometer, sim_devices, counted_channels())
 
 
 class _Devices(NamedTuple):
@@ -165,10 +176,13 @@ def _modules() -> list[Callable[[], bool]]:
     return [slot.get for slot in Modules().initialized()]
 
 
-def prepare_sensor_search() -> None:
-    """Prepare a search for sensors: forks of this process then find it prepared."""
+def prepare_search() -> None:
+    """Prepare a search for inputs: forks of this process then find it prepared."""
     _channels()
     _modules()
+    for number in range(modes.JOYSTICKS):
+        for triggers in {(), *TRIGGERS.values()}:
+            _controls(number, modes.AXES, modes.BUTTONS, modes.POVS, triggers)
 
 
 def _used() -> tuple[tuple[str, int], ...]:
@@ -176,10 +190,11 @@ def _used() -> tuple[tuple[str, int], ...]:
     return tuple([channel for channel, exists in _channels() if exists()])
 
 
-def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN) -> Iterator[Input]:
+def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN, has_modules: bool = True) -> Iterator[Input]:
     """Return what the robot's sensors measure; outputs of SimDevices are left out.
 
     :param constants: tells what the robot's code asks its controller for
+    :param has_modules: whether there may be modules on the CAN bus: the search for each kind takes a while
     """
     for function, (target, kind) in _ASKED.items():
         if constants.asks(function):
@@ -195,7 +210,7 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN) -> Iter
         if hal_data[key][number].get("is_input", True) and (key, number) not in wired:
             for value, kind in _DEVICES[key] if key != "dio" or number not in counted else _COUNTED:
                 yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
-    for key, values in _MODULES.items():
+    for key, values in _MODULES.items() if has_modules else ():
         for number in hal_data[key]:
             if key == "pdp" and constants.asks("getTemperature"):
                 yield Input(f"pdp[{number}].temperature", "celsius", f"pdp[{number}]")

@@ -9,7 +9,7 @@ and the field disables it between two modes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import CodeType, FrameType
 from typing import Any
@@ -51,6 +51,8 @@ class MotorsLeftRunning:
 
     def __init__(self, in_group: Callable[[object], bool]) -> None:
         self._in_group = in_group
+        #: Whether calls are to be noted: in autonomous, and until no motor is left that it has set.
+        self.counts_calls = False
         self._mode = ""
         self._mode_since_us = 0
         self._set: dict[int, SetMotor] = {}
@@ -61,8 +63,8 @@ class MotorsLeftRunning:
         :param frame: where it is called
         """
         if self._mode != "autonomous":
-            if self._set:
-                self._set.pop(id(motor), None)
+            self._set.pop(id(motor), None)
+            self.counts_calls = bool(self._set)
         elif isinstance(motor, wpilib.PWMMotorController):
             caller = user_frame(frame, files)
             code, line = (caller.f_code, caller.f_lineno) if caller is not None else (None, 0)
@@ -76,17 +78,16 @@ class MotorsLeftRunning:
         elif mode in ("autonomous", "test"):
             self._set.clear()
         self._mode, self._mode_since_us = mode, now_us
+        self.counts_calls = mode == "autonomous" or bool(self._set)
 
-    def found(self, now_us: int) -> Iterator[SetMotor]:
-        """Yield each motor that still runs, once."""
+    def found(self, now_us: int) -> Sequence[SetMotor]:
+        """Return the motors that still run, each once."""
         if not self._set or self._mode != "teleop" or now_us - self._mode_since_us < STOPS_WITHIN_US:
-            return
+            return ()
         noted = list(self._set.values())
         self._set.clear()
-        for each in noted:
-            if (
-                abs(each.power) > _NEGLIGIBLE_POWER
-                and each.motor.get() == each.power
-                and not self._in_group(each.motor)
-            ):
-                yield each
+        return [
+            each
+            for each in noted
+            if abs(each.power) > _NEGLIGIBLE_POWER and each.motor.get() == each.power and not self._in_group(each.motor)
+        ]

@@ -5,24 +5,20 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, nullcontext
+from contextlib import closing as closed
 from dataclasses import dataclass, field, replace
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
-from ..hal import devices_exist
-from ..invariants.load import Invariant, load_invariants
 from ..invariants.watch import BrokenInvariantError, watch_invariants
 from ..physics.construct import construct
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.crash_moment import CrashMoment
-from ..runtime.deferred_imports import deferred_imports
 from ..runtime.exceptions import TestEnded, TestRanTooLong
 from ..runtime.hang_detector import HangDetector
-from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
-from ..runtime.patches import patches
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.boots import boots_of, restore_entries, without_entries
 from ..runtime.scripts.files import traced
@@ -35,15 +31,23 @@ from .boots import NextBoot, play_boots
 from .failure import FuzzFailure, failure_of
 from .fuzz_run import FuzzRun
 from .goals import Goal
+from .imported_robot import (
+    game_messages,
+    imported_devices,
+    invariants_of,
+    load,
+    next_tree,
+    robot_constants,
+    robot_lines,
+)
 from .input_generator import InputGenerator
 from .inputs import Input
-from .lines import RobotLines
+from .journal import Journal
 from .match_hints import HintWatch, MatchHints
 from .match_plan import MatchEvent, length_of, plan_match
 from .misbehavior_notes import MisbehaviorNotes, NotedFailure
 from .network_reads import watch_network_reads
 from .oracle import attach_oracle
-from .robot_constants import RobotConstants, find_constants
 from .seed_schedule import SeedSchedule
 from .states import RobotStates
 
@@ -62,12 +66,14 @@ class FuzzTask:
     :param schedule: the random seeds
     :param known: the goals that were reached before
     :param known_to_all: those among them that the matches know that are played at the same time
+    :param returns_inputs: whether the script and the inputs are returned even if nothing has failed
     :param journal: a file for the inputs, in case the process ends before it can return them
     """
 
     schedule: SeedSchedule
     known: frozenset[Goal] = frozenset()
     known_to_all: frozenset[Goal] = frozenset()
+    returns_inputs: bool = True
     journal: Path | None = None
 
 
@@ -140,56 +146,14 @@ def play(project: Project, log: CrashLog, task: Task) -> MatchResult:
             replayed: MatchResult = play_boots(project, partial(_replay, task=task), task.quietly)
             return replayed
         return _replay(project, log, None, task)
-    if _restarts(project, task.schedule):
+    start = _plan(project, task.schedule)
+    if any(RESTART in event.writes for event in start.plan):
         played: MatchResult = play_boots(project, partial(_fuzz, task=task))
+    else:
+        played = _fuzz(project, log, None, task, start)
+    if task.returns_inputs or played.failure is not None or played.noted:
         return played
-    return _fuzz(project, log, None, task)
-
-
-@lru_cache(maxsize=1)
-def robot_lines(project: Project) -> RobotLines:
-    """Return the lines of the robot, which the first call imports."""
-    load(project)
-    return RobotLines(project.files)
-
-
-@lru_cache(maxsize=1)
-def robot_constants(project: Project) -> RobotConstants:
-    """Return the constants of the robot's code."""
-    return find_constants(robot_lines(project).functions)
-
-
-@lru_cache(maxsize=1)
-def load(project: Project) -> type[Any]:
-    """Import the robot program, its physics and its rules, with the first call; return the robot class.
-
-    :raises RobotCodeError: when its code fails
-    :raises InvariantError: when a rule cannot be called
-    """
-    patches.install(project.files)
-    robot_class = load_robot(project)
-    if project.physics_file.is_file():
-        from ..physics.engine import load_physics
-
-        load_physics(project)
-    invariants_of(project)
-    return robot_class
-
-
-@lru_cache(maxsize=1)
-def invariants_of(project: Project) -> tuple[Invariant, ...]:
-    """Return the project's rules, which the first call imports."""
-    return load_invariants(project)
-
-
-@lru_cache(maxsize=1)
-def imported_devices(project: Project) -> bool | None:
-    """Return whether importing the robot has created devices in the HAL; None if more is imported when a run begins.
-
-    The first call must come before a robot runs in this process.
-    """
-    load(project)
-    return devices_exist() if not deferred_imports.waiting else None
+    return replace(played, script=replace(played.script, steps=()), inputs={})  # to send them takes milliseconds
 
 
 def match_seconds(project: Project, schedule: SeedSchedule) -> float:
@@ -199,29 +163,35 @@ def match_seconds(project: Project, schedule: SeedSchedule) -> float:
     return length_of(schedule.seeds[0][1], project.settings.fuzz.match_seconds, project.settings.match)
 
 
-def _restarts(project: Project, schedule: SeedSchedule) -> bool:
-    """Return whether the robot program is perhaps started again in this match."""
-    return any(RESTART in event.writes for event in _plan(project, schedule, schedule.rng()))
+class _Start(NamedTuple):
+    """The start of a match: its random numbers, from which its plan has been drawn, and the plan."""
+
+    rng: random.Random
+    plan: list[MatchEvent]
 
 
-def _plan(project: Project, schedule: SeedSchedule, rng: random.Random) -> list[MatchEvent]:
+def _plan(project: Project, schedule: SeedSchedule) -> _Start:
+    rng = schedule.rng()
     if schedule.base is not None:
-        return schedule.base.plan()
+        return _Start(rng, schedule.base.plan())
     seconds = match_seconds(project, schedule)
-    return plan_match(rng, seconds, project.settings.match, project.game_specific_messages)
+    return _Start(rng, plan_match(rng, seconds, project.settings.match, game_messages(project)))
 
 
-def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: FuzzTask) -> MatchResult:
+def _fuzz(
+    project: Project, log: CrashLog, before: MatchResult | None, task: FuzzTask, start: _Start | None = None
+) -> MatchResult:
     """Play a match, or one boot of it.
 
     :param before: the result of the boots before
+    :param start: the start of the match, if it is known
     """
     lines = robot_lines(project)
     seconds = match_seconds(project, task.schedule)
     ends_us = to_us(seconds)
     if (continued_us := task.schedule.seeds[-1][0]) > 0:  # a match that continues a long one is not as long again
         ends_us = min(ends_us, continued_us + to_us(project.settings.fuzz.match_seconds))
-    rng = task.schedule.rng()
+    rng, plan = start or _plan(project, task.schedule)
     boot = _boot_after(before)
     before_us = boot.at_us
     reseed_until_us = task.schedule.seeds[-1][0] + PACKET_US
@@ -230,14 +200,14 @@ def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: Fuz
             rng,
             run,
             seconds=seconds,
-            plan=_plan(project, task.schedule, rng),
+            plan=plan,
             network_reads=closing.enter_context(watch_network_reads(project.files)),
             constants=robot_constants(project),
             base=task.schedule.base,
             asked_controls=closing.enter_context(watch_controls()).targets,
         )
         generator.left_out = task.schedule.left_out_at(boot.at_us)
-        journal = closing.enter_context(task.journal.open("ab", 0)) if task.journal else None
+        journal = closing.enter_context(closed(Journal(task.journal))) if task.journal else None
         fuzz_run = FuzzRun(run, generator, journal)
         fuzz_run.may_lack_targets = task.schedule.base is not None
         states = RobotStates(run, project.files, task.known)
@@ -245,20 +215,22 @@ def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: Fuz
 
         def step(now: float) -> None:
             nonlocal before_us
-            now_us = run.clock.now_us
+            now_us = clock.now_us
             if now_us <= reseed_until_us:
                 task.schedule.reseed(rng, before_us, now_us)
                 generator.left_out = task.schedule.left_out_at(now_us)
             before_us = now_us
             states.after_packet(now_us)
-            watch.after_packet(now_us)
+            if now_us >= watch.next_us:
+                watch.after_packet(now_us)
             if not fuzz_run.on_packet(now) or now_us >= ends_us:
-                run.clock.halted = True
+                clock.halted = True
 
-        run.clock.before_packet.insert(0, step)
-        run.clock.limit_us = max(run.clock.limit_us, to_us(seconds) + PACKET_US)
+        clock = run.clock
+        clock.before_packet.insert(0, step)
+        clock.limit_us = max(clock.limit_us, to_us(seconds) + PACKET_US)
         failure = None
-        with lines.watched(task.known, task.known_to_all, lambda: run.clock.now_us) as reached:
+        with lines.watched(task.known, task.known_to_all, lambda: clock.now_us) as reached:
             try:
                 construct(project, run, load(project))
                 if before is None:
@@ -269,7 +241,7 @@ def _fuzz(project: Project, log: CrashLog, before: MatchResult | None, task: Fuz
                     fuzz_run.resume(before.script.steps, boot.entries)
                 run.start()
                 watch.measure_loops()
-                run.run_until(run.clock.limit_us + 1)
+                run.run_until(clock.limit_us + 1)
             except (TestEnded, TestRanTooLong):
                 pass
             except BaseException as error:  # robot code may call exit(), too
@@ -353,7 +325,7 @@ def _robot(
 ) -> Iterator[tuple[RobotRun, MisbehaviorNotes]]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
     # Imports the robot before robot time begins.
-    run = RobotRun(has_devices=imported_devices(project), start_us=boot.at_us)
+    run = RobotRun(has_devices=imported_devices(project), start_us=boot.at_us, tree=next_tree())
     settings = project.settings.fuzz
     hang_detector = HangDetector(run, project.files, hang_seconds or settings.hang_seconds, log)
     with hang_detector.watching():

@@ -5,7 +5,6 @@ Each match has its own process, so it may crash, hang and print without harm.
 
 from __future__ import annotations
 
-import gc
 import tempfile
 from abc import ABC, abstractmethod
 from collections import deque
@@ -17,9 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..compat.wpilib_private import NETWORK_LOG
 from ..errors import RobotCodeError
-from ..hal import devices_exist
 from ..interruption import calling_when_ended
 from ..processes.call import ForkedCall, can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
@@ -28,24 +25,21 @@ from ..project import Project
 from ..runtime.clock import to_us
 from ..runtime.fork_obstacles import reasons_not_to_fork
 from ..runtime.scripts.script import InputScript
-from .asked_controls import prepare_control_watch
 from .boots import MEANWHILE
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
-from .fuzz_run import read_journal
 from .goals import Line
-from .inputs import prepare_sensor_search
+from .imported_robot import robot_lines
+from .journal import read_journal
 from .match import (
     ROBOT_SEED,
     FuzzTask,
     MatchResult,
     ReplayTask,
     Task,
-    imported_devices,
     match_seconds,
     play,
-    robot_constants,
-    robot_lines,
 )
+from .preparation import Preparation
 
 Answer = TypeVar("Answer")
 
@@ -215,17 +209,7 @@ class ForkedMatchExecutor(MatchExecutor):
 
         # In a separate process first: an import cannot be undone.
         imports_late, self._lines = self._do(survey)
-        self._imported = not imports_late
-        if self._imported:
-            robot_lines(project)
-            robot_constants(project)
-            imported_devices(project)
-        # Each match asks for these; the first call prepares the answer, and forks inherit what it has made.
-        devices_exist()
-        prepare_sensor_search()
-        prepare_control_watch()
-        NETWORK_LOG.find()
-        gc.freeze()  # a garbage collection in a fork would copy the memory of all objects
+        self._preparation = Preparation(project, is_imported=not imports_late)
 
     @property
     def lines(self) -> frozenset[Line]:
@@ -260,10 +244,10 @@ class ForkedMatchExecutor(MatchExecutor):
         """End the matches that are still running."""
         for work in self._running:
             work.close()
+        self._preparation.close()
 
     def _begin(self, task: Task) -> ForkedCall[MatchResult]:
-        if self._imported and isinstance(task, FuzzTask):
-            robot_lines(self.project).prepare(task.known_to_all)
+        self._preparation.prepare_for(task)
         work = ForkedCall(lambda log: play(self.project, log, task))
         self._running.append(work)
         return work

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -17,6 +18,13 @@ from .unfinished_commands import UnfinishedCommands
 _SLOW_AT_TIMES = 5
 #: How many loops are measured after one that may have taken long.
 _MEASURED = 50
+
+#: For so long, the robot may still be importing modules.
+_FIRST_US = 1_000_000
+
+# Bound before `runtime.patches` replaces the names: the replacement looks at its caller, which takes longer than a
+# simple robot's loop.
+_real_time, _processor_time = time.perf_counter, time.thread_time
 
 
 @dataclass(frozen=True)
@@ -58,7 +66,7 @@ class LoopTimes:
         return self._longest[-1]
 
     def _measured(self, call: Callable[[], Any]) -> Callable[[], Any]:
-        period, real_time, processor_time = self.period, time.perf_counter, time.thread_time
+        period, real_time, processor_time = self.period, _real_time, _processor_time
 
         def measured() -> None:
             __tracebackhide__ = True
@@ -90,6 +98,8 @@ class HintWatch:
         self._growths = Growths(containers)
         self._commands = UnfinishedCommands(run.clock, files)
         self._loops: LoopTimes | None = None
+        #: `after_packet` does nothing before this time.
+        self.next_us = 0
 
     def measure_loops(self) -> None:
         """Measure loops from now on; the robot has been started."""
@@ -98,7 +108,11 @@ class HintWatch:
     def after_packet(self, now_us: int) -> None:
         """Look at the robot once in each packet."""
         self._growths.after_packet(now_us)
-        self._commands.after_packet()
+        awaits_commands = "commands2" in sys.modules and not self._commands.watching
+        if awaits_commands:
+            self._commands.begin()
+        # Robots import commands2 with their modules; it is looked for in the first second, and now and then.
+        self.next_us = 0 if awaits_commands or now_us < _FIRST_US else self._growths.next_us
 
     def hints(self) -> MatchHints:
         """Return what the match shows; it is over."""

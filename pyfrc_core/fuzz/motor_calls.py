@@ -6,14 +6,15 @@ The calls are intercepted in Python, since WPILib passes 0 for NaN, and 1 for gr
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from typing import Any
 
 import wpilib
 import wpilib.drive
-import wpilib.interfaces
+from wpilib.interfaces import MotorController
 
-from ..runtime.patch_table import Patch, patched
+from ..runtime.patch_table import Patch
+from .prepared_patches import PreparedPatches
 
 #: Called with the motor controller or drive, the function's name, its numeric arguments, and whether they are powers
 #: from -1 to 1.
@@ -26,21 +27,50 @@ DRIVES = (
 )
 
 
-@contextmanager
-def intercept_motor_calls(on_motor_call: OnMotorCall) -> Iterator[None]:
-    """Report every call to `on_motor_call` until the context ends; the robot's modules must be imported."""
-    with patched(_patches(on_motor_call)):
-        yield
+#: Whatever is made of other motors, and sets them without a call in Python.
+GROUPS = (wpilib.MotorControllerGroup, *(drive for drive, _ in DRIVES))
 
 
-def _patches(on_motor_call: OnMotorCall) -> Iterator[Patch]:
-    for owner in _with_derived(wpilib.interfaces.MotorController):
+class MotorCalls:
+    """The calls of one run.
+
+    Attributes:
+        listener: called with each call, before it has an effect
+        members: the motors of each group and drive that was created, by its id: objects of WPILib's are not hashable
+            in all versions
+    """
+
+    def __init__(self) -> None:
+        self.listener: OnMotorCall = lambda motor, name, numbers, is_power: None
+        self.members: dict[int, list[Any]] = {}
+
+
+def watch_motor_calls() -> AbstractContextManager[MotorCalls]:
+    """Watch until the context ends; the robot's modules must be imported."""
+    return _watches.watching(MotorCalls)
+
+
+def prepare_motor_watch(prepare: bool = True) -> None:
+    """Prepare `watch_motor_calls` for the forks of this process, or undo that; the robot's modules must be imported."""
+    if prepare:
+        _watches.prepare(MotorCalls())
+    else:
+        _watches.undo()
+
+
+def _patches(calls: MotorCalls) -> Iterator[Patch]:
+    for owner in _with_derived(MotorController):
         for name, wrap in (("set", _set), ("setVoltage", _set_voltage)):
             if name in vars(owner):
-                yield Patch(owner, name, wrap(vars(owner)[name], on_motor_call))
+                yield Patch(owner, name, wrap(vars(owner)[name], calls))
     for drive, names in DRIVES:
         for name in names:
-            yield Patch(drive, name, _drive(vars(drive)[name], name, on_motor_call))
+            yield Patch(drive, name, _drive(vars(drive)[name], name, calls))
+    for group in GROUPS:
+        yield Patch(group, "__init__", _init(group.__init__, calls.members))
+
+
+_watches = PreparedPatches(_patches)
 
 
 def _with_derived(base: type[object]) -> Iterator[type[Any]]:
@@ -54,28 +84,36 @@ def _with_derived(base: type[object]) -> Iterator[type[Any]]:
 # name for a call of `super()`, as it is where a robot's own class overrides the method.
 
 
-def _set(real: Callable[..., object], on_motor_call: OnMotorCall) -> Callable[..., Any]:
+def _set(real: Callable[..., object], calls: MotorCalls) -> Callable[..., Any]:
     def set(self: object, *args: object, **kwargs: object) -> Any:
-        on_motor_call(self, "set", _numbers(args, kwargs), True)
+        calls.listener(self, "set", _numbers(args, kwargs), True)
         return real(self, *args, **kwargs)
 
     return set
 
 
-def _set_voltage(real: Callable[..., object], on_motor_call: OnMotorCall) -> Callable[..., Any]:
+def _set_voltage(real: Callable[..., object], calls: MotorCalls) -> Callable[..., Any]:
     def setVoltage(self: object, *args: object, **kwargs: object) -> Any:
-        on_motor_call(self, "setVoltage", _numbers(args, kwargs), False)
+        calls.listener(self, "setVoltage", _numbers(args, kwargs), False)
         return real(self, *args, **kwargs)
 
     return setVoltage
 
 
-def _drive(real: Callable[..., object], name: str, on_motor_call: OnMotorCall) -> Callable[..., Any]:
+def _drive(real: Callable[..., object], name: str, calls: MotorCalls) -> Callable[..., Any]:
     def drive(self: object, *args: object, **kwargs: object) -> Any:
-        on_motor_call(self, name, _numbers(args, kwargs), False)
+        calls.listener(self, name, _numbers(args, kwargs), False)
         return real(self, *args, **kwargs)
 
     return drive
+
+
+def _init(real: Callable[..., None], members: dict[int, list[Any]]) -> Callable[..., None]:
+    def __init__(self: object, *args: object, **kwargs: object) -> None:
+        real(self, *args, **kwargs)
+        members[id(self)] = [each for each in (*args, *kwargs.values()) if isinstance(each, MotorController)]
+
+    return __init__
 
 
 def _numbers(args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[float, ...]:

@@ -7,7 +7,7 @@ camera. So the functions that read are intercepted in Python. Subscribing is rea
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,8 @@ import wpilib
 
 from ..compat.cpython_private import get_frame
 from ..project.robot_files import RobotFiles
-from ..runtime.patch_table import Patch, patched
+from ..runtime.patch_table import Patch
+from .prepared_patches import PreparedPatches
 
 #: The names that NetworkTables gives to types, by the names in its functions.
 _TYPES = {
@@ -77,12 +78,17 @@ class NetworkReads:
         self.on_first(read)
 
 
-@contextmanager
-def watch_network_reads(files: RobotFiles) -> Iterator[NetworkReads]:
+def watch_network_reads(files: RobotFiles) -> AbstractContextManager[NetworkReads]:
     """Watch until the context ends."""
-    reads = NetworkReads(files)
-    with patched(_patches(reads)):
-        yield reads
+    return _watches.watching(lambda: NetworkReads(files))
+
+
+def prepare_network_watch(files: RobotFiles, prepare: bool = True) -> None:
+    """Prepare `watch_network_reads` for the forks of this process, or undo that."""
+    if prepare:
+        _watches.prepare(NetworkReads(files))
+    else:
+        _watches.undo()
 
 
 def _patches(reads: NetworkReads) -> Iterator[Patch]:
@@ -111,6 +117,9 @@ def _patches(reads: NetworkReads) -> Iterator[Patch]:
 
         for verb in ("subscribe", "getEntry"):
             yield Patch(struct_owner, verb, _of_topic(vars(struct_owner)[verb], struct_type, reads))
+
+
+_watches = PreparedPatches(_patches)
 
 
 def _of_entry(real: Any, type_name: str, reads: NetworkReads) -> Callable[..., Any]:

@@ -18,7 +18,7 @@ from ..hal import modes
 from ..hal.driver_station import program_state
 from ..project import Project
 from ..project.robot_files import RobotFiles
-from ..runtime.clock import Clock
+from ..runtime.clock import OBSERVE, PACKET_US
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript
 from ..runtime.timed_loop import Periodic
@@ -27,7 +27,7 @@ from .hal_reports import HalReports, hal_reports
 from .inert_motors import InertMotors
 from .left_running import STOPS_WITHIN_US, MotorsLeftRunning
 from .misbehavior_notes import LastMisbehavior
-from .motor_calls import intercept_motor_calls
+from .motor_calls import MotorCalls, watch_motor_calls
 
 #: How long after it was disabled a robot may still command its motors: its loop has to come round.
 _STOPS_WITHIN_US = 500_000
@@ -37,8 +37,6 @@ _LEAVES_WITHIN_US = 3_000_000
 _ROUNDING = 1e-6
 #: Powers up to this one do not move a motor.
 _NEGLIGIBLE_POWER = 0.02
-
-_CLOCK_RUNS = Clock.run_until.__code__
 
 
 #: Called with each misbehavior; returns whether the run ends with it.
@@ -50,15 +48,14 @@ def attach_oracle(run: RobotRun, files: RobotFiles, settings: FuzzSettings, ends
     """Watch a run, which is open and has not started, until the context ends."""
     with ExitStack() as closing:
         reports = closing.enter_context(hal_reports()) if settings.hal_errors else None
-        oracle = _Oracle(run, files, settings, reports, ends_run)
         of_motors = (settings.not_a_number, settings.out_of_range, settings.motors_while_disabled)
-        if any(of_motors) or settings.motors_left_running:
-            closing.enter_context(intercept_motor_calls(oracle.on_motor_call))
-            closing.enter_context(oracle.inert_motors.watched())
+        is_watched = any(of_motors) or settings.motors_left_running
+        calls = closing.enter_context(watch_motor_calls()) if is_watched else MotorCalls()
+        oracle = _Oracle(run, files, settings, reports, calls, ends_run)
         if settings.slow_loops:
-            run.timed_loop.after_calls.append(oracle.after_call)
+            run.timed_loop.after_waits.append(oracle.after_wait)
         run.clock.before_packet.append(oracle.before_packet)
-        run.observe(oracle.after_packet)
+        run.clock.every(PACKET_US, OBSERVE, oracle.after_packet)
         yield
 
 
@@ -81,6 +78,7 @@ class _Oracle:
         files: RobotFiles,
         settings: FuzzSettings,
         reports: HalReports | None,
+        calls: MotorCalls,
         ends_run: EndsRun,
     ) -> None:
         self._run = run
@@ -88,14 +86,17 @@ class _Oracle:
         self._settings = settings
         self._reports = reports
         self._ends_run = ends_run
-        self.inert_motors = InertMotors(run.hal_data)
-        self._left_running = MotorsLeftRunning(self.inert_motors.in_group)
+        calls.listener = self._on_motor_call
+        self._inert_motors = InertMotors(run.hal_data, calls.members)
+        self._left_running = MotorsLeftRunning(self._inert_motors.in_group)
         self._mode = ""
         self._mode_since_us = run.clock.now_us
         #: When the robot was last in the selected mode.
         self._agreed_us = run.clock.now_us
+        #: Whether it was in the last packet: then it is, until another mode is selected.
+        self._agrees = False
         #: A call of the clock that no robot code has made, directly or not.
-        self._clock_frame: FrameType | None = None
+        self._outer_call: object = self
         #: The line at which robot code was waiting when a packet came during its loop.
         self._waiting_at = ("", "")
 
@@ -109,10 +110,10 @@ class _Oracle:
 
     # -- motors ------------------------------------------------------------------------------------------------
 
-    def on_motor_call(self, motor: object, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
+    def _on_motor_call(self, motor: object, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
         """Check a call of a motor controller or a drive."""
         settings = self._settings
-        if settings.motors_left_running:
+        if settings.motors_left_running and self._left_running.counts_calls:
             self._left_running.on_call(motor, get_frame(1), self._files)
         for number in numbers:
             if number != number:  # NaN
@@ -123,20 +124,17 @@ class _Oracle:
                     what = f"{name}() was called with a power of {'more than 1' if number > 0 else 'less than -1'}"
                     self._misbehaved(what, "out_of_range", self._caller())
             elif (
-                abs(number) > _NEGLIGIBLE_POWER
+                self._mode == "disabled"
+                and abs(number) > _NEGLIGIBLE_POWER
                 and settings.motors_while_disabled
                 and self._is_long_disabled()
-                and not self.inert_motors.is_inert(motor)
+                and not self._inert_motors.is_inert(motor)
             ):
                 what = f"{name}() commands a motor to move while the robot is disabled"
                 self._misbehaved(what, "motors_while_disabled", self._caller())
 
     def _is_long_disabled(self) -> bool:
-        return (
-            self._run.started
-            and self._mode == "disabled"
-            and self._run.clock.now_us - self._mode_since_us > _STOPS_WITHIN_US
-        )
+        return self._run.started and self._run.clock.now_us - self._mode_since_us > _STOPS_WITHIN_US
 
     def _caller(self) -> tuple[str, str]:
         return place_of(user_frame(get_frame(2), self._files), self._files)
@@ -145,20 +143,51 @@ class _Oracle:
 
     def before_packet(self, now: float) -> None:
         """Note the mode, after all inputs of a packet were written."""
-        mode: str = modes.get_mode() if modes.is_attached() else "disabled"
+        mode: str = modes.get_mode()
+        if mode != "disabled" and not modes.is_attached():
+            mode = "disabled"
         if mode != self._mode:
             self._mode, self._mode_since_us = mode, self._run.clock.now_us
+            self._agrees = False
             self._left_running.on_mode(mode, self._run.clock.now_us)
 
-    def after_packet(self, now: float) -> None:
+    def after_packet(self) -> None:
         """Check the run after a packet; robot code may be in the middle of a longer call."""
-        frame = self._waiting_frame(get_frame(1))
-        if frame is not None:
-            self._waiting_at = place_of(frame, self._files)
+        # Between two turns of the robot's loop, the clock is in the same call for many packets. What has made this call
+        # is looked at once.
+        frame, clock = None, self._run.clock
+        if clock.call is not self._outer_call:
+            frame = user_frame(get_frame(1), self._files)
+            if frame is not None:
+                self._waiting_at = place_of(frame, self._files)
+            else:
+                self._outer_call = clock.call
         if self._reports is not None and (report := self._reports.error()) is not None:
             self._misbehaved(f"the HAL reports an error: {report}", "hal_errors", ("", ""))
         if self._settings.stuck_modes:
-            self._check_mode(frame)
+            loop = self._run.timed_loop
+            if self._agrees and loop.in_place and not loop.stopped:  # then the robot is alive
+                self._agreed_us = clock.now_us
+            else:
+                self._check_mode(frame)
+        if self._left_running.counts_calls:
+            self._check_left_running()
+
+    def _check_mode(self, frame: FrameType | None) -> None:
+        run = self._run
+        if run.started and not run.alive:
+            self._misbehaved("the robot program has ended by itself", "stuck_modes", ("", ""))
+            return
+        now_us, state = run.clock.now_us, program_state()
+        self._agrees = state == self._mode
+        if self._agrees or state not in modes.MODES or modes.is_stopped():
+            self._agreed_us = now_us
+        elif now_us - self._agreed_us > _LEAVES_WITHIN_US:
+            place = place_of(frame, self._files) if frame is not None else self._place_of_own_loop()
+            what = f"the robot is still in {state} mode, {_LEAVES_WITHIN_US / 1e6:g} s after that mode ended"
+            self._misbehaved(what, "stuck_modes", place)
+
+    def _check_left_running(self) -> None:
         for motor in self._left_running.found(self._run.clock.now_us):
             place = f"{self._files.relative(motor.code.co_filename)}:{motor.line}" if motor.code else ""
             what = (
@@ -167,38 +196,6 @@ class _Oracle:
             )
             self._misbehaved(what, "motors_left_running", (place, motor.code.co_name if motor.code else ""))
 
-    def _waiting_frame(self, frame: FrameType | None) -> FrameType | None:
-        """Return the frame of robot code that waits for this packet, if there is one.
-
-        Between two turns of the robot's loop, the clock is in the same call of `run_until` for many packets. What
-        has made this call is looked at once.
-        """
-        clock_frame = None
-        while frame is not None:
-            if frame is self._clock_frame:
-                return None
-            code = frame.f_code
-            if self._files.is_robot_code(code.co_filename):
-                return frame
-            if code is _CLOCK_RUNS:
-                clock_frame = clock_frame or frame
-            frame = frame.f_back
-        self._clock_frame = clock_frame
-        return None
-
-    def _check_mode(self, frame: FrameType | None) -> None:
-        run = self._run
-        if run.started and not run.alive:
-            self._misbehaved("the robot program has ended by itself", "stuck_modes", ("", ""))
-            return
-        state = program_state()
-        if state == self._mode or state not in modes.MODES or modes.is_stopped():
-            self._agreed_us = run.clock.now_us
-        elif run.clock.now_us - self._agreed_us > _LEAVES_WITHIN_US:
-            place = place_of(frame, self._files) if frame is not None else self._place_of_own_loop()
-            what = f"the robot is still in {state} mode, {_LEAVES_WITHIN_US / 1e6:g} s after that mode ended"
-            self._misbehaved(what, "stuck_modes", place)
-
     def _place_of_own_loop(self) -> tuple[str, str]:
         thread = self._run.own_loop
         frame = current_frames().get(thread.ident) if thread is not None and thread.ident is not None else None
@@ -206,8 +203,8 @@ class _Oracle:
 
     # -- loops --------------------------------------------------------------------------------------------------
 
-    def after_call(self, callback: Periodic) -> None:
-        """Check how long a callback of a `TimedRobot` took."""
+    def after_wait(self, callback: Periodic) -> None:
+        """Check how long a callback of a `TimedRobot` took, in which robot time has passed."""
         took_us = self._run.clock.now_us - self._run.timed_loop.loop_start_us
         if took_us > callback.period_us:
             what = f"a loop with a period of {callback.period_us / 1e6:g} s waits here for longer than its period"

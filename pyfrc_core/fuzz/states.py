@@ -71,11 +71,11 @@ class RobotStates:
         self._packets += 1
         if self._packets in _SEARCHES:
             self._search(now_us)
-        turn = self._quiet[self._packets % _TURNS]
-        changed = [each for each in turn if each.owner.get(each.name, _ABSENT) is not each.value]
-        for each in changed:
-            turn.remove(each)
-            self._active.append(each)
+        if turn := self._quiet[self._packets % _TURNS]:
+            changed = [each for each in turn if each.owner.get(each.name, _ABSENT) is not each.value]
+            for each in changed:
+                turn.remove(each)
+                self._active.append(each)
         for each in self._active:
             if each.owner.get(each.name, _ABSENT) is not each.value:
                 self._change(each, now_us)

@@ -6,7 +6,6 @@ commands do not count. The scheduler ends commands when the robot is disabled, s
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from ..compat.wpilib_private import scheduled_commands
@@ -29,16 +28,17 @@ class UnfinishedCommands:
         self.finished: set[str] = set()
         self._clock = clock
         self._files = files
-        self._watching = False
+        #: Whether commands are watched.
+        self.watching = False
         self._began: dict[int, tuple[Any, str, int]] = {}
 
-    def after_packet(self) -> None:
-        """Begin to watch when the robot uses commands."""
-        if self._watching or "commands2" not in sys.modules or not scheduled_commands():
+    def begin(self) -> None:
+        """Begin to watch if a command runs; commands2 must have been imported."""
+        if not scheduled_commands():
             return
         import commands2
 
-        self._watching = True
+        self.watching = True
         scheduler = commands2.CommandScheduler.getInstance()
         for command in scheduled_commands():
             self._on_begin(command)

@@ -129,7 +129,8 @@ class Fork:
 
 def wait_for_any(descriptors: Sequence[int]) -> None:
     """Return when one of these has something to read, or a short while has passed."""
-    with selectors.DefaultSelector() as selector:
+    # Where there is `poll`, it needs no descriptor, which would take a while to close.
+    with getattr(selectors, "PollSelector", selectors.DefaultSelector)() as selector:
         for descriptor in descriptors:
             selector.register(descriptor, selectors.EVENT_READ)
         selector.select(_LOOK_SECONDS)

@@ -16,6 +16,7 @@ from . import fork, spawn
 from .crash_report import CrashLog, describe_exit
 from .exit import end_child_processes, exit_now, flush_output
 from .frames import decode, encode
+from .memory_file import memory_file
 
 #: Sends an object to the process that has started this one.
 Send = Callable[[object], object]
@@ -73,7 +74,7 @@ class ForkedWorker(Worker):
 
     def __init__(self, work: Work) -> None:
         super().__init__()
-        self._crash_log: IO[bytes] = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115 - closed by `close`
+        self._crash_log: IO[bytes] = memory_file()
         descriptor = self._crash_log.fileno()
         self._fork = fork.Fork(lambda send: work_and_exit(partial(work, _sender(send)), descriptor))
 

@@ -47,6 +47,8 @@ class Clock:
         self._recurring: list[tuple[int, int, Action]] = []
         #: How many actions have been called.
         self.actions = 0
+        #: Stands for the innermost call of `run_until` or `run_while` that has not returned; None between two calls.
+        self.call: object = None
         #: The first number is the time in microseconds. It may be memory that another process reads.
         self.moment: MutableSequence[int] | memoryview = array("q", [0])
         self.initialize(start_us)
@@ -91,7 +93,8 @@ class Clock:
         def again() -> None:
             nonlocal due
             due += period_us
-            self.at(due, rank, again)
+            self._order += 1
+            heappush(self._queue, (due, rank, self._order, again))  # as `at`
             action()
 
         self.at(due, rank, again)
@@ -115,10 +118,20 @@ class Clock:
             raise TestEnded
         queue = self._queue
         end = min(target_us, self.limit_us)
-        while queue[0][0] <= end:  # there always is a next packet
-            self._run_next()
-            if self.halted:
-                raise TestEnded
+        outer, self.call = self.call, object()
+        try:
+            while queue[0][0] <= end:  # there always is a next packet
+                # As `_run_next` and `_move_to`: calling them would take as long as the rest.
+                due_us, _, _, action = heappop(self._queue)
+                if due_us > self.now_us:
+                    step_us(due_us - self.now_us)
+                    self.now_us = self.moment[0] = due_us
+                self.actions += 1
+                action()
+                if self.halted:
+                    raise TestEnded
+        finally:
+            self.call = outer
         self._move_to(end)
         if target_us > self.limit_us:
             limit = self.limit_us / 1_000_000
@@ -135,15 +148,19 @@ class Clock:
         if self.halted:
             raise TestEnded
         queue = self._queue
-        while waiting():
-            next_due = queue[0][0]
-            if deadline_us is not None and next_due > deadline_us:
-                return self.run_until(deadline_us)
-            if next_due > self.limit_us:
-                return self.run_until(next_due)
-            self._run_next()
-            if self.halted:
-                raise TestEnded
+        outer, self.call = self.call, object()
+        try:
+            while waiting():
+                next_due = queue[0][0]
+                if deadline_us is not None and next_due > deadline_us:
+                    return self.run_until(deadline_us)
+                if next_due > self.limit_us:
+                    return self.run_until(next_due)
+                self._run_next()
+                if self.halted:
+                    raise TestEnded
+        finally:
+            self.call = outer
         return None
 
     def _run_next(self) -> None:
@@ -165,8 +182,9 @@ class Clock:
 
     def _packet(self) -> None:
         __tracebackhide__ = True
-        self._next_packet += PACKET_US
-        self.at(self._next_packet, PACKET, self._packet)
+        self._next_packet = due_us = self._next_packet + PACKET_US
+        self._order += 1
+        heappush(self._queue, (due_us, PACKET, self._order, self._packet))  # as `at`
         for listener in self.before_packet:
             listener(self.now_us / 1_000_000)
         self.deliver_packet()

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from ..compat.cpython_private import allocate_lock, current_frames, raise_in_thread
+from ..compat.cpython_private import allocate_lock, current_frames, raise_in_thread, start_bare_thread
 from ..processes.exit import EXIT_HANGS, prepare_sudden_exit
 from .exceptions import TestFroze
 from .thread_cpu import cpu_of_this_thread
@@ -151,9 +151,8 @@ class HangDetector:
     @contextmanager
     def watching(self) -> Iterator[None]:
         """Watch while this lasts; code that hangs is interrupted with `TestFroze`."""
-        thread = threading.Thread(target=self._watch, name="pyfrc hang detector", daemon=True)
         with self._interruption.possible():
-            _start_thread(thread)
+            start_bare_thread(self._watch)
             try:
                 yield
             finally:

@@ -94,10 +94,18 @@ class RobotRun:
     :param logs: where the data logs that robot code starts are written; None: they are not kept
     :param has_devices: whether devices exist in the HAL, if the caller knows: the search takes a millisecond
     :param start_us: the robot time at which it begins
+    :param tree: the tree for `hal_data`, made without defaults, which no run has used
     """
 
-    def __init__(self, logs: LogPlace | None = None, has_devices: bool | None = None, start_us: int = 0) -> None:
+    def __init__(
+        self,
+        logs: LogPlace | None = None,
+        has_devices: bool | None = None,
+        start_us: int = 0,
+        tree: HalData | None = None,
+    ) -> None:
         self._has_devices = has_devices
+        self._tree = tree
         self.clock = Clock(start_us)
         #: What robot code starts of data logs.
         self.data_logs = DataLogs(self.clock, logs)
@@ -196,7 +204,7 @@ class RobotRun:
     @cached_property
     def hal_data(self) -> HalData:
         """The robot's inputs and outputs: one tree for all users of this run."""
-        tree = HalData(defaults=False)
+        tree = HalData(defaults=False) if self._tree is None else self._tree
         # What was written for a gyro before the robot made it, reaches it then.
         self.clock.before_packet.append(lambda now: tree.sync())
         return tree
@@ -314,7 +322,8 @@ class RobotRun:
 
     def observe(self, look: Any) -> None:
         """Have `look` called after every packet, when the robot has done its part: ``look(now_in_seconds)``."""
-        self.clock.every(PACKET_US, OBSERVE, lambda: look(self.clock.now))
+        clock = self.clock
+        clock.every(PACKET_US, OBSERVE, lambda: look(clock.now_us / 1_000_000))
 
     def overruns_until_now(self) -> tuple[int, int]:
         """Return how many turns of the loop took longer than its period, and the longest, in microseconds.

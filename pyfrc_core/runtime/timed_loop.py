@@ -74,6 +74,8 @@ class TimedLoop:
         self.stopped = False
         #: Called after each callback, which began at `loop_start_us`.
         self.after_calls: list[Callable[[Periodic], None]] = []
+        #: Called before these, after each callback in which robot time has passed.
+        self.after_waits: list[Callable[[Periodic], None]] = []
         #: The callback that is WPILib's loop; None until `robotInit` is over.
         self.main: Periodic | None = None
         #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
@@ -132,9 +134,11 @@ class TimedLoop:
 
     def _on_alarm(self) -> None:
         __tracebackhide__ = True
-        if self._alarm_us <= self._clock.now_us and not self.stopped:
+        clock = self._clock
+        if self._alarm_us <= clock.now_us and not self.stopped:
             self._alarm_us = _NEVER  # no other turn begins within this one, however long it takes
-            self._set_alarm(self._turn())
+            self._alarm_us = due_us = self._turn().due_us
+            clock.at(due_us, ROBOT_LOOP, self._on_alarm)  # as `_set_alarm`
 
     def run_blocking(self, threads: RobotThreads) -> None:
         """Call what is due on the calling thread, which waits in between, until the run ends."""
@@ -149,21 +153,23 @@ class TimedLoop:
     def _turn(self) -> Periodic:
         """Call the callbacks that are due, one after the other, however long each takes. Return the next one."""
         __tracebackhide__ = True
-        clock = self._clock
+        clock, callbacks = self._clock, self._callbacks
         woken_us = clock.now_us
-        while self._callbacks[0].due_us <= woken_us and not self.stopped:
-            callback = heappop(self._callbacks)
+        while callbacks[0].due_us <= woken_us and not self.stopped:
+            callback = heappop(callbacks)
             self.loop_start_us = clock.now_us
             callback.call()
             if clock.now_us != self.loop_start_us:
-                self._look_for_overrun(callback)
+                self._on_wait(callback)
             for listener in self.after_calls:
                 listener(callback)
             callback.move_on(woken_us)
-            heappush(self._callbacks, callback)
-        return self._callbacks[0]
+            heappush(callbacks, callback)
+        return callbacks[0]
 
-    def _look_for_overrun(self, callback: Periodic) -> None:
+    def _on_wait(self, callback: Periodic) -> None:
         took_us = self._clock.now_us - self.loop_start_us
         if took_us > callback.period_us:
             self._when_overrun(took_us)
+        for listener in self.after_waits:
+            listener(callback)

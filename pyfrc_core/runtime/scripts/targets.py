@@ -33,7 +33,11 @@ REMAINING = "time.remaining"
 #: Rooms of `hal_data` that hold what robots make, by names or numbers that they choose.
 _COMES_WITH_THE_ROBOT = {"CAN", "robot", "custom", "pcm", "ph", "compressor", "pcm_compressor", "ph_compressor", "pdp"}
 
-_CONTROL = re.compile(r"joysticks\[\d+\]\.(?:axes|buttons|povs)\[\d+\]$")
+#: Paths in `hal_data` that always lead to the same dict or list: what they lead to is kept for the next write.
+_KEPT = re.compile(
+    r"joysticks\[\d+\]\.(?:axes|buttons|povs)\[\d+\]$"
+    r"|(?:dio|analog_in|encoder|analog_gyro|duty_cycle)\[\d+\]\.\w+$|(?:power|accelerometer)\.\w+$|fpga_button$"
+)
 _BUTTON = re.compile(r"joysticks\[[0-5]\]\.buttons\[(\d+)\]")
 _PLUGGED = re.compile(r"joysticks\[([0-5])\]\.plugged")
 
@@ -47,17 +51,18 @@ class Countdown:
     """The match's time: so many seconds are left at one moment, and less and less from then on."""
 
     def __init__(self) -> None:
-        self._ends_us: int | None = None
+        #: When it ends; None before it was started.
+        self.ends_us: int | None = None
 
     def start(self, left: float, now_us: int) -> None:
-        self._ends_us = now_us + to_us(left)
+        self.ends_us = now_us + to_us(left)
 
     def stop(self) -> None:
-        self._ends_us = None
+        self.ends_us = None
 
     def left(self, now_us: int) -> float | None:
         """The seconds left; None before it was started."""
-        return None if self._ends_us is None else max(0, self._ends_us - now_us) / 1_000_000
+        return None if self.ends_us is None else max(0, self.ends_us - now_us) / 1_000_000
 
 
 class Targets:
@@ -71,8 +76,8 @@ class Targets:
         self._hal_data = hal_data
         self._deliver = deliver
         self._entries = NetworkEntries()
-        #: The list and the index of each joystick's control that was written: most writes of fuzz go to these.
-        self._controls: dict[str, tuple[Any, Any]] = {}
+        #: Where `hal_data` has what was written, of `_KEPT`: most writes of fuzz go to these.
+        self._places: dict[str, tuple[Any, Any]] = {}
         self._countdown = Countdown()
 
     def close(self) -> None:
@@ -84,10 +89,10 @@ class Targets:
 
         :raises PyfrcError: when there is no such target, or it cannot have this value
         """
-        control = self._controls.get(target)
-        if control is not None:
-            values, index = control
-            values[index] = value
+        kept = self._places.get(target)
+        if kept is not None:
+            place, key = kept
+            place[key] = value
         elif target == MODE:
             modes.set_mode_named(value)
         elif target == MATCH_TIME:
@@ -109,8 +114,8 @@ class Targets:
                 self._countdown.stop()
             place, key = self._hal_data.locate(target)
             place[key] = value
-            if _CONTROL.match(target):
-                self._controls[target] = place, key
+            if _KEPT.match(target):
+                self._places[target] = place, key
 
     def check(self, target: str) -> None:
         """See that there is such a target, or may be when the robot has made its devices.
@@ -140,9 +145,8 @@ class Targets:
 
     def count_down(self, now_us: int) -> None:
         """Called at each packet: the match's time goes on."""
-        left = self._countdown.left(now_us)
-        if left is not None:
-            modes.set_match_time(left)
+        if (ends_us := self._countdown.ends_us) is not None:
+            modes.set_match_time(max(0, ends_us - now_us) / 1_000_000)  # as `Countdown.left`
 
     @staticmethod
     def _is_path(target: str) -> bool:
