@@ -18,8 +18,8 @@ from pyfrc_core.hal import HalData
 from pyfrc_core.hal.change_reader import MISSING, ChangeReader, Changes
 from pyfrc_core.hal.output_gate import OutputGate
 
-#: Looks that find nothing, before a change.
-LOOKS = 60
+#: Looks that find nothing, before a change; more than those between two choices of the values that are written often.
+LOOKS = 260
 
 
 @pytest.fixture(params=[False, True], ids=["", "announced"])
@@ -183,7 +183,7 @@ def test_a_reader_that_has_not_looked_for_long_finds_everything(tree: HalData) -
     for number in range(LOOKS):
         values[number % 20].set(100.0 + number)
         often.look()
-    assert found(seldom.look()) == {f'CAN["Motor[0]"].v{n}': 140.0 + n for n in range(20)}
+    assert found(seldom.look()) == {f'CAN["Motor[0]"].v{n}': 80.0 + LOOKS + n for n in range(20)}
     del devices
 
 

@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 from ..compat.hal_callbacks import Report, WriteFlags, resets
 from ..compat.hal_memory import Memory, value_memory
 
-#: How many looks decide which values are written often, and for how many looks this holds: a second.
-_CHOOSING_LOOKS, _LOOKS_BETWEEN = 3, 50
+#: How many looks decide which values are written often, and for how many looks this holds: five seconds.
+_CHOOSING_LOOKS, _LOOKS_BETWEEN = 3, 250
 
 
 _SCALARS = frozenset((float, int, bool, str, bytes))
