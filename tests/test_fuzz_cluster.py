@@ -6,21 +6,22 @@ import os
 import re
 import shlex
 import signal
-import subprocess
 import sys
 import threading
 from collections.abc import Generator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import pytest
 from skips import require
+from warm_cluster import Started, Starts
 
 from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.fuzz import cluster as cluster_module
 from pyfrc_core.fuzz.cluster import ClusterError, ClusterMatchExecutor, open_cluster_executor
 from pyfrc_core.fuzz.match import ReplayTask
+from pyfrc_core.processes.spawn import Interpreter
 from pyfrc_core.project.locate import find_project
 from pyfrc_core.runtime.scripts.script import InputScript
 
@@ -68,15 +69,16 @@ CAMPAIGN = ("--seed", "12", "--runs", "8")
 class Cluster:
     """A scheduler and its workers, each a process that ends with the context."""
 
-    def __init__(self, directory: Path) -> None:
+    def __init__(self, directory: Path, starts: Starts) -> None:
         self._directory = directory
-        self._processes: list[subprocess.Popen[str]] = []
-        self._workers: list[tuple[subprocess.Popen[str], Path]] = []
+        self._starts = starts
+        self._processes: list[Interpreter] = []
+        self._workers: list[tuple[Interpreter, Path]] = []
         self.scheduler, (self.address,) = self._start(
             [*SCHEDULER, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"], r"Scheduler at: +(\S+)"
         )
 
-    def add_worker(self, env: Mapping[str, str] | None = None) -> subprocess.Popen[str]:
+    def add_worker(self, env: Mapping[str, str] | None = None) -> Interpreter:
         """Start a worker with one thread, and wait until the scheduler knows it."""
         command = [self.address if each.startswith("tcp://") else each for each in WORKER]
         own = self._directory / str(len(self._workers))
@@ -91,24 +93,16 @@ class Cluster:
 
     def _start(
         self, command: list[str], ready: str, env: Mapping[str, str] | None = None
-    ) -> tuple[subprocess.Popen[str], tuple[str, ...]]:
+    ) -> tuple[Interpreter, tuple[str, ...]]:
         assert command[0] == "dask"
-        process = subprocess.Popen(
-            [sys.executable, "-m", *command],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            cwd=self._directory,
-            env={**os.environ, **(env or {})},
-            text=True,
-        )
+        process, stdout, stderr = self._starts.start("dask", command[1:], self._directory, env)
         self._processes.append(process)
-        assert process.stderr is not None
         log = ""
-        for line in process.stderr:
+        for line in stderr:
             log += line
             if (found := re.search(ready, line)) is not None:
-                threading.Thread(target=process.stderr.read, daemon=True).start()
+                for stream in (stdout, stderr):
+                    threading.Thread(target=_read_all, args=[stream], daemon=True).start()
                 return process, found.groups()
         raise AssertionError(log)
 
@@ -119,10 +113,21 @@ class Cluster:
             process.wait()
 
 
+def _read_all(stream: IO[str]) -> None:
+    with stream:
+        stream.read()
+
+
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Generator[Cluster]:
+def starts() -> Starts:
+    """Starts schedulers, workers and campaigns."""
+    return Starts(os.environ)
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory, starts: Starts) -> Generator[Cluster]:
     """A cluster with two workers."""
-    cluster = Cluster(tmp_path_factory.mktemp("cluster"))
+    cluster = Cluster(tmp_path_factory.mktemp("cluster"), starts)
     try:
         cluster.add_worker()
         cluster.add_worker()
@@ -132,10 +137,10 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Generator[Cluster]:
 
 
 @pytest.fixture
-def own_cluster(tmp_path: Path) -> Generator[Cluster]:
+def own_cluster(tmp_path: Path, starts: Starts) -> Generator[Cluster]:
     """A cluster without workers, for one test."""
     (tmp_path / "own").mkdir()
-    cluster = Cluster(tmp_path / "own")
+    cluster = Cluster(tmp_path / "own", starts)
     try:
         yield cluster
     finally:
@@ -200,41 +205,35 @@ def test_matches_whose_process_dies_are_played_again(
     assert _everywhere(project, result) == alone, result.output
 
 
-def _begin(project: Any, *options: str) -> subprocess.Popen[str]:
+def _begin(starts: Starts, project: Any, *options: str) -> Started:
     """Begin a long campaign, and return it when it has found something."""
-    campaign = subprocess.Popen(
-        [sys.executable, "-m", "pyfrc", "fuzz", "--seed", "1", "--runs", "100000", *options],
-        cwd=project.path,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert campaign.stdout is not None
+    arguments = ["fuzz", "--seed", "1", "--runs", "100000", *options]
+    campaign = starts.start("pyfrc", arguments, project.path, {"PYTHONHASHSEED": "0"})
     for line in campaign.stdout:
         if "pyfrc replay" in line:
             return campaign
-    raise AssertionError(campaign.communicate())
+    raise AssertionError(campaign.stderr.read())
 
 
-def test_ctrl_c_keeps_what_was_found(cluster: Cluster, make_shared_project) -> None:
+def test_ctrl_c_keeps_what_was_found(cluster: Cluster, starts: Starts, make_shared_project) -> None:
     project = copy(make_shared_project)
-    campaign = _begin(project, "--scheduler", cluster.address)
-    campaign.send_signal(signal.SIGINT)
-    stdout, stderr = campaign.communicate()
-    assert (campaign.returncode, stderr) == (1, ""), stdout
+    campaign = _begin(starts, project, "--scheduler", cluster.address)
+    os.kill(campaign.process.pid, signal.SIGINT)
+    stdout, stderr = campaign.stdout.read(), campaign.stderr.read()
+    assert (campaign.process.wait(), stderr) == (1, ""), stdout
     assert "interrupted" in stdout
     assert list(project.path.rglob("tests/fuzz/*.jsonl"))
     assert cluster.left_on_workers() == []
 
 
-def test_a_scheduler_that_is_lost(own_cluster: Cluster, make_shared_project) -> None:
+def test_a_scheduler_that_is_lost(own_cluster: Cluster, starts: Starts, make_shared_project) -> None:
     own_cluster.add_worker()
     project = copy(make_shared_project)
-    campaign = _begin(project, "--scheduler", own_cluster.address)
+    campaign = _begin(starts, project, "--scheduler", own_cluster.address)
     own_cluster.scheduler.kill()
-    _, stderr = campaign.communicate()
-    assert campaign.returncode == 1
+    campaign.stdout.read()
+    stderr = campaign.stderr.read()
+    assert campaign.process.wait() == 1
     assert stderr == f"error: the connection to the scheduler at {own_cluster.address} was lost\n"
     assert list(project.path.rglob("tests/fuzz/*.jsonl"))
 

@@ -27,7 +27,7 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 from large_pages import use_large_pages
-from warm_start import LARGEST, READ_AT_START, READ_LATER, end_like_python, run_program
+from warm_start import LARGEST, READ_AT_START, READ_LATER, end_like_python, run_program, search_path
 
 from pyfrc_core.processes import spawn
 from pyfrc_core.sim.engine import host_process
@@ -50,16 +50,17 @@ class WarmProcesses:
     """A process that forks others, until this one ends.
 
     :param environment: that of processes with which nothing is special
+    :param program: forks them: it calls `main`
     :ivar address: where it is asked for them, by this process and others
     """
 
-    def __init__(self, environment: Mapping[str, str]) -> None:
+    def __init__(self, environment: Mapping[str, str], program: str = __file__) -> None:
         self.address = f"\0pyfrc-tests-{secrets.token_hex(16)}"
         with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as listener:
             listener.bind(self.address)
             listener.listen(128)
             process = subprocess.Popen(
-                [sys.executable, __file__, str(listener.fileno())],
+                [sys.executable, program, str(listener.fileno())],
                 pass_fds=[listener.fileno()],
                 stdin=subprocess.PIPE,  # closed when this process ends, and the other ends then
                 stdout=subprocess.PIPE,  # as a host has one
@@ -67,6 +68,17 @@ class WarmProcesses:
                 env={**environment, **host_process.ENVIRONMENT},
             )
         atexit.register(process.communicate)
+
+    def start(
+        self, program: str, arguments: list[str], directory: Path, environment: Mapping[str, str], streams: list[int]
+    ) -> WarmProcess | None:
+        """Start ``python -m program arguments``; return None where a new interpreter has to.
+
+        :param streams: descriptors of its standard input, output and errors
+        """
+        path = [*sys.path, str(directory), *map(str, search_path(environment))]
+        command = [program, arguments, str(directory), self.address, self.address]
+        return ask(self.address, ["command", path, dict(environment), command], streams)
 
 
 def start_warm(address: Callable[[], str], of_tests: str | None = None) -> None:
@@ -97,7 +109,7 @@ def _start(
         their_end, our_end = os.pipe()
         with os.fdopen(our_end, "wb") as file:
             try:
-                warm = _ask(where, [kind, sys.path, environment, []], [their_end, output, errors])
+                warm = ask(where, [kind, sys.path, environment, []], [their_end, output, errors])
             finally:
                 os.close(their_end)
             if warm is not None:
@@ -113,7 +125,7 @@ def _run_python(
     option, program, *words = arguments
     assert option == "-m", arguments
     command = [program, words, str(Path.cwd()), address(), of_tests]
-    warm = _ask(of_tests, ["command", [*sys.path, command[2]], dict(os.environ), command], [0, stdout.fileno(), 2])
+    warm = ask(of_tests, ["command", [*sys.path, command[2]], dict(os.environ), command], [0, stdout.fileno(), 2])
     return cold(arguments, stdout) if warm is None else warm.wait()
 
 
@@ -126,7 +138,7 @@ def _descriptor(stream: int | IO[bytes] | None, own: int, unread: IO[bytes]) -> 
     return (unread if isinstance(stream, int) else stream).fileno()
 
 
-def _ask(address: str, request: list[object], streams: list[int]) -> _WarmProcess | None:
+def ask(address: str, request: list[object], streams: list[int]) -> WarmProcess | None:
     """Have a process forked; return None where a fork would not do.
 
     :param request: all but the last two of a `_Request`
@@ -139,10 +151,10 @@ def _ask(address: str, request: list[object], streams: list[int]) -> _WarmProces
     if pid == b"cold":
         server.close()
         return None
-    return _WarmProcess(int(pid), server)
+    return WarmProcess(int(pid), server)
 
 
-class _WarmProcess:
+class WarmProcess:
     """A forked process, with the methods of `subprocess.Popen`."""
 
     def __init__(self, pid: int, end: socket.socket) -> None:
@@ -271,6 +283,7 @@ def _become(request: _Request) -> None:
             open(descriptor, mode, encoding="utf-8", errors="backslashreplace", closefd=False)  # noqa: SIM115
             for descriptor, mode in enumerate("rww")
         )
+        sys.__stdin__, sys.__stdout__, sys.__stderr__ = sys.stdin, sys.stdout, sys.stderr  # type: ignore[misc]
     sys.modules["__main__"] = types.ModuleType("__main__")
     for name in _OF_THE_SUITE:
         sys.modules.pop(name, None)
@@ -295,12 +308,16 @@ def serve(listener: socket.socket, interrupted: object) -> None:
         _become(request)
 
 
-def main() -> None:
-    """The process that forks."""
+def main(*imported: str) -> None:
+    """The process that forks.
+
+    :param imported: modules, besides those of a host
+    """
     listener = socket.socket(fileno=int(sys.argv[1]))
     sys.path[0] = ""
     interrupted = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    importlib.import_module("pyfrc_core.sim.engine.robot_side.robot_process")
+    for name in ("pyfrc_core.sim.engine.robot_side.robot_process", *imported):
+        importlib.import_module(name)
     gc.collect()
     gc.freeze()
     use_large_pages()

@@ -123,7 +123,7 @@ class WarmStarts:
             return False
         # The user's modules come before others of their names; here, the others are imported already.
         first = self._modules | _IMPORTED_AT_START
-        places = (directory, *_search_path(environment))
+        places = (directory, *search_path(environment))
         return not any(
             path.stem in first and (path.parent in places or not (path.parent / "__init__.py").exists())
             for place in places
@@ -180,7 +180,7 @@ def _modules_below(place: Path) -> Iterator[Path]:
                 yield path
 
 
-def _search_path(environment: Mapping[str, str]) -> list[Path]:
+def search_path(environment: Mapping[str, str]) -> list[Path]:
     """Return the directories of ``PYTHONPATH``."""
     return [Path(place) for place in environment.get("PYTHONPATH", "").split(os.pathsep) if place]
 
@@ -262,7 +262,7 @@ def run_program(program: str, arguments: list[str], directory: str, environment:
     os.environ.update(environment)
     sys.orig_argv[1:] = ["-m", program, *arguments]
     sys.argv[1:] = arguments
-    sys.path[:0] = [directory, *map(str, _search_path(environment))]
+    sys.path[:0] = [directory, *map(str, search_path(environment))]
     sys.modules["__main__"] = types.ModuleType("__main__")
     code = 0
     try:
