@@ -42,8 +42,8 @@ _NOT_PASSED_ON_EITHER = {
     "BUILD_NUMBER",
 }
 
-# Threads of linear algebra spin while they wait, for a tenth of a second in each process that imports numpy. The matrices
-# of robots are too small for threads.
+# Threads of numpy's linear algebra spin while they wait, in each process that imports it for up to a tenth of a second.
+# The matrices of robots are too small for threads.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # The same examples in each run, and no limits by the clock: a failure is not chance, nor a busy machine.
