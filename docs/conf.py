@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 from typing import Any
 
 import pytest
+
+# The trees of all pages are kept until the end: looking for garbage in them takes a quarter of a build.
+gc.disable()
 
 # Document a fixture as the method in the source, not as the object that pytest creates from it.
 pytest.fixture = lambda function: function

@@ -42,6 +42,10 @@ _NOT_PASSED_ON_EITHER = {
     "BUILD_NUMBER",
 }
 
+# Threads of numpy's linear algebra spin while they wait, in each process that imports it for up to a tenth of a second.
+# The matrices of robots are too small for threads.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # The same examples in each run, and no limits by the clock: a failure is not chance, nor a busy machine.
 settings.register_profile(
     "suite", deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]

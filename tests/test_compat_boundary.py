@@ -44,11 +44,16 @@ def is_private(name: str) -> bool:
 
 
 @functools.cache
+def nodes_of(file: Path) -> list[ast.AST]:
+    return list(ast.walk(ast.parse(file.read_text("utf-8"))))
+
+
+@functools.cache
 def own_names() -> set[str]:
     """Return the names that pyfrc itself gives to something."""
     names: set[str] = set()
     for file in FILES:
-        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+        for node in nodes_of(file):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
                 names.add(node.name)
             elif isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Store):
@@ -57,7 +62,7 @@ def own_names() -> set[str]:
 
 
 def private_names(file: Path, own: set[str]) -> Iterator[tuple[int, str]]:
-    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+    for node in nodes_of(file):
         names: list[str] = []
         if isinstance(node, ast.Attribute):
             names = [node.attr] if node.attr not in own else []

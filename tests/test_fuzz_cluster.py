@@ -196,13 +196,15 @@ def test_matches_whose_process_dies_are_played_again(
     a_worker, a_process_of_a_worker = tmp_path / "worker", tmp_path / "process"
     worker = cluster.add_worker({"ENDS_A_PROCESS": str(a_worker)})
     a_worker.write_text(str(worker.pid))
-    cluster.add_worker({"ENDS_A_PROCESS": str(a_process_of_a_worker)})
+    another = cluster.add_worker({"ENDS_A_PROCESS": str(a_process_of_a_worker)})
     a_process_of_a_worker.touch()
     project = copy(make_shared_project)
     result = project.run("fuzz", *CAMPAIGN, "--scheduler", cluster.address)
     assert worker.wait() == -signal.SIGKILL
     assert list(tmp_path.iterdir()) == []
     assert _everywhere(project, result) == alone, result.output
+    another.kill()  # each worker of a campaign starts processes that play its matches
+    another.wait()
 
 
 def _begin(starts: Starts, project: Any, *options: str) -> Started:
