@@ -1,4 +1,4 @@
-"""What each run of pytest finds out anew, found out once, in the process that commands are forked from.
+"""What each run of pytest would find out again, found out once, in the process that commands are forked from.
 
 It is the same each time: the plugins that are installed, and what is in them.
 """
