@@ -327,6 +327,15 @@ def make_shared_project(tmp_path_factory: pytest.TempPathFactory) -> MakeProject
 
 
 @pytest.fixture
+def hangup_ends_programs() -> Generator[None]:
+    """Have SIGHUP end the programs that this test starts, also where the suite runs under nohup, which they inherit."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL) if hasattr(signal, "SIGHUP") else None
+    yield
+    if before is not None:
+        signal.signal(signal.SIGHUP, before)
+
+
+@pytest.fixture
 def patient_doctor(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have `pyfrc doctor` wait for a robot that is there, however busy this machine is."""
     for name in ("SEARCH_SECONDS", "CHECK_SECONDS"):

@@ -291,6 +291,7 @@ def test_unknown_settings_are_told(make_project) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
+@pytest.mark.usefixtures("hangup_ends_programs")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_an_interrupted_campaign_keeps_what_was_found_and_nothing_else(make_project, tmp_path: Path, name: str) -> None:
     project = make_project({"robot.py": FAULTY.format("1 / self.motor.get()")})

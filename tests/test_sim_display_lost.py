@@ -100,6 +100,7 @@ def test_ended_by_a_signal(make_project: MakeProject, screen: VirtualDisplay) ->
     files_written(project, output)
 
 
+@pytest.mark.usefixtures("hangup_ends_programs")
 def test_the_terminal_is_closed(make_project: MakeProject, screen: VirtualDisplay) -> None:
     """Nothing can be said any more, and the system and the shell send a signal each."""
     project = make_project({"robot.py": ROBOT})

@@ -129,6 +129,7 @@ def test_ends_before_the_beginning(arguments: list[str], told: str, make_project
     assert (result.code, result.first_error) == (2, told), result.output
 
 
+@pytest.mark.usefixtures("hangup_ends_programs")
 @pytest.mark.parametrize("name", SIGNALS)
 def test_what_was_driven_is_written_however_it_ends(name: str, make_project) -> None:
     made = make_project({"robot.py": ROBOT})
@@ -185,6 +186,7 @@ def test_a_data_log_for_which_there_is_no_room(make_project) -> None:
     assert "Fatal Python error" not in result.stdout + result.stderr
 
 
+@pytest.mark.usefixtures("hangup_ends_programs")
 @pytest.mark.parametrize("name", SIGNALS)
 def test_interrupted_while_the_robot_is_imported(name: str, make_project) -> None:
     made = make_project({"robot.py": "import time\n\nprint('importing', flush=True)\ntime.sleep(1e6)\n"})
