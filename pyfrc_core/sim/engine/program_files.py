@@ -28,11 +28,12 @@ def program_files(root: Path) -> dict[str, tuple[int, int]]:
 
 
 def keep_no_bytecode_of_new_code(root: Path) -> None:
-    """Stop this process from writing bytecode when a file of the program was saved within the last two seconds.
+    """Stop this process from writing bytecode when a file of the program may be saved again in the same second.
 
-    Python believes that bytecode fits any source of the same size that was saved in the same second. When a file is
-    saved twice within a second, the simulator would continue with the old code.
+    That is one which was saved within the last two seconds, or in the future, because the clock was set back. Python
+    believes that bytecode fits any source of the same size that was saved in the same second. When a file is saved
+    twice within a second, the simulator would continue with the old code.
     """
     newest = max((saved for saved, _ in program_files(root).values()), default=0)
-    if abs(time.time_ns() - newest) < _TWO_SECONDS:
+    if time.time_ns() - newest < _TWO_SECONDS:
         sys.dont_write_bytecode = True
