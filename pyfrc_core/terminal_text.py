@@ -51,8 +51,9 @@ class VisibleStream(io.TextIOBase):
         return self._stream.write(visible(text))
 
     def flush(self) -> None:
-        """Flush the other stream."""
-        self._stream.flush()
+        """Flush the other stream. If that was closed before this one is collected, there is nothing to flush."""
+        if not self._stream.closed:
+            self._stream.flush()
 
 
 def _escape(found: re.Match[str]) -> str:

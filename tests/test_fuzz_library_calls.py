@@ -29,7 +29,7 @@ ROBOT = """
 
 def test_exceptions_in_libraries_show_the_calls_and_differ_by_them(make_project: Any) -> None:
     project = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
-    result = project.run("fuzz", "--seed", "1", "--runs", "8")
+    result = project.run("fuzz", "--seed", "1", "--runs", "16")
     assert result.code == 1
     found = re.findall(r"^ZeroDivisionError: .*", result.stdout, re.MULTILINE)
     wanted = "ZeroDivisionError: division by zero (in {}.execute, called by CommandScheduler.run)"

