@@ -166,7 +166,7 @@ def test_a_rule_that_holds_changes_nothing(make_shared_project) -> None:
     assert traces[0] == traces[1]
 
 
-#: Mistakes in a rule: its head, its body, and what is said of it. Python 3.10 names another line for a decorator's call.
+#: Mistakes in a rule: its head, its body, and what is said of it. Python 3.10 has another line for decorators.
 WRONG = {
     "parameter": (
         "def it_holds(robots):",
