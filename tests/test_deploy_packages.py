@@ -162,7 +162,7 @@ def test_the_imports_of_one_package_are_one_problem(problems: Problems) -> None:
         "drive.py": "import phoenix6\ntry:\n    import phoenix6.signals\nexcept ImportError:\n    pass\n",
     }
     found = problems(files, ("phoenix6", "rev", "typo_a", "typo_b"))
-    assert [str(each).partition(": the robot")[0] for each in found if "typo" not in str(each)] == [
+    assert [str(each).rpartition(": ")[0] for each in found if "typo" not in str(each)] == [
         "arm.py:1: import phoenix6, and 3 more imports",
         "robot.py:3: import rev",
     ]
@@ -213,7 +213,7 @@ def test_a_virtual_robot_gets_what_the_project_asks_for_from_pip(facts: RobotFac
 def test_a_component_s_package_is_known_where_it_is_not_installed(
     problems: Problems, module: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("importlib.metadata.packages_distributions", dict)
+    monkeypatch.setattr("pyfrc_core.deploy.robot_packages.packages_by_module", dict)
     (found,) = problems({"robot.py": f"import {module}\n"}, (module,))
     assert "the robot has no package robotpy-" in found.text
     assert "to components under [tool.robotpy]" in found.remedy

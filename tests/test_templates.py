@@ -13,7 +13,7 @@ import shutil
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterator
-from importlib.metadata import distribution, packages_distributions, version
+from importlib.metadata import distribution, version
 from pathlib import Path
 
 import pytest
@@ -24,6 +24,7 @@ from roborio import Roborio, require_roborio
 from pyfrc_cli.main import COMMANDS
 from pyfrc_core.deploy import session, starting
 from pyfrc_core.deploy.progress import DeployProgress, UserInterface
+from pyfrc_core.deploy.robot_packages import packages_by_module
 from pyfrc_core.deploy.session import DeployOptions
 from pyfrc_core.deploy.target_connection import RobotChoice
 from pyfrc_core.project import find_project
@@ -171,7 +172,7 @@ def _install_real_packages(there: Path) -> None:
         if not spec.submodule_search_locations:
             assert spec.origin is not None
             shutil.copy(spec.origin, there)
-    for name in {each for package in ON_THE_ROBOT for each in packages_distributions().get(package, ())}:
+    for name in {each for package in ON_THE_ROBOT for each in packages_by_module().get(package, ())}:
         for file in distribution(name).files or ():
             if file.name == "METADATA":
                 about = there / file.parent.name

@@ -161,7 +161,7 @@ class ImportSearch:
         if top in sys.stdlib_module_names:
             text = f"Python {facts.python} on the robot has no such module"
             return text, "That Python's library does not have it: use another module."
-        distribution = next(iter(_distributions().get(top, ())), COMPONENT_MODULES.get(top))
+        distribution = next(iter(packages_by_module().get(top, ())), COMPONENT_MODULES.get(top))
         if distribution is None:
             return self._not_ours(module, facts)
         if canonicalize_name(distribution) in facts.packages:
@@ -199,11 +199,19 @@ def _asked_for(module: str) -> Sequence[str]:
 
 
 @cache
-def _distributions() -> Mapping[str, list[str]]:
+def packages_by_module() -> Mapping[str, Sequence[str]]:
     """Return the installed packages by module. Finding them takes a third of a second, so this is done once."""
-    from importlib.metadata import packages_distributions
+    from importlib.metadata import distributions, packages_distributions
 
-    return packages_distributions()
+    if sys.version_info >= (3, 11):
+        return packages_distributions()
+    # Before, it knew only the modules that packages list in a file which WPILib's do not have.
+    found: dict[str, list[str]] = {}
+    for each in distributions():
+        files = [file for file in each.files or () if file.suffix in (".py", ".so", ".pyd")]
+        for name in {file.parts[0].partition(".")[0] for file in files}:
+            found.setdefault(name, []).append(each.metadata["Name"])
+    return found
 
 
 def _is_virtual(facts: RobotFacts) -> bool:

@@ -12,6 +12,7 @@ const STICKS = 6;
 const passedOn = {}; // joystick: what was sent last, target: value
 let names = "";
 let starts = null;
+let polling = false; // once a frame
 
 export function gamepads() {
   return [...(navigator.getGamepads?.() ?? [])].filter((pad) => pad?.connected);
@@ -69,7 +70,8 @@ function atRest(target) {
 }
 
 function poll() {
-  requestAnimationFrame(poll);
+  polling = gamepads().length > 0 || Object.keys(passedOn).length > 0;
+  if (polling) requestAnimationFrame(poll);
   if (!model.hello || model.readonly || model.connection !== "open") return;
   // A robot that was restarted knows nothing of what was passed on.
   if (model.status.starts !== starts && model.status.state !== "starting") {
@@ -113,7 +115,12 @@ function rumble() {
   }
 }
 
+// A page that asks for frames without a gamepad would keep the browser busy while nothing changes.
+function look() {
+  if (!polling) poll();
+  rumble();
+}
+
 export function startGamepads() {
-  requestAnimationFrame(poll);
-  setInterval(rumble, 100);
+  setInterval(look, 100);
 }
