@@ -302,16 +302,18 @@ made = [
 handle = hs.getSimDeviceHandle("Arm")
 memory = value_memory(handle)
 names = {hs.getSimValueHandle(handle, name): name for name in "dileb"}
-print({names[value]: place.value for value, place in memory.items()})
+print({names[value]: place.number.value for value, place in memory.items()})
 more = [device.createDouble(f"more {number}", 0, 0.0) for number in range(500)]
 others = [hal.SimDevice(f"Other {number}") for number in range(200)]
 made[0].set(-0.0), made[1].set(7), made[2].set(-1 << 40), made[3].set(1), made[4].set(False)
-print({names[value]: place.value for value, place in memory.items()})
+print(all(place.bits.value == place.bits_of(place.number.value) for place in memory.values()))
+print({names[value]: place.number.value for value, place in memory.items()})
 made[0].reset()
-print({names[value]: place.value for value, place in memory.items()}["d"])
+print({names[value]: place.number.value for value, place in memory.items()}["d"])
 """
     expected = [
         str({"d": 1.5, "i": -2, "l": 1 << 40, "e": 2}),
+        "True",
         str({"d": -0.0, "i": 7, "l": -1 << 40, "e": 1}),
         "0.0",
     ]

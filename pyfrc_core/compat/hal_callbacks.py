@@ -155,15 +155,19 @@ class WriteFlags:
         now = self._view.tobytes()
         if now == self._before:
             return []
-        flags, words, kept = self._view, self._words, self._kept
-        found = memoryview(now).cast("P")
+        flags, before, words, kept = self._view, self._before, self._words, self._kept
+        found, size = memoryview(now).cast("P"), self._view.itemsize * _COMPARED
         written = []
-        for position in compress(count(), map(ne, found, words)):
-            if position in kept:
-                words[position] = found[position]  # always the same, so this is its first write since `keep`
-            else:
-                flags[position] = 0  # not all: another one may have been set meanwhile
-                written.append(position)
+        for first, begin in enumerate(range(0, len(now), size)):
+            if now[begin : begin + size] == before[begin : begin + size]:
+                continue
+            some = slice(first * _COMPARED, (first + 1) * _COMPARED)
+            for position in compress(count(some.start), map(ne, found[some], words[some])):
+                if position in kept:
+                    words[position] = found[position]  # always the same, so this is its first write since `keep`
+                else:
+                    flags[position] = 0  # not all: another one may have been set meanwhile
+                    written.append(position)
         return written
 
     def keep(self, positions: Iterable[int]) -> None:
@@ -181,6 +185,9 @@ class WriteFlags:
             _cancel(*self._registered.pop())
         _FLAGS.pop(ctypes.addressof(self._flags), None)
 
+
+#: How many flags are compared at once. Few have been set since the last look, among hundreds.
+_COMPARED = 32
 
 #: The memory of flags that are not closed, by its address: the HAL may still write there.
 _FLAGS: dict[int, object] = {}

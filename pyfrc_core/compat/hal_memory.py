@@ -9,7 +9,8 @@ needs.
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any, TypeAlias
+import struct
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import hal
 
@@ -18,7 +19,25 @@ from .wpilib_private import NATIVE_HAL
 if TYPE_CHECKING:
     _Place: TypeAlias = "ctypes._Pointer[_Value]"
 
-Memory = ctypes.c_double | ctypes.c_int32 | ctypes.c_int64
+_Number = ctypes.c_double | ctypes.c_int32 | ctypes.c_int64
+
+
+class NumberMemory(NamedTuple):
+    """The memory of one number.
+
+    :param number: the number
+    :param bits: the same memory as an integer, by which two numbers can be compared: 0.0 and -0.0 differ in it, and
+        NaN does not differ from itself
+    """
+
+    number: _Number
+    bits: ctypes.c_int32 | ctypes.c_int64
+
+    def bits_of(self, number: float) -> int:
+        """Return what `bits` has if the memory has this number."""
+        if isinstance(self.number, ctypes.c_double):
+            return int(struct.unpack("=q", struct.pack("=d", number))[0])
+        return int(number)
 
 
 class _Value(ctypes.Structure):
@@ -32,22 +51,23 @@ _CALLBACK: Any = ctypes.CFUNCTYPE(
 )
 
 
-def value_memory(device: int) -> dict[int, Memory]:
+def value_memory(device: int) -> dict[int, NumberMemory]:
     """Return the memory of each number of the SimDevice with this handle, by the handle of the value.
 
     It may be read until the device is freed.
     """
-    kinds: dict[int, type[Memory]] = {
-        int(hal.Type.DOUBLE): ctypes.c_double,
-        int(hal.Type.INT): ctypes.c_int32,
-        int(hal.Type.ENUM): ctypes.c_int32,
-        int(hal.Type.LONG): ctypes.c_int64,
+    kinds: dict[int, tuple[type[_Number], type[ctypes.c_int32 | ctypes.c_int64]]] = {
+        int(hal.Type.DOUBLE): (ctypes.c_double, ctypes.c_int64),
+        int(hal.Type.INT): (ctypes.c_int32, ctypes.c_int32),
+        int(hal.Type.ENUM): (ctypes.c_int32, ctypes.c_int32),
+        int(hal.Type.LONG): (ctypes.c_int64, ctypes.c_int64),
     }
-    found: dict[int, Memory] = {}
+    found: dict[int, NumberMemory] = {}
 
     def note(_name: bytes, _parameter: object, handle: int, _direction: int, place: _Place) -> None:
         if kind := kinds.get(place.contents.type):
-            found[handle] = kind.from_address(ctypes.addressof(place.contents))
+            at, (number, bits) = ctypes.addressof(place.contents), kind
+            found[handle] = NumberMemory(number.from_address(at), bits.from_address(at))
 
     NATIVE_HAL.find().HALSIM_EnumerateSimValues(device, None, _CALLBACK(note))
     return found

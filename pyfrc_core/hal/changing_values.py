@@ -7,16 +7,15 @@ report are read at each look: there are few.
 
 from __future__ import annotations
 
-import marshal
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
-from itertools import compress, count
+from itertools import compress
 from math import copysign
 from operator import ne
 from typing import Any, NamedTuple
 
 from ..compat.hal_callbacks import Report, WriteFlags, resets
-from ..compat.hal_memory import Memory, value_memory
+from ..compat.hal_memory import NumberMemory, value_memory
 
 #: How many looks decide which values are written often, and for how many looks this holds: five seconds.
 _CHOOSING_LOOKS, _LOOKS_BETWEEN = 3, 250
@@ -94,18 +93,9 @@ class ChangingValues:
         """Read what may have changed into `values`; return the positions of the changed values, in order."""
         changed = self._read_written(values)
         for position in self._unreported:
-            self._read(position, values, changed)
+            _read(position, self._leaves, self._found, values, changed)
         changed.sort()
         return changed
-
-    def _read(self, position: int, values: list[Any], changed: list[int]) -> None:
-        """Read one value; if it has changed, add its position to `changed`."""
-        leaf, found = self._leaves[position], self._found
-        old, new = found[position], leaf.read()
-        if (old != new and new == new) or not same(old, new):  # NaN differs from itself
-            found[position] = new
-            values[position] = _converted(leaf, new)
-            changed.append(position)
 
     def _read_written(self, values: list[Any]) -> list[int]:
         looks_left, flags, changed = self._looks_left, self._flags, []
@@ -119,7 +109,7 @@ class ChangingValues:
         if written:
             for number in written:
                 for position in self._reported[number]:
-                    self._read(position, values, changed)
+                    _read(position, self._leaves, self._found, values, changed)
             if not looks_left:
                 self._choose(written)
         return changed
@@ -135,7 +125,7 @@ class ChangingValues:
             self._chosen, self._choosing, self._looks_left = set(), _CHOOSING_LOOKS, _LOOKS_BETWEEN
 
     @cached_property
-    def _memory(self) -> dict[tuple[Report, ...], Memory]:
+    def _memory(self) -> dict[tuple[Report, ...], NumberMemory]:
         """Where the HAL keeps values of SimDevices."""
         return {
             (Report("SimValueChanged", (value,)),): memory
@@ -148,12 +138,22 @@ class ChangingValues:
         self._flags.close()
 
 
+def _read(position: int, leaves: Sequence[Leaf], found: list[Any], values: list[Any], changed: list[int]) -> None:
+    """Read one value; if it has changed, add its position to `changed`."""
+    leaf, old = leaves[position], found[position]
+    new = leaf.read()
+    if old == new:
+        if (new and type(new) in _SCALARS) or same(old, new):  # 0.0 and -0.0 are equal, and not the same
+            return
+    elif new != new and same(old, new):  # NaN differs from itself
+        return
+    found[position] = new
+    values[position] = _converted(leaf, new)
+    changed.append(position)
+
+
 def _converted(leaf: Leaf, found: Any) -> Any:
     return found if leaf.convert is None else leaf.convert(found)
-
-
-#: -0.0 in the format of `marshal`.
-_MINUS_ZERO = marshal.dumps(-0.0, 2)
 
 
 class _OftenWritten:
@@ -170,51 +170,32 @@ class _OftenWritten:
         positions: Iterable[int],
         leaves: Sequence[Leaf],
         found: list[Any],
-        memory: Mapping[tuple[Report, ...], Memory],
+        memory: Mapping[tuple[Report, ...], NumberMemory],
     ) -> None:
-        in_memory, others = {}, []
+        self._leaves, self._found = leaves, found
+        #: Positions with the memory of their numbers, and of the bits by which these are compared.
+        self._numbers: list[tuple[int, NumberMemory]] = []
+        #: The positions of all others.
+        self._others: list[int] = []
         for position in positions:
             leaf = leaves[position]
             place = memory.get(leaf.reports)
             # What is at this address has to be what the HAL returns.
-            if place is not None and same(place.value, leaf.read()):
-                in_memory[position] = place
+            if place is not None and same(place.number.value, leaf.read()):
+                self._numbers.append((position, place))
             else:
-                others.append(position)
-        self._found = found
-        self._positions = [*in_memory, *others]
-        self._memory = list(in_memory.values())
-        self._reads = [leaves[position].read for position in others]
-        converts = {position: leaves[position].convert for position in others}
-        self._converts = {position: convert for position, convert in converts.items() if convert is not None}
-        self._last = [found[position] for position in self._positions]
-        #: Which of them were -0.0.
-        self._minus_zeros = _minus_zeros(self._last)
+                self._others.append(position)
+        self._bits = [place.bits for _, place in self._numbers]
+        self._last = [place.bits_of(found[position]) for position, place in self._numbers]
 
     def read_all(self, values: list[Any]) -> list[int]:
         """Update `values`; return the positions of those that have changed."""
-        last, positions, found = self._last, self._positions, self._found
-        now = [place.value for place in self._memory]
-        now += [read() for read in self._reads]
-        self._last = now
-        places = compress(count(), map(ne, last, now))
-        changed = [at for at in places if now[at] == now[at] or not same(last[at], now[at])]  # NaN differs from itself
-        # What is left is equal, but 0.0 and -0.0 are not the same.
-        before, self._minus_zeros = self._minus_zeros, _minus_zeros(now)
-        changed += [at for at in before ^ self._minus_zeros if last[at] == now[at]]
-        result = []
-        for at in changed:
-            position = positions[at]
-            found[position] = values[position] = now[at]
-            result.append(position)
-        for position in self._converts.keys() & result if self._converts else ():
-            values[position] = self._converts[position](found[position])
-        return result
-
-
-def _minus_zeros(values: list[Any]) -> frozenset[int]:
-    """Return the positions of -0.0."""
-    if _MINUS_ZERO not in marshal.dumps(values, 2):
-        return frozenset()
-    zeros = [at for at, value in enumerate(values) if not value]
-    return frozenset(at for at in zeros if type(values[at]) is float and copysign(1, values[at]) < 0)
+        found, changed = self._found, []
+        last, self._last = self._last, [bits.value for bits in self._bits]
+        # A thread that writes after its bits were read changes them: the next look reads that number again.
+        for position, place in compress(self._numbers, map(ne, last, self._last)):
+            found[position] = values[position] = place.number.value
+            changed.append(position)
+        for position in self._others:
+            _read(position, self._leaves, found, values, changed)
+        return changed
