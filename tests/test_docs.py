@@ -125,8 +125,8 @@ def test_the_examples_in_the_fuzzing_guide_work(make_project) -> None:
             assert result.code == 1, result.output
         if "--runs" in command:
             *lines, last = result.stdout.splitlines()
-            told = [line for line in lines if not re.match(r"[\d,]+ match", line)]  # how far it was by then
-            example, found = blocks(document, "text")[0], "\n".join([*told, last])
+            findings = [line for line in lines if not re.match(r"[\d,]+ match", line)]  # without how far it was by then
+            example, found = blocks(document, "text")[0], "\n".join([*findings, last])
             # Another Python may need matches of another length to find it.
             assert re.sub(HOURS, "N h", found) in re.sub(HOURS, "N h", example), result.output
     robot = project.path / "robot.py"

@@ -155,14 +155,14 @@ class WriteFlags:
         now = self._view.tobytes()
         if now == self._before:
             return []
-        flags, before, words, kept = self._view, self._before, self._words, self._kept
-        found, size = memoryview(now).cast("P"), self._view.itemsize * _COMPARED
+        flags, words, kept = self._view, self._words, self._kept
+        found = memoryview(now).cast("P")
         written = []
-        for first, begin in enumerate(range(0, len(now), size)):
-            if now[begin : begin + size] == before[begin : begin + size]:
+        for first in range(0, len(found), _COMPARED):
+            some = slice(first, first + _COMPARED)
+            if found[some] == words[some]:
                 continue
-            some = slice(first * _COMPARED, (first + 1) * _COMPARED)
-            for position in compress(count(some.start), map(ne, found[some], words[some])):
+            for position in compress(count(first), map(ne, found[some], words[some])):
                 if position in kept:
                     words[position] = found[position]  # always the same, so this is its first write since `keep`
                 else:

@@ -9,7 +9,6 @@ needs.
 from __future__ import annotations
 
 import ctypes
-import struct
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import hal
@@ -35,9 +34,8 @@ class NumberMemory(NamedTuple):
 
     def bits_of(self, number: float) -> int:
         """Return what `bits` has if the memory has this number."""
-        if isinstance(self.number, ctypes.c_double):
-            return int(struct.unpack("=q", struct.pack("=d", number))[0])
-        return int(number)
+        kind: Any = type(self.number)
+        return type(self.bits).from_buffer(kind(number)).value
 
 
 class _Value(ctypes.Structure):
