@@ -15,6 +15,7 @@ import pytest
 from roborio import Proxy, Roborio, require_roborio
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from roborio.machine import WAITS_FOR_PERMISSION
 
 from pyfrc_core.deploy import session
 from pyfrc_core.deploy.agent import serve, wire
@@ -241,7 +242,8 @@ def test_a_deploy_that_is_interrupted_before_the_start_explains_the_state(
     require_roborio()
     monkeypatch.setenv("SSH_AUTH_SOCK", "")
     project = find_project(make_project({"robot.py": ROBOT_PY}).path)
-    with Roborio(wpilib=version("wpilib")) as robot:
+    with Roborio(wpilib=version("wpilib"), kill_script=WAITS_FOR_PERMISSION) as robot:
+        hold = robot.home / "hold"
 
         def deploy_by(where: str, progress: DeployProgress) -> None:
             options = DeployOptions(choice=RobotChoice(robot=where), skip_tests=True)
@@ -249,7 +251,9 @@ def test_a_deploy_that_is_interrupted_before_the_start_explains_the_state(
 
         with pytest.raises(StoppedError, match=r"interrupted; release 1 is on the robot"):
             deploy_by(robot.where, Cutting(interrupt))
+        hold.touch()  # or the robot may report its start before the link is cut
         with contextlib.ExitStack() as link:
+            link.callback(hold.unlink)
             proxy = link.enter_context(Proxy((robot.host, robot.port)))
             what = r"connection to the robot was lost: .*; release 1 is on the robot"
             with pytest.raises(ConnectionFailedError, match=what) as caught:

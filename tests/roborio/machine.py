@@ -28,6 +28,7 @@ LVUSER, NI = 500, 500
 #: Files to take for ``frcKillRobot.sh``; the default one, which takes no time, is in files/.
 TAKES_TWO_SECONDS = HERE / "kill_scripts/takes_two_seconds.sh"
 LETS_PROGRAMS_SURVIVE = HERE / "kill_scripts/lets_programs_survive.sh"
+WAITS_FOR_PERMISSION = HERE / "kill_scripts/waits_for_permission.sh"
 _PASSWD = """\
 root:x:0:0::/:/usr/sbin/nologin
 admin:{password}:0:0::/home/admin:/bin/bash
