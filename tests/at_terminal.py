@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from collections.abc import Sequence
-from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from conftest import RobotProject
 
 
-def run_at_terminal(directory: Path, args: Sequence[str], answers: Sequence[tuple[str, str]]) -> tuple[int, str]:
+def run_at_terminal(project: RobotProject, args: Sequence[str], answers: Sequence[tuple[str, str]]) -> tuple[int, str]:
     """Run it; its exit code, and all that the terminal has shown.
 
     :param answers: what is typed when the terminal has shown a text, in this order
@@ -17,18 +18,7 @@ def run_at_terminal(directory: Path, args: Sequence[str], answers: Sequence[tupl
     import pty
 
     ours, theirs = pty.openpty()
-    environment = {**os.environ, "COLUMNS": "120", "TERM": "xterm", "PYTHONHASHSEED": "0"}
-    for name in ("CI", "SSH_AUTH_SOCK"):
-        environment.pop(name, None)
-    process = subprocess.Popen(
-        [sys.executable, "-m", "pyfrc", *args],
-        cwd=directory,
-        env=environment,
-        stdin=theirs,
-        stdout=theirs,
-        stderr=theirs,
-        start_new_session=True,
-    )
+    command = project.start_with([theirs] * 3, *args, env={"TERM": "xterm", "SSH_AUTH_SOCK": ""})
     os.close(theirs)
     shown, searched, waiting = "", 0, list(answers)
     while True:
@@ -43,6 +33,6 @@ def run_at_terminal(directory: Path, args: Sequence[str], answers: Sequence[tupl
             searched = place + len(waiting[0][0])
             os.write(ours, waiting.pop(0)[1].encode() + b"\n")
     os.close(ours)
-    code = process.wait()
+    code = command.wait()
     assert not waiting, f"never shown: {waiting[0][0]!r}, but:\n{shown}"
     return code, shown.replace("\r\n", "\n")

@@ -13,7 +13,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
@@ -22,12 +22,14 @@ from typing import TYPE_CHECKING
 import pytest
 import warm_start
 from hypothesis import HealthCheck, settings
+from started_commands import How, StartedCommand, start_command, start_process
 
 if TYPE_CHECKING:
     from roborio.local import Agents
     from warm_processes import StartInterpreter, WarmProcesses
 
     from pyfrc_core.config.sim_file import LoadedSimConfig
+    from pyfrc_core.processes.spawn import Interpreter
 
 # What would make a run here differ from the user's: the outer pytest's settings, measurements, colours.
 _NOT_PASSED_ON = ("COVERAGE_", "PYTEST_", "COV_CORE_")
@@ -256,18 +258,9 @@ class RobotProject:
         :param cold: in a new interpreter, even where a warm start does the same
         """
         arguments = [str(argument) for argument in args]
-        environment = _environment() | {"TMPDIR": str(self.temporary), "TEMP": str(self.temporary)}
-        if arguments[:1] == ["fuzz"]:
-            # With more processes, shrinking runs scripts that it does not need then: a third more processor time. What
-            # is found is the same. Tests that are about the number pass it.
-            environment["PYTHON_CPU_COUNT"] = "1"
-        environment |= dict(env or {})
-        if (
-            warm_start.POSSIBLE
-            and not cold
-            and program in _WARM
-            and (warm := _warm_starts()).fit(self.path, environment)
-        ):
+        environment = self._environment(arguments, env)
+        warm = None if cold else self._warm_starts(program, environment)
+        if warm is not None:
             address = _warm_processes().address
             return Result(*warm.run(program, arguments, cwd or self.path, environment, stdin, address))
         done = subprocess.run(
@@ -282,6 +275,48 @@ class RobotProject:
             check=False,
         )
         return Result(done.returncode, done.stdout, done.stderr)
+
+    def start(
+        self, *args: str | Path, env: Mapping[str, str] | None = None, stdin: int | None = None, apart: bool = False
+    ) -> StartedCommand:
+        """Start ``pyfrc`` as `run` does, and let it go on.
+
+        :param stdin: a descriptor of its input; by default, it has none
+        :param apart: whether its errors are not among what it prints
+        """
+        return start_command(lambda streams: self.start_with(streams, *args, env=env), stdin, apart)
+
+    def start_with(
+        self, streams: Sequence[int], *args: str | Path, env: Mapping[str, str] | None = None
+    ) -> Interpreter:
+        """Start ``pyfrc`` with these descriptors as its standard input, output and errors.
+
+        It is in a session of its own: Ctrl-C at this terminal is for pytest, which ends it.
+        """
+        arguments = [str(argument) for argument in args]
+        environment = self._environment(arguments, env)
+        start_warm = None
+        if (warm := self._warm_starts("pyfrc", environment)) is not None:
+            from warm_processes import ask_for_command
+
+            start_warm = functools.partial(ask_for_command, warm.address, _warm_processes().address)
+        how = How(self.path, environment, streams, own_session=True)
+        return start_process(start_warm, "pyfrc", arguments, how)
+
+    def _environment(self, arguments: Sequence[str], env: Mapping[str, str] | None) -> dict[str, str]:
+        environment = _environment() | {"TMPDIR": str(self.temporary), "TEMP": str(self.temporary)}
+        if arguments[:1] == ["fuzz"]:
+            # With more processes, shrinking runs scripts that it does not need then: a third more processor time. What
+            # is found is the same. Tests that are about the number pass it.
+            environment["PYTHON_CPU_COUNT"] = "1"
+        return environment | dict(env or {})
+
+    def _warm_starts(self, program: str, environment: Mapping[str, str]) -> warm_start.WarmStarts | None:
+        """Return what starts the program warm, if that does the same."""
+        if not warm_start.POSSIBLE or program not in _WARM:
+            return None
+        warm = _warm_starts()
+        return warm if warm.fit(self.path, environment) else None
 
     def pytest(self, *args: str | Path, cwd: Path | None = None, env: Mapping[str, str] | None = None) -> Result:
         """Run plain ``pytest``, as an editor does."""

@@ -129,7 +129,7 @@ def test_a_new_user_comes_to_a_running_program_with_one_command_and_one_question
     project = make_project({})
     assert project.run("init").code == 0
     with driver_station(robot):
-        code, shown = run_at_terminal(project.path, ["deploy"], [("What is your team number?", "9999")])
+        code, shown = run_at_terminal(project, ["deploy"], [("What is your team number?", "9999")])
         assert code == 0, shown
         assert len(re.findall(r"\w\?", shown)) == 1, shown
         robot.said("Robot program startup complete")
@@ -259,7 +259,7 @@ def test_at_a_terminal_the_way_back_is_offered(robot: Roborio, make_project) -> 
     assert deploy(project, robot).code == 0
     project.write(program(2, DIES))
     args = ["deploy", "--skip-tests", "--robot", robot.where]
-    code, shown = run_at_terminal(project.path, args, [("Go back to release 1?", "y")])
+    code, shown = run_at_terminal(project, args, [("Go back to release 1?", "y")])
     assert code == 3, shown
     assert "release 1 runs again" in shown
     assert "number 1" in code_on(robot)
@@ -336,7 +336,7 @@ def test_undeploying_has_to_be_meant(robot: Roborio, make_project) -> None:
     assert deploy(project, robot).code == 0
     result = deploy(project, robot, command="undeploy")
     assert (result.code, "--yes" in result.stderr) == (2, True)
-    code, shown = run_at_terminal(project.path, ["undeploy", "--robot", robot.where], [("Continue?", "n")])
+    code, shown = run_at_terminal(project, ["undeploy", "--robot", robot.where], [("Continue?", "n")])
     assert (code, "nothing was removed" in shown) == (1, True)
     assert "number 1" in code_on(robot)
     result = deploy(project, robot, "--yes", "--json", command="undeploy")
@@ -359,7 +359,7 @@ def test_a_failing_test_prevents_the_deploy_unless_the_user_confirms(robot: Robo
     assert not (robot.home / "py").exists()
     for answer, expected in (("n", 1), ("y", 0)):
         args = ["deploy", "--robot", robot.where]
-        code, shown = run_at_terminal(project.path, args, [("Deploy anyway?", answer)])
+        code, shown = run_at_terminal(project, args, [("Deploy anyway?", answer)])
         assert code == expected, shown
     assert "number 1" in code_on(robot)
 
@@ -568,16 +568,14 @@ def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) ->
     (project.path / "noise.bin").write_bytes(os.urandom(3_000_000))
     with Proxy((robot.host, robot.port), rate=25_000) as proxy:
         where = f"{proxy.host}:{proxy.port}"
-        command = [sys.executable, "-m", "pyfrc", "deploy", "--skip-tests", "--large", "--robot", where]
-        command += ["--json"] * as_json
-        pipe = subprocess.PIPE
-        with subprocess.Popen(command, cwd=project.path, stdout=pipe, stderr=pipe, text=True) as process:
+        words = ["deploy", "--skip-tests", "--large", "--robot", where, *["--json"] * as_json]
+        with project.start(*words, apart=True) as command:
             while proxy.bytes_to_robot < 40_000:  # until it is in the middle of it
-                assert process.poll() is None
+                assert command.poll() is None
                 threading.Event().wait(0.01)
-            process.send_signal(signal.SIGINT)
-            output, errors = process.communicate()
-    assert process.returncode == 2
+            command.send_signal(signal.SIGINT)
+            output, errors = command.rest()
+            assert command.wait() == 2
     assert errors.strip() == "interrupted"
     if as_json:
         last = json.loads(output.splitlines()[-1])

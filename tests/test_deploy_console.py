@@ -8,8 +8,6 @@ import re
 import signal
 import socket
 import struct
-import subprocess
-import sys
 import threading
 from collections.abc import Callable, Iterator
 
@@ -17,6 +15,7 @@ import pytest
 from ports import address_without_servers, refusing_port
 from roborio import PATIENCE, Roborio
 from roborio.fixtures import roborio  # noqa: F401 - `robot`
+from started_commands import StartedCommand
 
 import pyfrc_core.deploy.console
 from pyfrc_core.deploy.discovery import Address
@@ -35,31 +34,22 @@ class MyRobot(wpilib.TimedRobot):
 
 
 @contextlib.contextmanager
-def running(project, *args: str) -> Iterator[subprocess.Popen[str]]:
+def running(project, *args: str) -> Iterator[StartedCommand]:
     """The command, ended by Ctrl-C at the end; one that hangs is killed before it holds up the suite."""
-    command = [sys.executable, "-m", "pyfrc", *args]
-    with subprocess.Popen(
-        command,
-        cwd=project.path,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,  # has the reports about the connection
-        text=True,
-    ) as it:
+    with project.start(*args) as it:
         guard = threading.Timer(2 * PATIENCE, it.kill)
         guard.start()
         try:
             yield it
         finally:
             it.send_signal(signal.SIGINT)
-            it.communicate()
+            it.rest()
             guard.cancel()
 
 
-def wait_for(process: subprocess.Popen[str], text: str) -> None:
-    assert process.stdout is not None
+def wait_for(command: StartedCommand, text: str) -> None:
     shown = []
-    for line in process.stdout:
+    for line in command.stdout:
         shown.append(line)
         if text in line:
             return
@@ -79,7 +69,7 @@ def test_the_console_shows_what_the_program_prints_and_connects_again(option, ro
         wait_for(console, "connected to")
         assert project.run("deploy", "--skip-tests", "--robot", robot.where).code == 0
         wait_for(console, "the words of our robot")
-    assert console.returncode == 0
+    assert console.wait() == 0
 
 
 def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> None:
@@ -89,7 +79,7 @@ def test_the_console_waits_for_a_robot_that_is_not_there_yet(make_project) -> No
         with running(project, "console", "--robot", host, *option) as console:
             port = 1740 if option else 1741
             wait_for(console, f"{host}:{port} refuses the connection: check the address, and that the robot is on")
-        assert console.returncode == 0
+        assert console.wait() == 0
 
 
 class ConsoleServer:
@@ -256,4 +246,4 @@ def test_a_deploy_may_end_in_the_console(option: str, robot: Roborio, make_proje
         wait_for(deploying, "connected to")
         robot.run("/usr/local/frc/bin/frcKillRobot.sh", "-t", "-r")
         wait_for(deploying, "the words of our robot")
-    assert deploying.returncode == 0
+    assert deploying.wait() == 0

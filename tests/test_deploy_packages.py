@@ -342,7 +342,7 @@ def test_a_missing_package_is_named_while_the_old_program_runs_on(roborio: Robor
 def test_deploying_all_the_same(roborio: Roborio, make_project) -> None:
     project = make_project({"robot.py": ROBOT.format(imports="import commands2")})
     code, shown = run_at_terminal(
-        project.path,
+        project,
         ["deploy", "--skip-tests", "--robot", roborio.where],
         [("no package robotpy-commands-v2. Deploy anyway?", "y")],
     )

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 import signal
-import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
@@ -297,16 +295,13 @@ def test_an_interrupted_campaign_keeps_what_was_found_and_nothing_else(make_proj
     project = make_project({"robot.py": FAULTY.format("1 / self.motor.get()")})
     temporary = tmp_path / "of the campaign"
     temporary.mkdir()
-    environment = {**os.environ, "PYTHONHASHSEED": "0", "TMPDIR": str(temporary)}
-    command = [sys.executable, "-m", "pyfrc", "fuzz", "--time", "1000"]
-    with subprocess.Popen(command, cwd=project.path, env=environment, stdout=subprocess.PIPE, text=True) as campaign:
-        assert campaign.stdout is not None
+    with project.start("fuzz", "--time", "1000", "-j", "2", env={"TMPDIR": str(temporary)}) as campaign:
         lines = []
         for line in campaign.stdout:
             lines.append(line)
             if "pyfrc replay" in line:
                 campaign.send_signal(getattr(signal, name))
-    assert campaign.returncode == 1
+        assert campaign.wait() == 1
     assert lines[-1] == "interrupted\n"
     assert not list(temporary.iterdir())
     assert "fuzz/zerodivisionerror-robot-autonomousperiodic.jsonl" in kept(project)

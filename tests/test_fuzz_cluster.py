@@ -11,17 +11,17 @@ import threading
 from collections.abc import Generator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import pytest
 from skips import require
-from warm_cluster import Started, Starts
+from started_commands import StartedCommand
+from warm_cluster import Starts
 
 from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.fuzz import cluster as cluster_module
 from pyfrc_core.fuzz.cluster import ClusterError, ClusterMatchExecutor, open_cluster_executor
 from pyfrc_core.fuzz.match import ReplayTask
-from pyfrc_core.processes.spawn import Interpreter
 from pyfrc_core.project.locate import find_project
 from pyfrc_core.runtime.scripts.script import InputScript
 
@@ -72,13 +72,13 @@ class Cluster:
     def __init__(self, directory: Path, starts: Starts) -> None:
         self._directory = directory
         self._starts = starts
-        self._processes: list[Interpreter] = []
-        self._workers: list[tuple[Interpreter, Path]] = []
+        self._processes: list[StartedCommand] = []
+        self._workers: list[tuple[StartedCommand, Path]] = []
         self.scheduler, (self.address,) = self._start(
             [*SCHEDULER, "--host", "127.0.0.1", "--port", "0", "--no-dashboard"], r"Scheduler at: +(\S+)"
         )
 
-    def add_worker(self, env: Mapping[str, str] | None = None) -> Interpreter:
+    def add_worker(self, env: Mapping[str, str] | None = None) -> StartedCommand:
         """Start a worker with one thread, and wait until the scheduler knows it."""
         command = [self.address if each.startswith("tcp://") else each for each in WORKER]
         own = self._directory / str(len(self._workers))
@@ -93,17 +93,17 @@ class Cluster:
 
     def _start(
         self, command: list[str], ready: str, env: Mapping[str, str] | None = None
-    ) -> tuple[Interpreter, tuple[str, ...]]:
+    ) -> tuple[StartedCommand, tuple[str, ...]]:
         assert command[0] == "dask"
-        process, stdout, stderr = self._starts.start("dask", command[1:], self._directory, env)
-        self._processes.append(process)
+        started = self._starts.start("dask", command[1:], self._directory, env)
+        self._processes.append(started)
+        assert started.stderr is not None
         log = ""
-        for line in stderr:
+        for line in started.stderr:
             log += line
             if (found := re.search(ready, line)) is not None:
-                for stream in (stdout, stderr):
-                    threading.Thread(target=_read_all, args=[stream], daemon=True).start()
-                return process, found.groups()
+                threading.Thread(target=started.rest, daemon=True).start()
+                return started, found.groups()
         raise AssertionError(log)
 
     def close(self) -> None:
@@ -111,11 +111,6 @@ class Cluster:
             process.kill()
         for process in self._processes:
             process.wait()
-
-
-def _read_all(stream: IO[str]) -> None:
-    with stream:
-        stream.read()
 
 
 @pytest.fixture(scope="module")
@@ -207,22 +202,22 @@ def test_matches_whose_process_dies_are_played_again(
     another.wait()
 
 
-def _begin(starts: Starts, project: Any, *options: str) -> Started:
+def _begin(starts: Starts, project: Any, *options: str) -> StartedCommand:
     """Begin a long campaign, and return it when it has found something."""
     arguments = ["fuzz", "--seed", "1", "--runs", "100000", *options]
     campaign = starts.start("pyfrc", arguments, project.path, {"PYTHONHASHSEED": "0"})
     for line in campaign.stdout:
         if "pyfrc replay" in line:
             return campaign
-    raise AssertionError(campaign.stderr.read())
+    raise AssertionError(campaign.rest())
 
 
 def test_ctrl_c_keeps_what_was_found(cluster: Cluster, starts: Starts, make_shared_project) -> None:
     project = copy(make_shared_project)
     campaign = _begin(starts, project, "--scheduler", cluster.address)
-    os.kill(campaign.process.pid, signal.SIGINT)
-    stdout, stderr = campaign.stdout.read(), campaign.stderr.read()
-    assert (campaign.process.wait(), stderr) == (1, ""), stdout
+    campaign.send_signal(signal.SIGINT)
+    stdout, stderr = campaign.rest()
+    assert (campaign.wait(), stderr) == (1, ""), stdout
     assert "interrupted" in stdout
     assert list(project.path.rglob("tests/fuzz/*.jsonl"))
     assert cluster.left_on_workers() == []
@@ -233,9 +228,8 @@ def test_a_scheduler_that_is_lost(own_cluster: Cluster, starts: Starts, make_sha
     project = copy(make_shared_project)
     campaign = _begin(starts, project, "--scheduler", own_cluster.address)
     own_cluster.scheduler.kill()
-    campaign.stdout.read()
-    stderr = campaign.stderr.read()
-    assert campaign.process.wait() == 1
+    _, stderr = campaign.rest()
+    assert campaign.wait() == 1
     assert stderr == f"error: the connection to the scheduler at {own_cluster.address} was lost\n"
     assert list(project.path.rglob("tests/fuzz/*.jsonl"))
 

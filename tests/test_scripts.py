@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import signal
-import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -444,17 +443,12 @@ def test_a_robot_with_a_loop_of_its_own_may_not_exit_either(make_project) -> Non
 def test_ctrl_c_ends_a_replay(make_project) -> None:
     robot = EXITING.format("print('here', flush=True)\n            while True: pass")
     project = make_project({"robot.py": robot, "script.jsonl": text({"t": 0, "set": {"mode": "autonomous"}})})
-    command = [sys.executable, "-m", "pyfrc", "replay", "script.jsonl"]
-    with subprocess.Popen(
-        command, cwd=project.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
-        assert process.stdout is not None
-        assert process.stderr is not None
-        while process.stdout.readline() != "here\n":
-            assert process.poll() is None
-        process.send_signal(signal.SIGINT)
-        said = process.stderr.read()
-    assert (process.returncode, said.splitlines()[-1:]) == (2, ["interrupted"]), said
+    with project.start("replay", "script.jsonl", apart=True) as command:
+        while command.stdout.readline() != "here\n":
+            assert command.poll() is None
+        command.send_signal(signal.SIGINT)
+        _, said = command.rest()
+        assert (command.wait(), said.splitlines()[-1:]) == (2, ["interrupted"]), said
 
 
 values = st.booleans() | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=9) | st.integers(-9, 9)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 import webbrowser
 from types import SimpleNamespace
 
 import pytest
 from browsers import NO_BROWSER
-from sim_robots import FILES, PATIENCE, lines_until
+from sim_robots import FILES, lines_until
 
 from pyfrc_core import browser
 from pyfrc_core.browser import open_in_browser, why_no_browser
@@ -99,17 +98,8 @@ def test_a_script_without_a_person_gets_no_page(make_project) -> None:
     """It would wait for a person forever."""
     made = make_project(FILES)
     for variables, why in (({}, "there is no display, and no terminal"), ({"CI": "true"}, "CI is set")):
-        done = subprocess.run(
-            [sys.executable, "-m", "pyfrc", "sim", "--seconds", "0.1"],
-            cwd=made.path,
-            env={**os.environ, **NO_BROWSER, **variables},
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=PATIENCE,
-        )
-        assert done.returncode == 0, done.stdout + done.stderr
+        done = made.run("sim", "--seconds", "0.1", env={**NO_BROWSER, **variables})
+        assert done.code == 0, done.output
         assert f"No page: {why}. This is --ui none." in done.stdout
         assert "simulated 0.1" in done.stdout
 
@@ -120,15 +110,7 @@ def test_a_person_without_a_browser_gets_the_address(make_project) -> None:
 
     made = make_project(FILES)
     own, terminal = pty.openpty()
-    with subprocess.Popen(
-        [sys.executable, "-m", "pyfrc", "sim", "--nt-port", "0"],
-        cwd=made.path,
-        env={**os.environ, **NO_BROWSER, **SSH},
-        stdin=terminal,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    ) as running:
+    with made.start("sim", "--nt-port", "0", env={**NO_BROWSER, **SSH}, stdin=terminal) as running:
         try:
             lines = lines_until(running.stdout, "No browser is opened")
             assert lines[0].startswith("The simulator is at http://127.0.0.1:"), lines
@@ -136,6 +118,5 @@ def test_a_person_without_a_browser_gets_the_address(make_project) -> None:
             assert "this is an SSH session" in lines[-1]
             assert running.poll() is None
         finally:
-            running.kill()
             os.close(own)
             os.close(terminal)

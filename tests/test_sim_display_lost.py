@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import platform
 import signal
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from conftest import MakeProject, RobotProject
-from sim_robots import PATIENCE, lines_until
+from sim_robots import lines_until
+from started_commands import StartedCommand
 from virtual_display import VirtualDisplay, virtual_display
 
 from pyfrc_core.interruption import ending_like_ctrl_c
@@ -37,24 +36,15 @@ ROBOT = """
 """
 
 
-START = [sys.executable, "-m", "pyfrc", "sim", "--ui", "tk", "--nt-port", "0"]
+START = ("sim", "--ui", "tk", "--nt-port", "0")
 
 
 @contextmanager
-def simulated(project: RobotProject, display: VirtualDisplay) -> Iterator[tuple[subprocess.Popen[str], list[str]]]:
+def simulated(project: RobotProject, display: VirtualDisplay) -> Iterator[tuple[StartedCommand, list[str]]]:
     """A window; and what the terminal shows until the robot has seen ten packets."""
-    with subprocess.Popen(
-        [*START, "--record", "run.jsonl", "--wpilog", "run.wpilog"],
-        cwd=project.path,
-        env=display.environment | {"TMPDIR": str(project.temporary)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    ) as running:
-        try:
-            yield running, lines_until(running.stdout, "ten packets", "failed at")
-        finally:
-            running.kill()
+    files = ("--record", "run.jsonl", "--wpilog", "run.wpilog")
+    with project.start(*START, *files, env=display.variable) as running:
+        yield running, lines_until(running.stdout, "ten packets", "failed at")
 
 
 @pytest.fixture
@@ -82,8 +72,8 @@ def test_the_display_vanishes(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT})
     with virtual_display() as screen, simulated(project, screen) as (running, shown):
         screen.end()
-        output = "".join(shown) + running.communicate(timeout=PATIENCE)[0]
-    assert running.returncode == 2, output
+        output = "".join(shown) + running.rest()[0]
+    assert running.wait() == 2, output
     assert output.count("error: the display has gone, and the window with it") == 1
     assert "Traceback" not in output
     shown_once(output)
@@ -94,8 +84,8 @@ def test_ended_by_a_signal(make_project: MakeProject, screen: VirtualDisplay) ->
     project = make_project({"robot.py": ROBOT})
     with simulated(project, screen) as (running, shown):
         running.send_signal(signal.SIGTERM)
-        output = "".join(shown) + running.communicate(timeout=PATIENCE)[0]
-    assert running.returncode == 0, output
+        output = "".join(shown) + running.rest()[0]
+    assert running.wait() == 0, output
     shown_once(output)
     files_written(project, output)
 
@@ -105,11 +95,10 @@ def test_the_terminal_is_closed(make_project: MakeProject, screen: VirtualDispla
     """Nothing can be said any more, and the system and the shell send a signal each."""
     project = make_project({"robot.py": ROBOT})
     with simulated(project, screen) as (running, _):
-        assert running.stdout is not None
         running.stdout.close()
         running.send_signal(signal.SIGHUP)
         running.send_signal(signal.SIGTERM)
-        running.wait(PATIENCE)
+        running.wait()
     assert (project.path / "run.jsonl").stat().st_size
     assert (project.path / "run.wpilog").stat().st_size
     assert list(project.temporary.iterdir()) == []
@@ -119,7 +108,7 @@ def test_tracebacks_reach_the_terminal(make_project: MakeProject, screen: Virtua
     project = make_project({"robot.py": ROBOT.replace("self.packets += 1", 'raise LookupError("no arm")')})
     with simulated(project, screen) as (running, shown):
         running.send_signal(signal.SIGTERM)
-        output = "".join(shown) + running.communicate(timeout=PATIENCE)[0]
+        output = "".join(shown) + running.rest()[0]
     place = project.place("robot.py", "no arm")
     assert output.count("Traceback (most recent call last)") == 1
     assert output.count(f": {place}: LookupError: no arm") == 1

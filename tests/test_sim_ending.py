@@ -16,6 +16,7 @@ from textwrap import dedent
 import pytest
 from conftest import RobotProject
 from sim_robots import FILES, PATIENCE, wait
+from started_commands import StartedCommand
 
 from pyfrc_core.interruption import ending_like_ctrl_c
 from pyfrc_core.processes.fork import FORK_IS_SAFE
@@ -47,14 +48,13 @@ ROBOT = """
 class Running:
     """A `pyfrc sim` that goes on."""
 
-    def __init__(self, process: subprocess.Popen[str]) -> None:
-        self.process = process
+    def __init__(self, command: StartedCommand) -> None:
+        self.command = command
         self.read = ""
 
     def until(self, text: str) -> str:
         """Read what it prints until there is a line with this text; answers that line."""
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
+        for line in self.command.stdout:
             self.read += line
             if text in line:
                 return line
@@ -62,26 +62,15 @@ class Running:
 
     def end(self, name: str) -> int:
         """Send a signal; answers the exit code."""
-        self.process.send_signal(getattr(signal, name))
-        self.read += self.process.communicate(timeout=PATIENCE)[0]
-        return self.process.returncode
+        self.command.send_signal(getattr(signal, name))
+        self.read += self.command.rest()[0]
+        return self.command.wait()
 
 
 @contextmanager
 def running(project: RobotProject, *arguments: str) -> Iterator[Running]:
-    command = [sys.executable, "-m", "pyfrc", "sim", "--ui", "none", *arguments]
-    with subprocess.Popen(
-        command,
-        cwd=project.path,
-        env=os.environ | {"TMPDIR": str(project.temporary)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    ) as process:
-        try:
-            yield Running(process)
-        finally:
-            process.kill()
+    with project.start("sim", "--ui", "none", *arguments) as command:
+        yield Running(command)
 
 
 @pytest.mark.parametrize("call", ["exit()", "sys.exit()", "raise SystemExit(3)"])

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import re
 import signal
 import socket
-import subprocess
 import sys
 import time
 from collections.abc import Iterator, Mapping
@@ -17,6 +15,7 @@ import pytest
 from browsers import NO_BROWSER
 from conftest import RobotProject
 from sim_robots import FILES, PATIENCE
+from started_commands import StartedCommand
 from web_pages import Page, served
 from websockets.sync.client import connect
 
@@ -26,15 +25,14 @@ ADDRESS = re.compile(r"The simulator is at (http://127\.0\.0\.1:\d+/\?token=\S+)
 class Running:
     """A `pyfrc sim` with a page, which goes on."""
 
-    def __init__(self, process: subprocess.Popen[str]) -> None:
-        self.process = process
+    def __init__(self, command: StartedCommand) -> None:
+        self.command = command
         self.read = ""
         self.address = self.until(ADDRESS)[1]
 
     def until(self, pattern: re.Pattern[str]) -> re.Match[str]:
         """Read what it prints until a line has this."""
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
+        for line in self.command.stdout:
             self.read += line
             if (match := pattern.search(line)) is not None:
                 return match
@@ -48,21 +46,15 @@ class Running:
 
     def ended(self) -> int:
         """Wait for the end, and return the exit code."""
-        self.read += self.process.communicate(timeout=PATIENCE)[0]
-        return self.process.returncode
+        self.read += self.command.rest()[0]
+        return self.command.wait()
 
 
 @contextmanager
 def simulating(made: RobotProject, *arguments: str, environment: Mapping[str, str] | None = None) -> Iterator[Running]:
-    given = {**os.environ, **NO_BROWSER, "PYTHONUNBUFFERED": "1", **(environment or {})}
-    command = [sys.executable, "-m", "pyfrc", "sim", "--nt-port", "0", *arguments]
-    with subprocess.Popen(
-        command, cwd=made.path, env=given, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-    ) as process:
-        try:
-            yield Running(process)
-        finally:
-            process.kill()
+    given = {**NO_BROWSER, "PYTHONUNBUFFERED": "1", **(environment or {})}
+    with made.start("sim", "--nt-port", "0", *arguments, env=given) as command:
+        yield Running(command)
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
@@ -73,7 +65,7 @@ def test_it_prints_its_address_and_ends_by_a_signal(make_project, name: str) -> 
             page.until(lambda: page.status["state"] == "running")
             page.command("enable")
             page.until(lambda: page.station.get("enabled"))
-            running.process.send_signal(getattr(signal, name))
+            running.command.send_signal(getattr(signal, name))
             assert running.ended() == 0
         assert "the robot is there" in running.read
         assert "Traceback" not in running.read

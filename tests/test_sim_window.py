@@ -542,10 +542,7 @@ def test_nothing_is_left_when_the_display_goes(make_project: MakeProject) -> Non
     robot = robot.replace('print("the robot is there")', told)
     project = make_project({**ROBOT, "robot.py": robot})
     with virtual_display() as screen:
-        running = subprocess.Popen(
-            [sys.executable, "-m", "pyfrc", "sim", "--ui", "tk", "--nt-port", "0"],
-            cwd=project.path, env=screen.environment | {"TMPDIR": str(project.temporary)},
-        )  # fmt: skip
+        running = project.start("sim", "--ui", "tk", "--nt-port", "0", env=screen.variable)
         try:
             screen.do("search", "--sync", "--onlyvisible", "--name", f"{project.path.name} - pyfrc")
             for _ in range(_LOOKS):
@@ -557,7 +554,7 @@ def test_nothing_is_left_when_the_display_goes(make_project: MakeProject) -> Non
         except BaseException:
             running.kill()
             raise
-    running.wait(120)
+    running.rest()
     try:
         assert select.select([host], [], [], 120)[0], "the robot's processes go on"
     finally:
@@ -619,24 +616,19 @@ def test_closing_whatever_the_robot_does(what: str, sit: Sit, make_project: Make
 def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None:
     """`pyfrc sim --ui tk` opens the window, and ends when it is closed; what was done in it can be replayed."""
     project = make_project(ROBOT)
-    command = [sys.executable, "-m", "pyfrc", "sim", "--ui", "tk", "--nt-port", "0", "--record", "run.jsonl"]
-    with subprocess.Popen(
-        command, cwd=project.path, env=display.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    ) as running:
-        try:
-            window = display.do("search", "--sync", "--onlyvisible", "--name", f"{project.path.name} - pyfrc")
-            display.do("windowfocus", window)
-            display.do("key", "ctrl+e", "keydown", "w")
-            for _ in range(_LOOKS):
-                if (project.path / "driven").exists():
-                    break
-                with suppress(subprocess.TimeoutExpired):
-                    running.wait(_PAUSE)
-            display.do("keyup", "w", "key", "ctrl+q")
-            output, _ = running.communicate(timeout=120)
-        finally:
-            running.kill()
-    assert running.returncode == 0, output
+    words = ("sim", "--ui", "tk", "--nt-port", "0", "--record", "run.jsonl")
+    with project.start(*words, env=display.variable) as running:
+        window = display.do("search", "--sync", "--onlyvisible", "--name", f"{project.path.name} - pyfrc")
+        display.do("windowfocus", window)
+        display.do("key", "ctrl+e", "keydown", "w")
+        for _ in range(_LOOKS):
+            if (project.path / "driven").exists():
+                break
+            with suppress(subprocess.TimeoutExpired):
+                running.wait(_PAUSE)
+        display.do("keyup", "w", "key", "ctrl+q")
+        output, _ = running.rest()
+    assert running.wait() == 0, output
     assert '"mode": "teleop"' in (project.path / "run.jsonl").read_text(encoding="utf-8")
     replayed = project.run("replay", "run.jsonl")
     assert replayed.code == 0, replayed.output
@@ -853,7 +845,7 @@ def test_no_tkinter(make_project: MakeProject, display: VirtualDisplay) -> None:
     """)
     done = subprocess.run(
         [sys.executable, "-c", program, "sim", "--ui", "tk"],
-        cwd=project.path, env=display.environment, capture_output=True, text=True, check=False, timeout=120,
+        cwd=project.path, env=os.environ | display.variable, capture_output=True, text=True, check=False, timeout=120,
     )  # fmt: skip
     assert done.returncode == 2
     assert "tkinter" in done.stderr

@@ -10,7 +10,6 @@ import select
 import shlex
 import signal
 import socket
-import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -21,6 +20,7 @@ import pytest
 from conftest import RobotProject
 from ports import lasting_port
 from skips import require
+from started_commands import StartedCommand
 
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.errors import PyfrcError
@@ -52,16 +52,15 @@ class MyRobot(wpilib.TimedRobot):
 class Started:
     """A `pyfrc virtual-robot` that is running."""
 
-    def __init__(self, process: subprocess.Popen[str]) -> None:
-        self.process = process
+    def __init__(self, command: StartedCommand) -> None:
+        self.command = command
         self.printed: list[str] = []
         self._news = threading.Condition()
         threading.Thread(target=self._read, daemon=True).start()
         (self.address,) = re.findall(r"running at (\S+);", self.said("running at"))
 
     def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
+        for line in self.command.stdout:
             with self._news:
                 self.printed.append(line)
                 self._news.notify_all()
@@ -81,17 +80,14 @@ class Started:
 @contextmanager
 def started(project: RobotProject, directory: Path, *options: str) -> Iterator[Started]:
     """A virtual robot, ended by Ctrl-C at the end."""
-    command = [sys.executable, "-m", "pyfrc", "virtual-robot", "--directory", str(directory), *options]
-    with subprocess.Popen(
-        command, cwd=project.path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, errors="replace"
-    ) as process:
-        guard = threading.Timer(ROBOT_SECONDS, process.kill)
+    with project.start("virtual-robot", "--directory", directory, *options) as command:
+        guard = threading.Timer(ROBOT_SECONDS, command.kill)
         guard.start()
         try:
-            yield Started(process)
+            yield Started(command)
         finally:
-            process.send_signal(signal.SIGINT)
-            process.wait()
+            command.send_signal(signal.SIGINT)
+            command.wait()
             guard.cancel()
 
 
@@ -185,7 +181,7 @@ def test_the_program_is_disabled_finds_its_files_and_does_not_outlive_a_robot_th
         assert "a path" in robot.said("read:")
         assert f"{directory / 'root/home/lvuser'} True" in robot.said("home:")
         pid = robot.pid()
-        robot.process.kill()
+        robot.command.kill()
         assert ended(pid)
 
 
@@ -207,7 +203,7 @@ def test_ctrl_c_ends_everything_and_a_later_start_has_the_same_programs_key_and_
     with started(project, directory, "--port", str(lasting_port())) as robot:
         deploy(robot, project)
         pid, address = robot.pid(), robot.address
-    assert robot.process.returncode == 0
+    assert robot.command.wait() == 0
     assert ended(pid)
     with started(project, directory) as robot:
         assert robot.address == address
@@ -233,16 +229,9 @@ def test_a_line_that_is_printed_right_after_a_client_has_connected_reaches_it(mo
 def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: RobotProject, directory: Path) -> None:
     with started(project, directory) as one, started(project, directory.with_name("other")) as other:
         assert one.address != other.address
-        with subprocess.Popen(
-            [sys.executable, "-u", "-m", "pyfrc", "console", "--robot", other.address],
-            cwd=project.path,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        ) as console:
+        with project.start("console", "--robot", other.address, env={"PYTHONUNBUFFERED": "1"}) as console:
             guard = threading.Timer(ROBOT_SECONDS, console.kill)
             guard.start()
-            assert console.stdout is not None
             assert any("connected to" in line for line in console.stdout)
             deploy(other, project)
             assert any("version 1 of" in line for line in console.stdout)

@@ -31,7 +31,7 @@ class VirtualDisplay:
     def __init__(self, name: str, server: subprocess.Popen[bytes]) -> None:
         self.name = name
         self._server = server
-        self.environment = {**os.environ, "DISPLAY": name}
+        self.variable = {"DISPLAY": name}
 
     def end(self) -> None:
         """Let the display vanish, as when a session ends or a container's window is closed."""
@@ -40,8 +40,9 @@ class VirtualDisplay:
 
     def do(self, *words: str | int) -> str:
         """One command of `xdotool`, or several; answers what it prints."""
+        environment = {**os.environ, **self.variable}
         done = subprocess.run(
-            ["xdotool", *map(str, words)], env=self.environment, capture_output=True, text=True, check=True, timeout=240
+            ["xdotool", *map(str, words)], env=environment, capture_output=True, text=True, check=True, timeout=240
         )
         return done.stdout.strip()
 

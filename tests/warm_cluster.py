@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 import os
 import socket
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import IO, Any, NamedTuple
 
 import warm_processes
 import warm_start
+from started_commands import How, StartedCommand, StartWarm, start_command, start_process
 
 from pyfrc_core.processes import spawn
 
@@ -29,15 +29,8 @@ _IMPORTED = (
     "pyfrc_core.fuzz.match_executor",
     "pyfrc_cli.main",
     "pyfrc_cli.fuzz",
+    "numpy.random",  # each match seeds it, since Dask has imported numpy
 )
-
-
-class Started(NamedTuple):
-    """A program that runs, and what it prints."""
-
-    process: spawn.Interpreter
-    stdout: IO[str]
-    stderr: IO[str]
 
 
 class Starts:
@@ -48,34 +41,23 @@ class Starts:
 
     def __init__(self, environment: Mapping[str, str]) -> None:
         self._environment = dict(environment)
-        self._warm = warm_processes.WarmProcesses(environment, __file__) if warm_start.POSSIBLE else None
+        self._warm: StartWarm | None = None
+        if warm_start.POSSIBLE:
+            address = warm_processes.WarmProcesses(environment, __file__).address
+            self._warm = functools.partial(warm_processes.ask_for_command, address, address)
 
     def start(
         self, program: str, arguments: list[str], directory: Path, env: Mapping[str, str] | None = None
-    ) -> Started:
+    ) -> StartedCommand:
         """Start ``python -m program arguments``, without input.
 
         :param env: variables, besides those that all programs have
         """
         environment = {**self._environment, **(env or {})}
-        (out, their_out), (err, their_err) = os.pipe(), os.pipe()
-        with Path(os.devnull).open("rb") as nothing:
-            process: spawn.Interpreter | None = None
-            if self._warm is not None:
-                streams = [nothing.fileno(), their_out, their_err]
-                process = self._warm.start(program, arguments, directory, environment, streams)
-            if process is None:
-                process = subprocess.Popen(
-                    [sys.executable, "-m", program, *arguments],
-                    stdin=nothing,
-                    stdout=their_out,
-                    stderr=their_err,
-                    cwd=directory,
-                    env=environment,
-                )
-        for descriptor in (their_out, their_err):
-            os.close(descriptor)
-        return Started(process, os.fdopen(out, encoding="utf-8"), os.fdopen(err, encoding="utf-8"))
+        return start_command(
+            lambda streams: start_process(self._warm, program, arguments, How(directory, environment, streams)),
+            apart=True,
+        )
 
 
 class _Player(NamedTuple):

@@ -27,6 +27,7 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 from large_pages import use_large_pages
+from started_commands import How
 from warm_start import LARGEST, READ_AT_START, READ_LATER, end_like_python, run_program, search_path
 
 from pyfrc_core.processes import spawn
@@ -37,10 +38,10 @@ from pyfrc_core.sim.engine.host import Hosting
 _MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
 
 #: May differ: what a fork can be given after its start, and what is read no more when the path is set.
-_NOT_COMPARED = READ_LATER | {"PYTHONDONTWRITEBYTECODE", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
+_NOT_COMPARED = READ_LATER | {"PYTHONDONTWRITEBYTECODE", "PYTHONIOENCODING"}
 
 #: Modules that a new interpreter does not have.
-_OF_THE_SUITE = ("warm_start", "warm_processes", "warm_pytest", "large_pages")
+_OF_THE_SUITE = ("started_commands", "warm_start", "warm_processes", "warm_pytest", "large_pages")
 
 StartInterpreter = Callable[[spawn.Start], spawn.Interpreter]
 RunPython = Callable[[Sequence[str], IO[Any]], int]
@@ -68,17 +69,6 @@ class WarmProcesses:
                 env={**environment, **host_process.ENVIRONMENT},
             )
         atexit.register(process.communicate)
-
-    def start(
-        self, program: str, arguments: list[str], directory: Path, environment: Mapping[str, str], streams: list[int]
-    ) -> WarmProcess | None:
-        """Start ``python -m program arguments``; return None where a new interpreter has to.
-
-        :param streams: descriptors of its standard input, output and errors
-        """
-        path = [*sys.path, str(directory), *map(str, search_path(environment))]
-        command = [program, arguments, str(directory), self.address, self.address]
-        return ask(self.address, ["command", path, dict(environment), command], streams)
 
 
 def start_warm(address: Callable[[], str], of_tests: str | None = None) -> None:
@@ -124,8 +114,8 @@ def _run_python(
 ) -> int:
     option, program, *words = arguments
     assert option == "-m", arguments
-    command = [program, words, str(Path.cwd()), address(), of_tests]
-    warm = ask(of_tests, ["command", [*sys.path, command[2]], dict(os.environ), command], [0, stdout.fileno(), 2])
+    how = How(Path.cwd(), os.environ, [0, stdout.fileno(), 2])
+    warm = ask_for_command(of_tests, address(), program, words, how)
     return cold(arguments, stdout) if warm is None else warm.wait()
 
 
@@ -138,7 +128,17 @@ def _descriptor(stream: int | IO[bytes] | None, own: int, unread: IO[bytes]) -> 
     return (unread if isinstance(stream, int) else stream).fileno()
 
 
-def ask(address: str, request: list[object], streams: list[int]) -> WarmProcess | None:
+def ask_for_command(address: str, hosts: str, program: str, arguments: Sequence[str], how: How) -> WarmProcess | None:
+    """Have ``python -m program arguments`` forked; return None where a new interpreter has to be started.
+
+    :param hosts: where the command asks for hosts
+    """
+    path = [*sys.path, str(how.directory), *map(str, search_path(how.environment))]
+    command = [program, list(arguments), str(how.directory), how.own_session, hosts, address]
+    return ask(address, ["command", path, dict(how.environment), command], how.streams)
+
+
+def ask(address: str, request: list[object], streams: Sequence[int]) -> WarmProcess | None:
     """Have a process forked; return None where a fork would not do.
 
     :param request: all but the last two of a `_Request`
@@ -191,7 +191,8 @@ class _Request(NamedTuple):
 
     :param kind: "host", "call", "test" or "command"
     :param path: `sys.path`; of a command, where its modules will be found, besides others
-    :param command: a program, its arguments and directory, and the two addresses for `start_warm`
+    :param command: a program, its arguments and directory, whether it leads a session, and two addresses: for
+        `start_warm`
     :param asking: where to send its number
     """
 
@@ -269,7 +270,10 @@ def _become(request: _Request) -> None:
     for target, descriptor in enumerate(request.streams):
         os.dup2(descriptor, target)
     if request.kind == "command":
-        program, arguments, directory, address, of_tests = request.command
+        program, arguments, directory, own_session, address, of_tests = request.command
+        if own_session:
+            os.setsid()
+            signal.signal(signal.SIGHUP, signal.SIG_DFL)  # ignored where the suite runs under nohup
         start_warm(lambda: address, of_tests)
         _tell_number(request)
         run_program(program, arguments, directory, request.environment)

@@ -20,6 +20,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import types
 from collections.abc import Iterator, Mapping
@@ -34,7 +35,7 @@ POSSIBLE = hasattr(os, "pidfd_open") and "PYFRC_COLD_STARTS" not in os.environ
 READ_AT_START = ("PYTHON", "LC_", "LANG", "LD_", "COVERAGE_")
 
 #: Of these, what a fork can be given after its start.
-READ_LATER = {"PYTHONPATH", "PYTHON_CPU_COUNT"}
+READ_LATER = {"PYTHONPATH", "PYTHON_CPU_COUNT", "PYTHONUNBUFFERED"}
 
 #: What most commands import, sooner or later; but nothing that takes a name that measuring has to replace before
 #: (what `pyfrc_core.measure.user_functions` does).
@@ -94,6 +95,7 @@ class WarmStarts:
     """Starts commands, one after the other, from a process that has imported everything.
 
     :param environment: that of commands with which nothing is special
+    :ivar address: where `warm_processes.ask_for_command` has others forked, which go on beside them
     """
 
     def __init__(self, environment: Mapping[str, str]) -> None:
@@ -109,10 +111,11 @@ class WarmStarts:
             )
         atexit.register(process.communicate)
         atexit.register(self._server.close)  # comes first, and ends the process
-        imported = self._server.recv(LARGEST)
-        if not imported:
+        told = self._server.recv(LARGEST)
+        if not told:
             raise RuntimeError("what commands import cannot be imported: its traceback is on standard error")
-        self._modules = frozenset(json.loads(imported))
+        modules, self.address = json.loads(told)
+        self._modules = frozenset(modules)
 
     def fit(self, directory: Path, environment: Mapping[str, str]) -> bool:
         """Whether in this directory a fork does the same as a new interpreter."""
@@ -260,9 +263,12 @@ def run_program(program: str, arguments: list[str], directory: str, environment:
     os.chdir(directory)
     os.environ.clear()
     os.environ.update(environment)
+    if environment.get("PYTHONUNBUFFERED") or os.isatty(1):
+        sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     sys.orig_argv[1:] = ["-m", program, *arguments]
     sys.argv[1:] = arguments
     sys.path[:0] = [directory, *map(str, search_path(environment))]
+    tempfile.tempdir = None  # this environment may name another one
     sys.modules["__main__"] = types.ModuleType("__main__")
     code = 0
     try:
@@ -316,11 +322,12 @@ def main() -> None:
     inspect.stack()  # resolves the files of all modules, which measuring coverage begins with
     replace_chance()
     loaded_modules.look()
-    server.send(json.dumps(list(sys.modules)).encode())
+    modules = list(sys.modules)
     gc.collect()
     gc.freeze()
     use_large_pages()
     of_tests, alive = _fork_processes_of_tests(server, interrupted)
+    server.send(json.dumps([modules, of_tests]).encode())
     with server:
         job = _serve(server)
     os.close(alive)

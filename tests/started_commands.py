@@ -1,0 +1,122 @@
+"""Commands that go on beside a test, which reads what they print, and sends them signals."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import IO, TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from pyfrc_core.processes.spawn import Interpreter
+
+
+class How(NamedTuple):
+    """How a command is started.
+
+    :param streams: descriptors of its standard input, output and errors
+    :param own_session: whether it leads a session of its own
+    """
+
+    directory: Path
+    environment: Mapping[str, str]
+    streams: Sequence[int]
+    own_session: bool = False
+
+
+#: Starts ``python -m program arguments``; returns None where that has to be a new interpreter.
+StartWarm = Callable[[str, Sequence[str], How], "Interpreter | None"]
+
+
+class StartedCommand:
+    """A command that runs, with what tests use of `subprocess.Popen`; it is killed at the end of a ``with`` block.
+
+    :ivar stdout: what it prints
+    :ivar stderr: its errors; None where they are among what it prints
+    """
+
+    def __init__(self, process: Interpreter, stdout: IO[str], stderr: IO[str] | None) -> None:
+        self._process = process
+        self.stdout = stdout
+        self.stderr = stderr
+
+    def __enter__(self) -> StartedCommand:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.kill()
+        self.wait()
+        for stream in filter(None, (self.stdout, self.stderr)):
+            stream.close()
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    def poll(self) -> int | None:
+        return self._process.poll()
+
+    def wait(self, seconds: float | None = None) -> int:
+        """Wait for its end, and return the exit code; negative: the signal that ended it."""
+        return self._process.wait(seconds)
+
+    def kill(self) -> None:
+        self._process.kill()
+
+    def send_signal(self, number: int) -> None:
+        if self.poll() is None:
+            with suppress(ProcessLookupError):
+                os.kill(self.pid, number)
+
+    def rest(self) -> tuple[str, str]:
+        """Return all that it prints until its end: output and errors."""
+        with ThreadPoolExecutor(1) as beside:
+            errors = None if self.stderr is None else beside.submit(self.stderr.read)
+            printed = self.stdout.read()
+            return printed, "" if errors is None else errors.result()
+
+
+def start_process(warm: StartWarm | None, program: str, arguments: Sequence[str], how: How) -> Interpreter:
+    """Start ``python -m program arguments``.
+
+    :param warm: starts it faster
+    """
+    process = None if warm is None else warm(program, arguments, how)
+    if process is not None:
+        return process
+    stdin, stdout, stderr = how.streams
+    return subprocess.Popen(
+        [sys.executable, "-m", program, *arguments],
+        stdin=stdin,
+        stdout=stdout,
+        stderr=stderr,
+        cwd=how.directory,
+        env=how.environment,
+        start_new_session=how.own_session,
+    )
+
+
+def start_command(
+    start: Callable[[Sequence[int]], Interpreter], stdin: int | None = None, apart: bool = False
+) -> StartedCommand:
+    """Start a command, and read what it prints.
+
+    :param start: starts it, with the descriptors of its standard input, output and errors
+    :param stdin: a descriptor of its input; by default, it has none
+    :param apart: whether its errors are not among what it prints
+    """
+    out, their_out = os.pipe()
+    err, their_err = os.pipe() if apart else (None, their_out)
+    with Path(os.devnull).open("rb") as nothing:
+        process = start([nothing.fileno() if stdin is None else stdin, their_out, their_err])
+    for descriptor in {their_out, their_err}:
+        os.close(descriptor)
+    errors = None if err is None else os.fdopen(err, encoding="utf-8", errors="replace")
+    return StartedCommand(process, os.fdopen(out, encoding="utf-8", errors="replace"), errors)
