@@ -14,6 +14,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
@@ -23,6 +24,8 @@ import pytest
 import warm_start
 from hypothesis import HealthCheck, settings
 from started_commands import How, StartedCommand, start_command, start_process
+
+from pyfrc_core.collector import collector_paused
 
 if TYPE_CHECKING:
     from roborio.local import Agents
@@ -140,18 +143,12 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection(session: pytest.Session) -> Generator[None, object, object]:
-    """Collect no garbage while tests are collected: what is made then stays, and looking through it takes a quarter."""
-    gc.disable()
-    try:
+    """Collect no garbage while tests are collected: looking through what is made then takes a quarter of the time.
+
+    It stays, and is not looked through later either, here and in forks.
+    """
+    with collector_paused():
         return (yield)
-    finally:
-        gc.enable()
-
-
-def pytest_collection_finish(session: pytest.Session) -> None:
-    """Exclude the thousands of tests and what they have imported from garbage collections, here and in forks."""
-    gc.collect()
-    gc.freeze()
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
@@ -184,6 +181,14 @@ def _warm_processes() -> WarmProcesses:
     from warm_processes import WarmProcesses
 
     return WarmProcesses(_AT_START)
+
+
+@contextmanager
+def collecting_garbage() -> Generator[None]:
+    """Collect the garbage of the block at its end, without a look at all that was there before."""
+    gc.freeze()
+    yield
+    gc.collect()
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import ast
 import functools
-from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pyfrc_core
+from pyfrc_core.collector import collector_paused
 from pyfrc_core.compat import cpython_private, paramiko_private, pytest_private, wpilib_private
 
 ROOT = Path(pyfrc_core.__file__).parents[1]
@@ -43,38 +44,62 @@ def is_private(name: str) -> bool:
     return name.startswith("_") and not (name.startswith("__") and name.endswith("__")) and name != "_"
 
 
+@dataclass(frozen=True)
+class Names:
+    """The names in a file.
+
+    :ivar own: those that it gives to something
+    :ivar attributes: private ones that it reads of something, with their lines
+    :ivar imported: likewise, of what it imports
+    :ivar written: likewise, in text, those that compat has
+    """
+
+    own: set[str]
+    attributes: list[tuple[int, str]]
+    imported: list[tuple[int, str]]
+    written: list[tuple[int, str]]
+
+
 @functools.cache
-def nodes_of(file: Path) -> list[ast.AST]:
-    return list(ast.walk(ast.parse(file.read_text("utf-8"))))
+def names_in(file: Path) -> Names:
+    found = Names(set(), [], [], [])
+    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            found.own.add(node.name)
+        elif isinstance(node, ast.Name):
+            if isinstance(node.ctx, ast.Store):
+                found.own.add(node.id)
+        elif isinstance(node, ast.Attribute):
+            if isinstance(node.ctx, ast.Store):
+                found.own.add(node.attr)
+            if is_private(node.attr):
+                found.attributes.append((node.lineno, node.attr))
+        elif isinstance(node, ast.Import | ast.ImportFrom):
+            found.imported.extend((node.lineno, name) for name in names_of(node) if is_private(name))
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in NAMED:
+            found.written.append((node.lineno, node.value))
+    return found
+
+
+def names_of(node: ast.Import | ast.ImportFrom) -> list[str]:
+    """Return the names in an import of a library."""
+    if isinstance(node, ast.Import):
+        return [part for alias in node.names for part in alias.name.split(".")]
+    module = node.module or ""
+    return [] if node.level or module.startswith("pyfrc") else [*module.split("."), *(each.name for each in node.names)]
 
 
 @functools.cache
 def own_names() -> set[str]:
     """Return the names that pyfrc itself gives to something."""
-    names: set[str] = set()
-    for file in FILES:
-        for node in nodes_of(file):
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-                names.add(node.name)
-            elif isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Store):
-                names.add(node.id if isinstance(node, ast.Name) else node.attr)
-    return names
+    with collector_paused():  # a tree has many objects, and no garbage
+        return set().union(*(names_in(file).own for file in FILES))
 
 
-def private_names(file: Path, own: set[str]) -> Iterator[tuple[int, str]]:
-    for node in nodes_of(file):
-        names: list[str] = []
-        if isinstance(node, ast.Attribute):
-            names = [node.attr] if node.attr not in own else []
-        elif isinstance(node, ast.Import):
-            names = [part for alias in node.names for part in alias.name.split(".")]
-        elif isinstance(node, ast.ImportFrom) and node.level == 0 and not (node.module or "").startswith("pyfrc"):
-            names = [*(node.module or "").split("."), *(alias.name for alias in node.names)]
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-            names = [node.value] if node.value in NAMED - own else []
-        for name in names:
-            if is_private(name) and name not in DOCUMENTED:
-                yield node.lineno, name
+def private_names(file: Path, own: set[str]) -> list[tuple[int, str]]:
+    found = names_in(file)
+    named = [(line, name) for line, name in (*found.attributes, *found.written) if name not in own]
+    return [(line, name) for line, name in (*named, *found.imported) if name not in DOCUMENTED]
 
 
 def test_private_names_of_libraries_are_used_in_compat_only() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import math
 import os
 import select
@@ -17,7 +16,7 @@ from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject, RobotProject, collecting_garbage
 from skips import missing_tkinter
 from virtual_display import VirtualDisplay, require_window, virtual_display
 
@@ -237,13 +236,13 @@ def sit(display: VirtualDisplay) -> Iterator[Sit]:
         user.until(lambda: user.window.devices.items)
         return user
 
-    yield sit
-    for user in opened:
-        user.window.close()
-        user.simulation.close()
-        _KEPT.append(user.window.root.tk)
-        del user.window
-    gc.collect()
+    with collecting_garbage():
+        yield sit
+        for user in opened:
+            user.window.close()
+            user.simulation.close()
+            _KEPT.append(user.window.root.tk)
+            del user.window
 
 
 @pytest.fixture
