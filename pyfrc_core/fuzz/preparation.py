@@ -16,6 +16,7 @@ from ..errors import PyfrcError
 from ..hal import HalData, devices_exist
 from ..project import Project
 from ..runtime.deferred_imports import deferred_imports
+from ..runtime.module_files import resolve_module_files
 from ..runtime.patch_table import PatchTable
 from .asked_controls import prepare_control_watch
 from .imported_robot import game_messages, imported_devices, next_tree, robot_constants, robot_lines
@@ -39,6 +40,7 @@ class Preparation:
             lines = robot_lines(project)
             robot_constants(project)
             imported_devices(project)
+            resolve_module_files()
             for file in {function.__code__.co_filename for function in lines.functions}:
                 linecache.getlines(file)  # WPILib asks for the lines that create a device
         devices_exist()

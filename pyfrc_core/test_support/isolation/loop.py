@@ -27,6 +27,7 @@ from ...processes.worker import wait_for_any
 from ...project.robot_files import RobotFiles
 from ...runtime.failures import headline_is_the_robots
 from ...runtime.fork_obstacles import reasons_not_to_fork
+from ...runtime.module_files import resolve_module_files
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
 from .durations import Durations, longest_first
@@ -90,6 +91,7 @@ class IsolatedTests:
         jobs = 1 if session.config.option.usepdb else self._plugin.options.jobs
         items = session.items
         waiting: list[pytest.Item] = []
+        resolve_module_files()
         gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory
         previous: pytest.Item | None = None
         for group in self._groups(session, jobs):
