@@ -93,7 +93,7 @@ def command(
 
     \b
     Exit codes: 0 all passed, 1 a test failed or the robot's code did,
-    2 wrong usage, 5 no test was selected.
+    2 wrong usage, 4 pytest's usage error, 5 no test was selected.
     """
     if no_isolation and isolation not in (None, "none"):
         raise click.UsageError(f"--no-isolation and --isolation {isolation} are mutually exclusive.")

@@ -654,8 +654,8 @@ def test_without_a_robot_the_failed_attempts_are_listed(make_project) -> None:
     result = make_project(program()).run("deploy", "--skip-tests", "--robot", "127.0.0.1:1")
     assert result.code == 1
     assert "127.0.0.1:1  by the command  refused" in result.stderr
-    assert "refused: no virtual robot runs there" in result.stderr
-    assert "Is that the right address? Start a virtual robot in another terminal: pyfrc virtual-robot" in result.stderr
+    assert "refused: no virtual robot runs at port 1\n" in result.stderr
+    assert "A virtual robot prints it. Start one in another terminal: pyfrc virtual-robot" in result.stderr
 
 
 def test_without_a_project_the_error_suggests_the_next_command(make_project) -> None:

@@ -365,6 +365,13 @@ def test_a_method_that_wpilib_never_calls_is_named_once_with_what_was_meant(
     assert len(re.findall("names are those of WPILib 2027", result.output)) == 2
 
 
+def test_a_misspelled_method_is_named_last_below_the_failures(make_project: MakeProject) -> None:
+    robot = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    def teleopPeriodc(self):\n        pass\n"
+    test = "def test_it(robot):\n    assert False\n"
+    printed = make_project({"robot.py": robot, "tests/test_it.py": test}).run("test").stdout
+    assert printed.index("robot.py:4: WPILib never calls") > printed.index("FAILED tests/test_it.py")
+
+
 # --- a test that never ran the robot
 
 NEVER_RUNS = """

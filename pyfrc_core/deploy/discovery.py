@@ -215,7 +215,10 @@ def not_found(whose: str, tried: Sequence[FailedAttempt]) -> RobotNotFoundError:
     which = "address?" if named else "team? (--team NUMBER; or name the robot's address with --robot HOST)"
     remedy = f"Is the robot on, and this computer on its network or at its USB cable? Is that the right {which}"
     if named and _is_this_computer(tried[0].address.host):
-        remedy = "Is that the right address? Start a virtual robot in another terminal: pyfrc virtual-robot"
+        remedy = (
+            "Is that the right address, with its port? A virtual robot prints it. Start one in another terminal: pyfrc "
+            "virtual-robot"
+        )
     else:
         remedy += " To try without a robot: pyfrc virtual-robot"
     error = RobotNotFoundError(f"no robot found for {whose}; tried:{table}", remedy=remedy)
@@ -320,7 +323,7 @@ class _Race:
             banner = connected.recv(len(_BANNER), socket.MSG_PEEK)
         except OSError as error:
             connected.close()
-            return FailedAttempt(address, kind, _why(error, address.host))
+            return FailedAttempt(address, kind, _why(error, address))
         if banner and _BANNER.startswith(banner):
             return FoundRobot(address, kind, connected)
         connected.close()
@@ -346,11 +349,11 @@ class _Race:
         return following
 
 
-def _why(error: OSError, host: str) -> str:
+def _why(error: OSError, address: Address) -> str:
     if isinstance(error, TimeoutError):
         return f"no response within {CONNECT_SECONDS:g} s"
-    if isinstance(error, ConnectionRefusedError) and _is_this_computer(host):
-        return "refused: no virtual robot runs there"
+    if isinstance(error, ConnectionRefusedError) and _is_this_computer(address.host):
+        return f"refused: no virtual robot runs at port {address.port}"
     if isinstance(error, ConnectionRefusedError):
         return "refused: a computer is there, but no SSH server"
     if isinstance(error, ConnectionError):

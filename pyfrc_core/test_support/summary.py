@@ -47,12 +47,13 @@ class SummaryPlugin:
         if not config.option.fulltrace:
             _explain_each_bug_once(terminalreporter.stats)
         _explain_real_time_devices(terminalreporter)
+        result = yield
         misspelled = find_misspelled_methods(self._project)
-        if misspelled:
+        if misspelled:  # last, since failures may fill the screen
             terminalreporter.section("misspelled methods", yellow=True, bold=True)
             for method in misspelled:
                 terminalreporter.write_line(str(method), yellow=True)
-        return (yield)
+        return result
 
 
 def warn_of_misspelled_methods(project: Project, stream: TextIO = sys.stderr) -> None:
