@@ -111,10 +111,10 @@ class WarmStarts:
             )
         atexit.register(process.communicate)
         atexit.register(self._server.close)  # comes first, and ends the process
-        told = self._server.recv(LARGEST)
-        if not told:
+        message = self._server.recv(LARGEST)
+        if not message:
             raise RuntimeError("what commands import cannot be imported: its traceback is on standard error")
-        modules, self.address = json.loads(told)
+        modules, self.address = json.loads(message)
         self._modules = frozenset(modules)
 
     def fit(self, directory: Path, environment: Mapping[str, str]) -> bool:
