@@ -18,7 +18,8 @@ def run_at_terminal(project: RobotProject, args: Sequence[str], answers: Sequenc
     import pty
 
     ours, theirs = pty.openpty()
-    command = project.start_with([theirs] * 3, *args, env={"TERM": "xterm", "SSH_AUTH_SOCK": ""})
+    environment = {"TERM": "xterm", "SSH_AUTH_SOCK": ""}
+    command = project.start_with([theirs] * 3, *args, env=environment, own_session=True)
     os.close(theirs)
     shown, searched, waiting = "", 0, list(answers)
     while True:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import compileall
 import faulthandler
 import functools
-import gc
 import json
 import os
 import re
@@ -14,7 +13,6 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from textwrap import dedent
@@ -183,14 +181,6 @@ def _warm_processes() -> WarmProcesses:
     return WarmProcesses(_AT_START)
 
 
-@contextmanager
-def collecting_garbage() -> Generator[None]:
-    """Collect the garbage of the block at its end, without a look at all that was there before."""
-    gc.freeze()
-    yield
-    gc.collect()
-
-
 @pytest.fixture(scope="session", autouse=True)
 def _start_cold() -> StartInterpreter:
     """Start the hosts of simulations in this process warm, too; the value starts processes as users' are started."""
@@ -292,11 +282,15 @@ class RobotProject:
         return start_command(lambda streams: self.start_with(streams, *args, env=env), stdin, apart)
 
     def start_with(
-        self, streams: Sequence[int], *args: str | Path, env: Mapping[str, str] | None = None
+        self,
+        streams: Sequence[int],
+        *args: str | Path,
+        env: Mapping[str, str] | None = None,
+        own_session: bool = False,
     ) -> Interpreter:
         """Start ``pyfrc`` with these descriptors as its standard input, output and errors.
 
-        It is in a session of its own: Ctrl-C at this terminal is for pytest, which ends it.
+        :param own_session: whether it leads a session of its own, as at another terminal
         """
         arguments = [str(argument) for argument in args]
         environment = self._environment(arguments, env)
@@ -305,7 +299,7 @@ class RobotProject:
             from warm_processes import ask_for_command
 
             start_warm = functools.partial(ask_for_command, warm.address, _warm_processes().address)
-        how = How(self.path, environment, streams, own_session=True)
+        how = How(self.path, environment, streams, own_session)
         return start_process(start_warm, "pyfrc", arguments, how)
 
     def _environment(self, arguments: Sequence[str], env: Mapping[str, str] | None) -> dict[str, str]:

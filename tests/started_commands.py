@@ -6,9 +6,9 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
+from threading import Thread, Timer
 from types import TracebackType
 from typing import IO, TYPE_CHECKING, NamedTuple
 
@@ -75,12 +75,25 @@ class StartedCommand:
             with suppress(ProcessLookupError):
                 os.kill(self.pid, number)
 
-    def rest(self) -> tuple[str, str]:
-        """Return all that it prints until its end: output and errors."""
-        with ThreadPoolExecutor(1) as beside:
-            errors = None if self.stderr is None else beside.submit(self.stderr.read)
+    def rest(self, seconds: float | None = None) -> tuple[str, str]:
+        """Return all that it prints until its end: output and errors.
+
+        :param seconds: after which it is killed
+        """
+        errors: list[str] = []
+        with ExitStack() as at_end:
+            if self.stderr is not None:
+                # A daemon: pytest's end does not wait for it.
+                reading = Thread(target=lambda stream: errors.append(stream.read()), args=[self.stderr], daemon=True)
+                reading.start()
+                at_end.callback(reading.join)
+            if seconds is not None:
+                guard = Timer(seconds, self.kill)
+                guard.start()
+                at_end.callback(guard.cancel)
+            at_end.callback(self.wait)
             printed = self.stdout.read()
-            return printed, "" if errors is None else errors.result()
+        return printed, "".join(errors)
 
 
 def start_process(warm: StartWarm | None, program: str, arguments: Sequence[str], how: How) -> Interpreter:

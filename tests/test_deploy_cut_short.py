@@ -15,7 +15,7 @@ import pytest
 from roborio import Proxy, Roborio, require_roborio
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
-from roborio.machine import WAITS_FOR_PERMISSION
+from roborio.machine import KILL_SCRIPT
 
 from pyfrc_core.deploy import session
 from pyfrc_core.deploy.agent import serve, wire
@@ -237,12 +237,16 @@ class Cutting(DeployProgress):
 
 
 def test_a_deploy_that_is_interrupted_before_the_start_explains_the_state(
-    make_project, monkeypatch: pytest.MonkeyPatch
+    make_project, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     require_roborio()
     monkeypatch.setenv("SSH_AUTH_SOCK", "")
     project = find_project(make_project({"robot.py": ROBOT_PY}).path)
-    with Roborio(wpilib=version("wpilib"), kill_script=WAITS_FOR_PERMISSION) as robot:
+    waits_for_permission = tmp_path / "frcKillRobot.sh"
+    first, *others = KILL_SCRIPT.read_text().splitlines()
+    waits = "while [ -e /home/lvuser/hold ]; do sleep 0.02; done"
+    waits_for_permission.write_text("\n".join([first, waits, *others, ""]))
+    with Roborio(wpilib=version("wpilib"), kill_script=waits_for_permission) as robot:
         hold = robot.home / "hold"
 
         def deploy_by(where: str, progress: DeployProgress) -> None:

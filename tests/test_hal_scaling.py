@@ -12,7 +12,6 @@ import hal
 import pytest
 import wpilib.simulation
 from announced_resets import announced_resets
-from conftest import collecting_garbage
 from hal import simulation as hs
 
 from pyfrc_core.hal import HalData
@@ -28,8 +27,8 @@ def tree(request: pytest.FixtureRequest) -> Iterator[HalData]:
     with announced_resets(request.param):
         hs.resetDriverStationData()
         hs.resetSimDeviceData()
-        with collecting_garbage():
-            yield HalData()
+        yield HalData()
+        gc.collect()
         hs.resetSimDeviceData()
 
 

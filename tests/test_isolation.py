@@ -882,18 +882,3 @@ def test_the_longest_test_starts_first_the_next_time_and_reports_stay_in_order(m
     # No test may run after one that failed.
     assert project.run("test", "-j", "2", "--", "-x").code == 0
     assert int((project.path / "1.started").read_text()) <= int((project.path / "400.started").read_text())
-
-
-def test_with_commands_the_files_of_modules_are_resolved_before_the_tests(make_project: MakeProject) -> None:
-    """commands2 asks for them when commands are composed, which would take each test 30 ms."""
-    test = """
-        import inspect
-
-        import commands2
-
-        def test_it(robot):
-            assert commands2.__file__ in inspect.modulesbyfile
-    """
-    robot = "import commands2\nimport wpilib\n\nclass MyRobot(commands2.TimedCommandRobot):\n    pass\n"
-    result = make_project({"robot.py": robot, "tests/test_it.py": test}).run("test", cold=True)
-    assert result.code == 0, result.output

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from conftest import MakeProject, RobotProject
-from sim_robots import lines_until
+from sim_robots import PATIENCE, lines_until
 from started_commands import StartedCommand
 from virtual_display import VirtualDisplay, virtual_display
 
@@ -72,7 +72,7 @@ def test_the_display_vanishes(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT})
     with virtual_display() as screen, simulated(project, screen) as (running, shown):
         screen.end()
-        output = "".join(shown) + running.rest()[0]
+        output = "".join(shown) + running.rest(PATIENCE)[0]
     assert running.wait() == 2, output
     assert output.count("error: the display has gone, and the window with it") == 1
     assert "Traceback" not in output
@@ -84,7 +84,7 @@ def test_ended_by_a_signal(make_project: MakeProject, screen: VirtualDisplay) ->
     project = make_project({"robot.py": ROBOT})
     with simulated(project, screen) as (running, shown):
         running.send_signal(signal.SIGTERM)
-        output = "".join(shown) + running.rest()[0]
+        output = "".join(shown) + running.rest(PATIENCE)[0]
     assert running.wait() == 0, output
     shown_once(output)
     files_written(project, output)
@@ -98,7 +98,7 @@ def test_the_terminal_is_closed(make_project: MakeProject, screen: VirtualDispla
         running.stdout.close()
         running.send_signal(signal.SIGHUP)
         running.send_signal(signal.SIGTERM)
-        running.wait()
+        running.wait(PATIENCE)
     assert (project.path / "run.jsonl").stat().st_size
     assert (project.path / "run.wpilog").stat().st_size
     assert list(project.temporary.iterdir()) == []
@@ -108,7 +108,7 @@ def test_tracebacks_reach_the_terminal(make_project: MakeProject, screen: Virtua
     project = make_project({"robot.py": ROBOT.replace("self.packets += 1", 'raise LookupError("no arm")')})
     with simulated(project, screen) as (running, shown):
         running.send_signal(signal.SIGTERM)
-        output = "".join(shown) + running.rest()[0]
+        output = "".join(shown) + running.rest(PATIENCE)[0]
     place = project.place("robot.py", "no arm")
     assert output.count("Traceback (most recent call last)") == 1
     assert output.count(f": {place}: LookupError: no arm") == 1

@@ -63,7 +63,7 @@ class Running:
     def end(self, name: str) -> int:
         """Send a signal; answers the exit code."""
         self.command.send_signal(getattr(signal, name))
-        self.read += self.command.rest()[0]
+        self.read += self.command.rest(PATIENCE)[0]
         return self.command.wait()
 
 

@@ -46,13 +46,13 @@ class Running:
 
     def ended(self) -> int:
         """Wait for the end, and return the exit code."""
-        self.read += self.command.rest()[0]
+        self.read += self.command.rest(PATIENCE)[0]
         return self.command.wait()
 
 
 @contextmanager
 def simulating(made: RobotProject, *arguments: str, environment: Mapping[str, str] | None = None) -> Iterator[Running]:
-    given = {**NO_BROWSER, "PYTHONUNBUFFERED": "1", **(environment or {})}
+    given = {**NO_BROWSER, **(environment or {})}
     with made.start("sim", "--nt-port", "0", *arguments, env=given) as command:
         yield Running(command)
 

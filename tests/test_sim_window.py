@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import math
 import os
 import select
@@ -16,7 +17,7 @@ from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import MakeProject, RobotProject, collecting_garbage
+from conftest import MakeProject, RobotProject
 from skips import missing_tkinter
 from virtual_display import VirtualDisplay, require_window, virtual_display
 
@@ -236,13 +237,13 @@ def sit(display: VirtualDisplay) -> Iterator[Sit]:
         user.until(lambda: user.window.devices.items)
         return user
 
-    with collecting_garbage():
-        yield sit
-        for user in opened:
-            user.window.close()
-            user.simulation.close()
-            _KEPT.append(user.window.root.tk)
-            del user.window
+    yield sit
+    for user in opened:
+        user.window.close()
+        user.simulation.close()
+        _KEPT.append(user.window.root.tk)
+        del user.window
+    gc.collect()
 
 
 @pytest.fixture
@@ -553,7 +554,7 @@ def test_nothing_is_left_when_the_display_goes(make_project: MakeProject) -> Non
         except BaseException:
             running.kill()
             raise
-    running.rest()
+    running.rest(120)
     try:
         assert select.select([host], [], [], 120)[0], "the robot's processes go on"
     finally:
@@ -626,7 +627,7 @@ def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None
             with suppress(subprocess.TimeoutExpired):
                 running.wait(_PAUSE)
         display.do("keyup", "w", "key", "ctrl+q")
-        output, _ = running.rest()
+        output, _ = running.rest(120)
     assert running.wait() == 0, output
     assert '"mode": "teleop"' in (project.path / "run.jsonl").read_text(encoding="utf-8")
     replayed = project.run("replay", "run.jsonl")

@@ -229,7 +229,7 @@ def test_a_line_that_is_printed_right_after_a_client_has_connected_reaches_it(mo
 def test_two_at_once_have_ports_consoles_and_programs_of_their_own(project: RobotProject, directory: Path) -> None:
     with started(project, directory) as one, started(project, directory.with_name("other")) as other:
         assert one.address != other.address
-        with project.start("console", "--robot", other.address, env={"PYTHONUNBUFFERED": "1"}) as console:
+        with project.start("console", "--robot", other.address) as console:
             guard = threading.Timer(ROBOT_SECONDS, console.kill)
             guard.start()
             assert any("connected to" in line for line in console.stdout)

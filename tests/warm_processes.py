@@ -38,7 +38,7 @@ from pyfrc_core.sim.engine.host import Hosting
 _MEASURING = ("PYFRC_COVERAGE", "PYFRC_PROFILE")
 
 #: May differ: what a fork can be given after its start, and what is read no more when the path is set.
-_NOT_COMPARED = READ_LATER | {"PYTHONDONTWRITEBYTECODE", "PYTHONIOENCODING"}
+_NOT_COMPARED = READ_LATER | {"PYTHONDONTWRITEBYTECODE", "PYTHONIOENCODING", "PYTHONUNBUFFERED"}
 
 #: Modules that a new interpreter does not have.
 _OF_THE_SUITE = ("started_commands", "warm_start", "warm_processes", "warm_pytest", "large_pages")
@@ -134,7 +134,8 @@ def ask_for_command(address: str, hosts: str, program: str, arguments: Sequence[
     :param hosts: where the command asks for hosts
     """
     path = [*sys.path, str(how.directory), *map(str, search_path(how.environment))]
-    command = [program, list(arguments), str(how.directory), how.own_session, hosts, address]
+    ignores_hangup = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN  # as a new process inherits it
+    command = [program, list(arguments), str(how.directory), how.own_session, ignores_hangup, hosts, address]
     return ask(address, ["command", path, dict(how.environment), command], how.streams)
 
 
@@ -191,8 +192,8 @@ class _Request(NamedTuple):
 
     :param kind: "host", "call", "test" or "command"
     :param path: `sys.path`; of a command, where its modules will be found, besides others
-    :param command: a program, its arguments and directory, whether it leads a session, and two addresses: for
-        `start_warm`
+    :param command: a program, its arguments and directory, whether it leads a session and ignores SIGHUP, and the two
+        addresses for `start_warm`
     :param asking: where to send its number
     """
 
@@ -270,10 +271,10 @@ def _become(request: _Request) -> None:
     for target, descriptor in enumerate(request.streams):
         os.dup2(descriptor, target)
     if request.kind == "command":
-        program, arguments, directory, own_session, address, of_tests = request.command
+        program, arguments, directory, own_session, ignores_hangup, address, of_tests = request.command
         if own_session:
             os.setsid()
-            signal.signal(signal.SIGHUP, signal.SIG_DFL)  # ignored where the suite runs under nohup
+        signal.signal(signal.SIGHUP, signal.SIG_IGN if ignores_hangup else signal.SIG_DFL)
         start_warm(lambda: address, of_tests)
         _tell_number(request)
         run_program(program, arguments, directory, request.environment)

@@ -35,7 +35,7 @@ POSSIBLE = hasattr(os, "pidfd_open") and "PYFRC_COLD_STARTS" not in os.environ
 READ_AT_START = ("PYTHON", "LC_", "LANG", "LD_", "COVERAGE_")
 
 #: Of these, what a fork can be given after its start.
-READ_LATER = {"PYTHONPATH", "PYTHON_CPU_COUNT", "PYTHONUNBUFFERED"}
+READ_LATER = {"PYTHONPATH", "PYTHON_CPU_COUNT"}
 
 #: What most commands import, sooner or later; but nothing that takes a name that measuring has to replace before
 #: (what `pyfrc_core.measure.user_functions` does).
@@ -263,7 +263,7 @@ def run_program(program: str, arguments: list[str], directory: str, environment:
     os.chdir(directory)
     os.environ.clear()
     os.environ.update(environment)
-    if environment.get("PYTHONUNBUFFERED") or os.isatty(1):
+    if os.isatty(1):  # as Python begins there
         sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     sys.orig_argv[1:] = ["-m", program, *arguments]
     sys.argv[1:] = arguments

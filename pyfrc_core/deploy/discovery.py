@@ -216,8 +216,8 @@ def not_found(whose: str, tried: Sequence[FailedAttempt]) -> RobotNotFoundError:
     remedy = f"Is the robot on, and this computer on its network or at its USB cable? Is that the right {which}"
     if named and _is_this_computer(tried[0].address.host):
         remedy = (
-            "Is that the right address, with its port? A virtual robot prints it. Start one in another terminal: pyfrc "
-            "virtual-robot"
+            "Is that the right address, with its port? A virtual robot prints it. Start one in another terminal: "
+            "pyfrc virtual-robot"
         )
     else:
         remedy += " To try without a robot: pyfrc virtual-robot"

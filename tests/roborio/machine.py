@@ -25,10 +25,10 @@ HERE = Path(__file__).parent
 #: Seconds after which a test gives up. Decides nothing else: a busy machine may take its time.
 PATIENCE = 120.0
 LVUSER, NI = 500, 500
-#: Files to take for ``frcKillRobot.sh``; the default one, which takes no time, is in files/.
+#: Files to take for ``frcKillRobot.sh``; the first is the default one, which takes no time.
+KILL_SCRIPT = HERE / "files/usr/local/frc/bin/frcKillRobot.sh"
 TAKES_TWO_SECONDS = HERE / "kill_scripts/takes_two_seconds.sh"
 LETS_PROGRAMS_SURVIVE = HERE / "kill_scripts/lets_programs_survive.sh"
-WAITS_FOR_PERMISSION = HERE / "kill_scripts/waits_for_permission.sh"
 _PASSWD = """\
 root:x:0:0::/:/usr/sbin/nologin
 admin:{password}:0:0::/home/admin:/bin/bash

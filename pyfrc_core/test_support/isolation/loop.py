@@ -91,7 +91,8 @@ class IsolatedTests:
         jobs = 1 if session.config.option.usepdb else self._plugin.options.jobs
         items = session.items
         waiting: list[pytest.Item] = []
-        resolve_module_files()
+        if any(map(self._uses_robot, items)):
+            resolve_module_files()
         gc.freeze()  # what is there now stays: a collection in a fork would copy all its memory
         previous: pytest.Item | None = None
         for group in self._groups(session, jobs):
