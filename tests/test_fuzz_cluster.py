@@ -63,7 +63,7 @@ ROBOT = """
                 open(os.path.join(os.path.dirname(__file__), "missing.txt"))
     """
 
-CAMPAIGN = ("--seed", "12", "--runs", "8")
+CAMPAIGN = ("--seed", "26", "--runs", "8")
 
 
 class Cluster:

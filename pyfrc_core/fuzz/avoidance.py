@@ -14,7 +14,7 @@ from typing import Any
 from ..runtime.scripts.script import InputScript
 from ..runtime.scripts.targets import MODE
 from .failure import FuzzFailure
-from .values import NOT_PRESSED, Value
+from .values import Value, is_released
 
 #: What a match leaves out: targets, and modes as ``mode=teleop``.
 LeftOut = frozenset[str]
@@ -119,10 +119,6 @@ def without(left_out: LeftOut, writes: Mapping[str, Value]) -> dict[str, Value]:
     for target, value in writes.items():
         if target == MODE and f"{MODE}={value}" in left_out:
             found[target] = "disabled"
-        elif target not in left_out or (target.startswith("joysticks[") and _is_released(target, value)):
+        elif target not in left_out or (target.startswith("joysticks[") and is_released(target, value)):
             found[target] = value
     return found
-
-
-def _is_released(target: str, value: Value) -> bool:
-    return not target.endswith(".plugged") and (value == NOT_PRESSED if ".povs" in target else not value)

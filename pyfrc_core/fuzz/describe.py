@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 
+from ..hal.modes import NOT_PRESSED
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript
-from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING, RESTART
+from ..runtime.scripts.targets import CONTROL, MATCH_TIME, MODE, PLUGGED, REMAINING, RESTART
 from .failure import FuzzFailure
-from .values import NOT_PRESSED, Value
+from .values import Value, is_released
 
 _MODES = {
     "disabled": "disabled",
@@ -22,8 +22,6 @@ _MODES = {
     "disabled test": "disabled before test",
 }
 
-_CONTROL = re.compile(r"joysticks\[(\d)\]\.(axes|buttons|povs)\[(\d+)\]")
-_PLUGGED = re.compile(r"joysticks\[(\d)\]\.plugged")
 _NAMES = {
     "alliance_station": "alliance station",
     "event.game_specific_message": "game message",
@@ -59,7 +57,7 @@ def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
         mode = step.writes.get(MODE, mode)
         name = _MODES.get(mode, mode)
         now = {target: value for target, value in step.writes.items() if target != MODE}
-        gone = {found[1] for target, value in now.items() if (found := _PLUGGED.fullmatch(target)) and not value}
+        gone = {found[1] for target, value in now.items() if (found := PLUGGED.fullmatch(target)) and not value}
         held = {target: value for target, value in held.items() if _stick(target) not in gone}
         if RESTART in now:
             held = {}
@@ -101,7 +99,7 @@ def _still_held(held: Mapping[str, Value], now: Mapping[str, Value]) -> str:
     sticks = {_stick(target) for target in now} - {None}
     found = []
     for target, value in held.items():
-        if target not in now and _CONTROL.fullmatch(target) and value not in (False, 0, NOT_PRESSED):
+        if target not in now and CONTROL.fullmatch(target) and not is_released(target, value):
             text = _described(target, value).removesuffix(" pressed")
             # The number of the joystick was named before.
             found.append(text.split(" ", 2)[2] if sticks == {_stick(target)} else text)
@@ -110,14 +108,14 @@ def _still_held(held: Mapping[str, Value], now: Mapping[str, Value]) -> str:
 
 def _stick(target: str) -> str | None:
     """Return the number of the joystick that a control belongs to."""
-    control = _CONTROL.fullmatch(target)
+    control = CONTROL.fullmatch(target)
     return control[1] if control is not None else None
 
 
 def _described(target: str, value: Value) -> str:
     if target == RESTART:
         return "the robot program starts again"
-    control = _CONTROL.fullmatch(target)
+    control = CONTROL.fullmatch(target)
     if control is not None:
         stick, sort, number = control.groups()
         if sort == "buttons":
@@ -125,7 +123,7 @@ def _described(target: str, value: Value) -> str:
         if sort == "povs":
             return f"joystick {stick} POV {'let go' if value == NOT_PRESSED else value}"
         return f"joystick {stick} axis {number} at {_number(value)}"
-    plugged = _PLUGGED.fullmatch(target)
+    plugged = PLUGGED.fullmatch(target)
     if plugged is not None:
         return f"joystick {plugged[1]} {'plugged in' if value else 'unplugged'}"
     if target.startswith(NETWORK):

@@ -68,6 +68,12 @@ def game_messages(project: Project) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=1)
+def auto_joysticks(project: Project) -> bool:
+    """Return whether the driver station sends joystick data in autonomous."""
+    return project.auto_joysticks
+
+
+@lru_cache(maxsize=1)
 def next_tree() -> HalData:
     """Return the tree for the `hal_data` of the next run, in this process or in each of its forks."""
     return HalData(defaults=False)

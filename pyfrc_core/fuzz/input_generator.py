@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import random
-import re
 import sys
 from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..compat.wpilib_private import simulation_periodic_of
 from ..runtime.clock import PACKET_US, to_us
-from ..runtime.scripts.targets import MODE, RESTART
+from ..runtime.scripts.targets import MODE, PLUGGED, RESTART
 from .avoidance import LeftOut, without
 from .base_match import BaseMatch
 from .dashboard_generator import DashboardFinder, DashboardGenerator
@@ -44,8 +43,6 @@ _DRIVEN_US = 5 * _SECOND_US
 #: What tells a team's robots from each other, by the function with which code asks for it, and its maximum length.
 _DESCRIBED = {"getComments": ("roborio.comments", 64), "getSerialNumber": ("roborio.serial_number", 8)}
 
-_PLUGGED = re.compile(r"joysticks\[(\d)\]\.plugged")
-
 
 class InputGenerator:
     """Generates one match's inputs: the same seed gives the same robot the same inputs.
@@ -60,6 +57,7 @@ class InputGenerator:
     :param constants: the constants of the robot's code
     :param base: the recorded match with which this one begins
     :param asked_controls: the targets of the controls that the robot has asked for so far
+    :param auto_joysticks: whether the driver station sends joystick data in autonomous, too
     """
 
     def __init__(
@@ -74,6 +72,7 @@ class InputGenerator:
         constants: RobotConstants = UNKNOWN,
         base: BaseMatch | None = None,
         asked_controls: Container[str] = (),
+        auto_joysticks: bool = False,
     ) -> None:
         #: The inputs found so far, by target.
         self.inputs: dict[str, Input] = {}
@@ -86,6 +85,7 @@ class InputGenerator:
         self._from_us = base.until_us if base else 0
         self._planned = 0
         self._constants = constants
+        self._auto_joysticks = auto_joysticks
         self._models = {} if base else choose_models(rng)
         #: The controls and the gamepads that were found last.
         self._controls: tuple[list[Input], dict[int, str]] | None = None
@@ -176,7 +176,7 @@ class InputGenerator:
                 self._enter(str(value), now_us)
             elif target == "control.dsAttached":
                 self._attached = bool(value)
-            elif (stick := _PLUGGED.fullmatch(target)) is not None:
+            elif (stick := PLUGGED.fullmatch(target)) is not None:
                 port = int(stick[1])
                 (self._sticks.plug_in if value else self._sticks.unplug)(port)
                 if value and port in self._models:
@@ -186,6 +186,7 @@ class InputGenerator:
         if self._enabled_since_us is not None:
             self._enabled_us += now_us - self._enabled_since_us
         self._enabled_since_us = None if mode.startswith("disabled") else now_us
+        self._sticks.set_sent(mode != "autonomous" or self._auto_joysticks, now_us)
         if self._rng.random() < 0.3:  # in the same packet
             self._sticks.change_pose(now_us)
 

@@ -8,14 +8,15 @@ pose is held, and what changes, is a driver's habit.
 from __future__ import annotations
 
 import random
+import sys
 from collections.abc import Container, Iterable, Sequence
 
-from ..hal.modes import JOYSTICKS
+from ..hal.modes import JOYSTICKS, NOT_PRESSED
 from ..runtime.clock import PACKET_US
 from .habits import Habit, draw_habit
 from .inputs import Input
 from .robot_constants import UNKNOWN, RobotConstants
-from .values import NOT_PRESSED, InputKind, Value, draw
+from .values import InputKind, Value, draw
 
 #: Packets come 50 times a second, and hands move no faster.
 _STEP_US = 2 * PACKET_US
@@ -54,6 +55,8 @@ class JoystickGenerator:
         #: Axes in motion: the time and value at the start, and the value at the end of the pose.
         self._moving: dict[Input, tuple[int, float, float]] = {}
         self._trembling: Input | None = None
+        #: Whether the driver station sends the joysticks' data in the current mode.
+        self._sent = True
 
     def set_controls(self, controls: Iterable[Input], gamepads: Iterable[int]) -> None:
         """Set the controls, and the ports for which the robot has created joysticks."""
@@ -83,8 +86,19 @@ class JoystickGenerator:
         """Begin another pose now."""
         self._pose_until_us = self.next_us = now_us
 
+    def set_sent(self, sent: bool, now_us: int) -> None:
+        """Set whether the driver station sends the joysticks' data from now on. If not, the robot sees none pressed."""
+        if sent != self._sent:
+            self._sent = sent
+            self.change_pose(now_us)
+
     def write(self, now_us: int, found: dict[str, Value]) -> None:
         """Add the writes of this time."""
+        if not self._sent:
+            self._finish(found)
+            self._hands_off(found)
+            self.next_us = sys.maxsize
+            return
         if now_us >= self._pose_until_us:
             self._pose(now_us, found)
         while self._taps and self._taps[0][0] <= now_us:
@@ -106,9 +120,8 @@ class JoystickGenerator:
             self._set(control, _RELEASED[control.kind], found)
         there = [port for port in range(JOYSTICKS) if port not in self.unplugged and any(self._ports[port])]
         self._pose_until_us = now_us + max(PACKET_US, round(habit.duration(rng) * 50) * PACKET_US)
-        if not there or rng.random() < 0.1:  # hands off
-            for control in list(self._held):
-                self._set(control, _RELEASED[control.kind], found)
+        if not there or rng.random() < 0.1:
+            self._hands_off(found)
             return
         ports = rng.choices(there, [self._weights[port] for port in there], k=rng.choice((1, 1, 1, 2)))
         if habit.together:
@@ -126,6 +139,10 @@ class JoystickGenerator:
         if self._trembling is not None:
             found[self._trembling.target] = self._held.get(self._trembling, 0.0)
         self._taps, self._moving, self._trembling = [], {}, None
+
+    def _hands_off(self, found: dict[str, Value]) -> None:
+        for control in list(self._held):
+            self._set(control, _RELEASED[control.kind], found)
 
     def _press(
         self,

@@ -32,6 +32,7 @@ from .failure import FuzzFailure, failure_of
 from .fuzz_run import FuzzRun
 from .goals import Goal
 from .imported_robot import (
+    auto_joysticks,
     game_messages,
     imported_devices,
     invariants_of,
@@ -205,6 +206,7 @@ def _fuzz(
             constants=robot_constants(project),
             base=task.schedule.base,
             asked_controls=closing.enter_context(watch_controls()).targets,
+            auto_joysticks=auto_joysticks(project),
         )
         generator.left_out = task.schedule.left_out_at(boot.at_us)
         journal = closing.enter_context(closed(Journal(task.journal))) if task.journal else None

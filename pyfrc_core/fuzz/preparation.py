@@ -19,7 +19,7 @@ from ..runtime.deferred_imports import deferred_imports
 from ..runtime.module_files import resolve_module_files
 from ..runtime.patch_table import PatchTable
 from .asked_controls import prepare_control_watch
-from .imported_robot import game_messages, imported_devices, next_tree, robot_constants, robot_lines
+from .imported_robot import auto_joysticks, game_messages, imported_devices, next_tree, robot_constants, robot_lines
 from .inputs import prepare_search
 from .match import FuzzTask, ReplayTask, Task
 from .motor_calls import prepare_motor_watch
@@ -83,3 +83,4 @@ def _read_settings(project: Project) -> None:
     with suppress(PyfrcError), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         game_messages(project)
+        auto_joysticks(project)

@@ -27,7 +27,14 @@ from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .inputs import Input
 from .match import ReplayTask
 from .match_executor import MatchExecutor
-from .shrink_starts import Start, Write, starts_of, transitions_without_pause, without_overwritten
+from .shrink_starts import (
+    Start,
+    Write,
+    moments_held_in_autonomous,
+    starts_of,
+    transitions_without_pause,
+    without_overwritten,
+)
 from .values import simpler
 
 #: The maximum number of runs.
@@ -83,6 +90,7 @@ class Shrinker:
         self._whole = Start(tuple(_writes(script)), script.end_us)
         self._writes, self._end_us = self._whole
         self._without_pause = transitions_without_pause(self._writes)
+        self._held_in_autonomous = moments_held_in_autonomous(self._writes)
         self._tried: set[Start] = set()
 
     @property
@@ -156,8 +164,13 @@ class Shrinker:
         return None
 
     def _is_playable(self, writes: Sequence[Write]) -> bool:
-        """Return whether a field can play this as well as the whole script: it disables robots between two modes."""
-        return transitions_without_pause(writes) <= self._without_pause
+        """Return whether a field can play this as well as the whole script: it disables robots between two modes, and
+        sends no joystick data in autonomous.
+        """
+        return (
+            transitions_without_pause(writes) <= self._without_pause
+            and moments_held_in_autonomous(writes) <= self._held_in_autonomous
+        )
 
     def _follow(self, writes: Sequence[Write], end_us: int) -> ReplayTask:
         return ReplayTask(self._script(writes, end_us), self._use_oracle, self.failure, self._hang_seconds)

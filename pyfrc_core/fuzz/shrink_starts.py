@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any, NamedTuple
 
 from ..runtime.clock import PACKET_US
-from ..runtime.scripts.targets import MATCH_TIME, MODE
+from ..runtime.scripts.targets import CONTROL, MATCH_TIME, MODE, PLUGGED
+from .values import is_released
 
 #: How long before the failure the kept part begins, in packets, from what is shortest to run.
 _KEPT = (1, 5, 25, 100, 400)
@@ -64,6 +65,27 @@ def transitions_without_pause(writes: Sequence[Write]) -> int:
         before != after and not before.startswith("disabled") and not after.startswith("disabled")
         for before, after in pairwise(modes)
     )
+
+
+def moments_held_in_autonomous(writes: Sequence[Write]) -> int:
+    """Return at how many moments something is written in autonomous while a control is held.
+
+    The driver station sends what the joysticks do in the other modes only.
+    """
+    mode, held, found = "", set[str](), 0
+    for _, together in groupby(writes, key=lambda write: write.at_us):
+        for write in together:
+            target = write.target
+            if target == MODE:
+                mode = str(write.value)
+            elif target.startswith("joysticks["):
+                if PLUGGED.fullmatch(target) is not None:
+                    stick = target.partition(".")[0]
+                    held = {each for each in held if not each.startswith(stick)}
+                elif CONTROL.fullmatch(target) is not None:
+                    (held.discard if is_released(target, write.value) else held.add)(target)
+        found += mode == "autonomous" and bool(held)
+    return found
 
 
 def without_overwritten(writes: Sequence[Write]) -> tuple[Write, ...]:

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
+from ..hal.modes import NOT_PRESSED
+from ..runtime.scripts.targets import PLUGGED
 from .robot_constants import UNKNOWN, RobotConstants
 
 #: The value of an input.
@@ -98,7 +100,6 @@ SPANS: dict[InputKind, Span] = {
 }
 
 POV_ANGLES = (0, 45, 90, 135, 180, 225, 270, 315)
-NOT_PRESSED = -1
 
 #: By what a user may multiply a number in a dashboard.
 _FACTORS = (0.5, 1.0, 2.0)
@@ -201,6 +202,11 @@ def _simpler_entry(value: Value) -> list[Value]:
     elif isinstance(value, int) and not isinstance(value, bool):
         found = [0, 1]
     return [each for each in dict.fromkeys(found) if len(repr(each)) < len(repr(value))]
+
+
+def is_released(target: str, value: object) -> bool:
+    """Return whether this write to a joystick lets a control go."""
+    return PLUGGED.fullmatch(target) is None and (value == NOT_PRESSED if ".povs" in target else not value)
 
 
 def can_be(kind: InputKind, value: object, options: tuple[str, ...] = ()) -> bool:

@@ -12,6 +12,7 @@ from warnings import warn_explicit
 
 from ..config.findings import SettingsWarning, settings_error
 from ..config.settings import Settings, load_settings
+from ..season import CURRENT
 from .robot_files import RobotFiles
 
 if TYPE_CHECKING:
@@ -78,10 +79,17 @@ class Project:
     @property
     def game_specific_messages(self) -> tuple[str, ...]:
         """The messages that the field may send in autonomous; none in most seasons."""
-        # Most projects have no such file: checked first, since reading it imports pydantic.
-        if not os.path.lexists(self.root / "sim" / "config.json"):
-            return ()
-        return self.sim_config.game_specific_messages
+        return self.sim_config.game_specific_messages if self._has_sim_config else CURRENT.field.messages
+
+    @property
+    def auto_joysticks(self) -> bool:
+        """Whether the driver station sends joystick data in autonomous; in most seasons, it does not."""
+        return self.sim_config.field.auto_joysticks if self._has_sim_config else CURRENT.field.auto_joysticks
+
+    @property
+    def _has_sim_config(self) -> bool:
+        """Whether there is a ``sim/config.json``. Most projects have none, and reading it imports pydantic."""
+        return os.path.lexists(self.root / "sim" / "config.json")
 
     @property
     def physics_file(self) -> Path:

@@ -50,6 +50,7 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
             network_reads=reads,
             constants=find_constants(RobotLines(project.files).functions),
             asked_controls=asked.targets,
+            auto_joysticks=project.auto_joysticks,
         )
         fuzz_run = FuzzRun(fake_time.run, generator)
         fuzz_run.write()

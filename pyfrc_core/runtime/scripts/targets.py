@@ -39,7 +39,10 @@ _KEPT = re.compile(
     r"|(?:dio|analog_in|encoder|analog_gyro|duty_cycle)\[\d+\]\.\w+$|(?:power|accelerometer)\.\w+$|fpga_button$"
 )
 _BUTTON = re.compile(r"joysticks\[[0-5]\]\.buttons\[(\d+)\]")
-_PLUGGED = re.compile(r"joysticks\[([0-5])\]\.plugged")
+#: A joystick that is plugged in or unplugged: its port.
+PLUGGED = re.compile(r"joysticks\[([0-5])\]\.plugged")
+#: A control of a joystick: its port, its sort, its number.
+CONTROL = re.compile(r"joysticks\[([0-5])\]\.(axes|buttons|povs)\[(\d+)\]")
 
 
 def plugged(port: int) -> str:
@@ -107,7 +110,7 @@ class Targets:
             raise UsageError("only pyfrc replay and control.replay() can start the robot program again")
         elif target.startswith(NETWORK):
             self._entries.write(target, value)
-        elif (stick := _PLUGGED.fullmatch(target)) is not None:
+        elif (stick := PLUGGED.fullmatch(target)) is not None:
             modes.plug_in(int(stick[1])) if value else modes.unplug(int(stick[1]))
         else:
             if target == REMAINING:
@@ -153,5 +156,5 @@ class Targets:
         return (
             target not in (MODE, MATCH_TIME, PACKET, RESTART)
             and not target.startswith(NETWORK)
-            and not _PLUGGED.fullmatch(target)
+            and not PLUGGED.fullmatch(target)
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -11,10 +10,10 @@ from ....config.sim import FieldConfig
 from ....hal import modes
 from ....runtime.match import MatchPeriods
 from ....runtime.robot import RobotRun
+from ....runtime.scripts.targets import CONTROL
 from ..commands import ChooseMode, EmergencyStop, Enable, Practice
 from ..messages import StationState
 
-_CONTROL = re.compile(r"joysticks\[[0-5]\]\.(axes|buttons|povs)\[\d+\]")
 _NEUTRAL = {"axes": 0.0, "buttons": False, "povs": modes.NOT_PRESSED}
 
 E_STOP = "control.eStop"
@@ -81,17 +80,17 @@ class Station:
         A button that is pressed and released before the next packet is pressed for one packet, or the robot would miss
         a short press, and all the more in slow motion.
         """
-        control = _CONTROL.fullmatch(target)
+        control = CONTROL.fullmatch(target)
         if control is None:
             self._write(target, value)
             return
         taps = {each: packets for each, packets in self.state.taps.items() if each != target}
-        is_neutral = value == _NEUTRAL[control[1]]
+        is_neutral = value == _NEUTRAL[control[2]]
         if is_neutral and target in self._pressed:
             taps[target] = 1
         elif self._delivers(modes.mode_name()):
             self._write(target, value)
-            if not is_neutral and control[1] != "axes":
+            if not is_neutral and control[2] != "axes":
                 self._pressed.add(target)
         # Kept after the write, which fails for a wrong value; a value that is not delivered now is checked later.
         self.state = replace(self.state, sticks={**self.state.sticks, target: value}, taps=taps)
@@ -107,9 +106,9 @@ class Station:
         self._write("mode", mode)
         if before != after:
             for target, value in self.state.sticks.items():
-                control = _CONTROL.fullmatch(target)
+                control = CONTROL.fullmatch(target)
                 if control is not None:
-                    self._write(target, value if after else _NEUTRAL[control[1]])
+                    self._write(target, value if after else _NEUTRAL[control[2]])
 
     def _delivers(self, mode: str) -> bool:
         if mode.startswith("disabled"):
@@ -137,9 +136,9 @@ class Station:
     def _release_taps(self) -> None:
         """Release the controls that the robot has seen pressed in the last packet."""
         for target, packets in self.state.taps.items():
-            control = _CONTROL.fullmatch(target)
+            control = CONTROL.fullmatch(target)
             if packets == 0 and control is not None and self._delivers(modes.mode_name()):
-                self._write(target, _NEUTRAL[control[1]])
+                self._write(target, _NEUTRAL[control[2]])
         self.state = replace(self.state, taps={each: 0 for each, packets in self.state.taps.items() if packets})
 
     def _go_on_with_practice(self) -> None:
