@@ -42,6 +42,9 @@ ROBOT = """
     import signal
     import wpilib
 
+    #: The robot is imported once, in the process whose forks play the matches and their restarts.
+    PLAYS_MATCHES = os.getpid()
+
     class MyRobot(wpilib.TimedRobot):
         def robotInit(self):
             self.pad = wpilib.XboxController(0)
@@ -52,7 +55,7 @@ ROBOT = """
             victim = os.environ.get("ENDS_A_PROCESS", "")
             if os.path.exists(victim):
                 with open(victim) as file:
-                    number = int(file.read() or os.getppid())
+                    number = int(file.read() or PLAYS_MATCHES)
                 os.unlink(victim)
                 os.kill(number, signal.SIGKILL)
 
