@@ -50,7 +50,7 @@ def measured(name: str, project: Path) -> str:
         text, runs, kept, seconds = "", "?", None, 0.0
         for line in campaign.stdout:
             text += line
-            if found := re.search(r"(\d[\d,]*) runs? of the robot", line):
+            if kept is None and (found := re.search(r"(\d[\d,]*) runs? of the robot", line)):
                 runs = found[1]
             if kept is None and (found := re.search(r"pyfrc replay (\S+)", line)):
                 file = project / found[1]

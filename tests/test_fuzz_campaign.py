@@ -27,6 +27,8 @@ from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork, wait_for_any
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
+EMPTY = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
+
 ROBOTS = Path(__file__).parent / "robots"
 REGRESSIONS = "tests/test_fuzz_regressions.py"
 
@@ -267,7 +269,7 @@ def test_wrong_usage(arguments: tuple[str, ...], message: str, make_project) -> 
 
 
 def test_a_link_to_nothing_is_no_file_of_the_robot(make_project) -> None:
-    project = make_project({"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"})
+    project = make_project({"robot.py": EMPTY})
     (project.path / "helper.py").symlink_to("gone.py")
     result = project.run("fuzz", "--seed", "1", "--runs", "1")
     assert result.code == 0, result.output
@@ -432,6 +434,29 @@ def test_a_match_that_goes_on_from_another_is_the_same_until_then(make_project) 
     project.write({"continued.py": CONTINUED})
     result = project.run(program="continued")
     assert result.code == 0, result.output
+
+
+WITHOUT_WAITS = """
+    from pyfrc_core.fuzz import match_executor
+    from pyfrc_core.fuzz.match import ReplayTask
+    from pyfrc_core.project import find_project
+    from pyfrc_core.runtime.scripts.script import InputScript
+
+    def wait_for_any(descriptors):
+        assert descriptors, "there is nothing to wait for"
+        wait(descriptors)
+
+    wait, match_executor.wait_for_any = match_executor.wait_for_any, wait_for_any
+    task = ReplayTask(InputScript((), 100_000, robot="robot.py"))
+    with match_executor.open_match_executor(find_project(), 2) as executor:
+        print([len(list(executor.play([task] * count))) for count in (0, 1, 3)])
+    """
+
+
+def test_when_no_match_is_left_nothing_is_waited_for(make_project) -> None:
+    project = make_project({"robot.py": EMPTY, "without_waits.py": WITHOUT_WAITS})
+    result = project.run(program="without_waits")
+    assert (result.code, result.stdout) == (0, "[0, 1, 3]\n"), result.output
 
 
 # -- shrinking -------------------------------------------------------------------------------------------------------

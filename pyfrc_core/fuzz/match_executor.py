@@ -232,9 +232,10 @@ class ForkedMatchExecutor(MatchExecutor):
                         more = False
                     else:
                         waiting.append((task, self._begin(task)))
-                wait_for_any([work.fileno() for _, work in waiting if not work.finished])
-                for _, work in waiting:
-                    work.poll()
+                if going_on := [work for _, work in waiting if not work.finished]:
+                    wait_for_any([work.fileno() for work in going_on])
+                    for work in going_on:
+                        work.poll()
         finally:
             for _, work in waiting:
                 work.close()
