@@ -255,6 +255,7 @@ def test_a_deploy_that_is_interrupted_before_the_start_explains_the_state(
 
         with pytest.raises(StoppedError, match=r"interrupted; release 1 is on the robot"):
             deploy_by(robot.where, Cutting(interrupt))
+        robot.wait_for_end_of_deploy()  # or its kill script waits, too, and the second deploy is refused
         hold.touch()  # or the robot may report its start before the link is cut
         with contextlib.ExitStack() as link:
             link.callback(hold.unlink)
