@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from ..processes.exit import before_every_exit, exit_now
+from ..processes.exit import before_every_exit, exit_by_signal
 from ..processes.fork import Fork
 
 #: For each kind, the environment variable that gives new interpreters the settings, as JSON.
@@ -56,7 +56,7 @@ def measure_here() -> None:
         if variable in os.environ:
             _begin(kind, json.loads(os.environ[variable]))
     if before_every_exit and threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, lambda number, frame: exit_now(128 + number))
+        signal.signal(signal.SIGTERM, exit_by_signal)
 
 
 def _begin(kind: str, settings: dict[str, object]) -> Callable[[], object]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -36,6 +37,16 @@ def exit_now(status: int) -> NoReturn:
             call()
     finally:
         _exit(status)
+
+
+def exit_by_signal(number: int, frame: object, prepare: Callable[[], object] = lambda: None) -> NoReturn:
+    """Handle a signal by ending this process, whatever it does. `Fork.terminate` sends it again: that is ignored.
+
+    :param prepare: called before
+    """
+    signal.signal(number, signal.SIG_IGN)
+    prepare()
+    exit_now(128 + number)
 
 
 @contextmanager

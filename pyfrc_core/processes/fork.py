@@ -22,6 +22,8 @@ FORK_IS_SAFE = hasattr(os, "fork") and sys.platform not in ("win32", "darwin")
 
 # Seconds between two looks at whether a process has ended while another one holds its pipe open. Decides nothing else.
 _LOOK_SECONDS = 0.05
+# A signal that comes just before Python begins to wait is handled after the wait, which only another signal ends.
+_SIGNAL_AGAIN_SECONDS = 0.25
 
 
 @contextlib.contextmanager
@@ -105,12 +107,16 @@ class Fork:
     def terminate(self, seconds: float) -> None:
         """End the process by SIGTERM; when it has not ended after some wall seconds, by SIGKILL."""
         if seconds and not self.finished:
-            self.send_signal(signal.SIGTERM)
-            deadline = time.monotonic() + seconds
-            while not self.finished and time.monotonic() < deadline:
+            send_again = now = time.monotonic()
+            deadline = now + seconds
+            while not self.finished and now < deadline:
+                if now >= send_again:
+                    self.send_signal(signal.SIGTERM)
+                    send_again = now + _SIGNAL_AGAIN_SECONDS
                 # The pipe, if nothing else holds it open, is closed when the process ends.
                 wait_for_any([self._pipe])
                 self.poll()
+                now = time.monotonic()
         if not self.finished:
             self.send_signal(signal.SIGKILL)
             self._reap(0)

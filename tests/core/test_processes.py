@@ -26,7 +26,13 @@ from pyfrc_core.processes import channel, frames, outbox
 from pyfrc_core.processes import exit as process_exit
 from pyfrc_core.processes.call import ForkedCall, run_in_subprocess
 from pyfrc_core.processes.crash_report import CrashLog
-from pyfrc_core.processes.exit import before_every_exit, before_sudden_exit, exit_now, prepare_sudden_exit
+from pyfrc_core.processes.exit import (
+    before_every_exit,
+    before_sudden_exit,
+    exit_by_signal,
+    exit_now,
+    prepare_sudden_exit,
+)
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
 from pyfrc_core.processes.frames import FrameTooLargeError, decode, encode
 from pyfrc_core.processes.prefork import PreforkedProcess
@@ -380,11 +386,7 @@ def test_a_worker_that_is_killed_has_finished(begin: Begin) -> None:
 @only_forked
 def test_a_kill_leaves_time_to_save_measurements(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
     def save_when_terminated(send: Send, log: CrashLog) -> None:
-        def save(signum: int, frame: object) -> None:
-            send("saved")
-            exit_now(0)
-
-        signal.signal(signal.SIGTERM, save)
+        signal.signal(signal.SIGTERM, partial(exit_by_signal, prepare=partial(send, "saved")))
         send("ready")
         signal.pause()
 
@@ -394,7 +396,33 @@ def test_a_kill_leaves_time_to_save_measurements(begin: Begin, monkeypatch: pyte
         wait_for_any([worker])
     worker.kill()
     assert list(worker.messages()) == ["ready", "saved"]
-    assert worker.status == 0
+    assert worker.status == 128 + signal.SIGTERM
+
+
+@only_forked
+def test_a_process_that_missed_a_signal_receives_another(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As one that had just begun to wait; those after it disturb nothing."""
+
+    def miss_the_first(send: Send, log: CrashLog) -> None:
+        def end_again() -> None:
+            os.kill(os.getpid(), signal.SIGTERM)
+            send("ended")
+
+        def missed(number: int, frame: object) -> None:
+            signal.signal(number, partial(exit_by_signal, prepare=end_again))
+
+        signal.signal(signal.SIGTERM, missed)
+        send("ready")
+        while True:
+            signal.pause()
+
+    monkeypatch.setattr(Fork, "grace_seconds", float(PATIENCE))
+    worker = begin(ForkedWorker, miss_the_first)
+    while not list(worker.messages()):
+        wait_for_any([worker])
+    worker.kill()
+    assert list(worker.messages()) == ["ready", "ended"]
+    assert worker.status == 128 + signal.SIGTERM
 
 
 @only_forked

@@ -22,7 +22,7 @@ from typing import Any, NoReturn
 
 from ...processes.channel import close_in_forks, end_of_output
 from ...processes.crash_report import CrashLog
-from ...processes.exit import exit_now, prepare_sudden_exit
+from ...processes.exit import exit_by_signal, prepare_sudden_exit
 from ...processes.worker import work_and_exit
 from .commands import Quit
 
@@ -191,8 +191,7 @@ def _ending_the_robot() -> Callable[[int, object], None]:
             signal.signal(signum, signal.SIG_DFL)
             os.kill(os.getpid(), signum)
             return
-        prepare_sudden_exit()
-        exit_now(128 + signum)
+        exit_by_signal(signum, frame, prepare_sudden_exit)
 
     return end
 
