@@ -61,7 +61,7 @@ def held_in_autonomous(script: InputScript) -> Iterable[str]:
 
 def test_nothing_is_pressed_in_autonomous(make_project: Any) -> None:
     project = make_project({"robot.py": FAILS_IN_AUTONOMOUS, "pyproject.toml": SHORT})
-    result = project.run("fuzz", "--seed", "1", "--runs", "40")
+    result = project.run("fuzz", "--seed", "1", "--runs", "16")
     assert (result.code, "a driver moves" in result.output) == (0, False), result.output
 
 
@@ -69,12 +69,12 @@ def test_auto_joysticks_let_drivers_press_there(make_project: Any) -> None:
     project = make_project(
         {"robot.py": FAILS_IN_AUTONOMOUS, "pyproject.toml": SHORT, "sim/config.json": AUTO_JOYSTICKS}
     )
-    result = project.run("fuzz", "--seed", "1", "--runs", "20")
+    result = project.run("fuzz", "--seed", "1", "--runs", "12")
     assert result.code == 1
     assert "a driver moves the robot in autonomous" in result.output
 
 
-@pytest.mark.parametrize("command", [("fuzz", "--runs", "20"), ("test", "tests/fuzz_test.py")])
+@pytest.mark.parametrize("command", [("fuzz", "--runs", "12"), ("test", "tests/fuzz_test.py")])
 def test_a_script_of_teleop_becomes_none_of_autonomous(command: tuple[str, ...], make_project: Any) -> None:
     project = make_project(
         {
