@@ -383,6 +383,16 @@ def test_a_worker_that_is_killed_has_finished(begin: Begin) -> None:
     worker.kill()
 
 
+def finish_by_signal(worker: Worker, monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """Kill a process that is measured when it has sent something, and return its messages; it ends by itself."""
+    monkeypatch.setattr(Fork, "grace_seconds", float(PATIENCE))
+    while not list(worker.messages()):
+        wait_for_any([worker])
+    worker.kill()
+    assert worker.status == 128 + signal.SIGTERM
+    return list(worker.messages())
+
+
 @only_forked
 def test_a_kill_leaves_time_to_save_measurements(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
     def save_when_terminated(send: Send, log: CrashLog) -> None:
@@ -390,13 +400,7 @@ def test_a_kill_leaves_time_to_save_measurements(begin: Begin, monkeypatch: pyte
         send("ready")
         signal.pause()
 
-    monkeypatch.setattr(Fork, "grace_seconds", float(PATIENCE))
-    worker = begin(ForkedWorker, save_when_terminated)
-    while not list(worker.messages()):
-        wait_for_any([worker])
-    worker.kill()
-    assert list(worker.messages()) == ["ready", "saved"]
-    assert worker.status == 128 + signal.SIGTERM
+    assert finish_by_signal(begin(ForkedWorker, save_when_terminated), monkeypatch) == ["ready", "saved"]
 
 
 @only_forked
@@ -416,13 +420,7 @@ def test_a_process_that_missed_a_signal_receives_another(begin: Begin, monkeypat
         while True:
             signal.pause()
 
-    monkeypatch.setattr(Fork, "grace_seconds", float(PATIENCE))
-    worker = begin(ForkedWorker, miss_the_first)
-    while not list(worker.messages()):
-        wait_for_any([worker])
-    worker.kill()
-    assert list(worker.messages()) == ["ready", "ended"]
-    assert worker.status == 128 + signal.SIGTERM
+    assert finish_by_signal(begin(ForkedWorker, miss_the_first), monkeypatch) == ["ready", "ended"]
 
 
 @only_forked
