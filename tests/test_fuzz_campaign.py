@@ -268,6 +268,13 @@ def test_wrong_usage(arguments: tuple[str, ...], message: str, make_project) -> 
     assert "Traceback" not in result.output
 
 
+def test_a_setting_without_effect_is_named_once(make_project) -> None:
+    project = make_project({"robot.py": EMPTY, "sim/config.json": '{"pyfrc": {"robot": {\n"width": 3}}}\n'})
+    result = project.run("fuzz", "--seed", "1", "--runs", "4")
+    assert result.code == 0, result.output
+    assert result.stderr.count("sim/config.json:2: SettingsWarning: unknown key 'pyfrc.robot.width'") == 1
+
+
 def test_a_link_to_nothing_is_no_file_of_the_robot(make_project) -> None:
     project = make_project({"robot.py": EMPTY})
     (project.path / "helper.py").symlink_to("gone.py")

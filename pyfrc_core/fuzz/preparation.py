@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import gc
 import linecache
-import warnings
 from contextlib import suppress
 
 from ..compat.wpilib_private import NETWORK_LOG
@@ -79,8 +78,10 @@ def _build(tree: HalData) -> None:
 
 
 def _read_settings(project: Project) -> None:
-    """Read ``sim/config.json``. What is wrong in it is a matter of the robot's run."""
-    with suppress(PyfrcError), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    """Read ``sim/config.json``, and warn here of keys without effect: a match prints nothing.
+
+    What is wrong in it is a matter of the robot's run.
+    """
+    with suppress(PyfrcError):
         game_messages(project)
         auto_joysticks(project)
