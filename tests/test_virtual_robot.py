@@ -171,6 +171,7 @@ def test_the_program_is_disabled_finds_its_files_and_does_not_outlive_a_robot_th
                     print("seen:", station.isDSAttached(), station.isEnabled(), wpilib.RobotBase.isSimulation())
                     print("read:", Path(wpilib.getDeployDirectory(), "path.txt").read_text())
                     print("home:", Path.home(), Path.cwd() == Path.home())
+                    print("silenced:", station.isJoystickConnectionWarningSilenced())
                     print("version 1 of", os.getpid(), flush=True)
             """,
         }
@@ -180,6 +181,7 @@ def test_the_program_is_disabled_finds_its_files_and_does_not_outlive_a_robot_th
         assert "False False True" in robot.said("seen:")
         assert "a path" in robot.said("read:")
         assert f"{directory / 'root/home/lvuser'} True" in robot.said("home:")
+        assert "silenced: True" in robot.said("silenced:")
         pid = robot.pid()
         robot.command.kill()
         assert ended(pid)

@@ -56,6 +56,8 @@ def _run(main: Path) -> bool:
 
     sys.path[0] = str(main.parent)
     wpilib.getDeployDirectory = lambda: str(main.parent / "deploy")
+    # It has no joysticks: the warnings, with a stack each second, would hide what the program prints.
+    wpilib.DriverStation.silenceJoystickConnectionWarning(True)
     # WPILib's own server would listen at all addresses of this computer.
     ntcore.NetworkTableInstance.getDefault().startServer("networktables.json", "127.0.0.1", 0, _tables_port())
     specification = importlib.util.spec_from_file_location("robot", main)
