@@ -23,6 +23,7 @@ from .runtime.hang_detector import HangDetector
 from .runtime.loading import load_robot
 from .runtime.loop_limit import LoopLimit
 from .runtime.patches import patches
+from .runtime.real_time_pace import RealTimePace
 from .runtime.robot import RobotRun
 from .runtime.scripts.boots import boots_of
 from .runtime.scripts.files import traced
@@ -84,6 +85,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
         with HangDetector(run, project.files, hang_seconds).watching():
             run.open()
             LoopLimit(run, project.files, settings)
+            RealTimePace(run, settings)
             try:
                 watch_invariants(run, project.files, rules)
                 seed_generators(script.seed)

@@ -107,7 +107,9 @@ def with_phoenix(make_project: MakeProject, tmp_path: Path) -> PhoenixProject:
     library = tmp_path / "library"
     library.mkdir()
     (library / "phoenix6.py").write_text(dedent(PHOENIX), "utf-8")
-    return PhoenixProject(make_project({"robot.py": ROBOT, **TESTS}), library)
+    # Nothing here needs the time that real devices need.
+    settings = "[tool.pyfrc.test]\nreal_time_speed = 10000\n"
+    return PhoenixProject(make_project({"robot.py": ROBOT, "pyproject.toml": settings, **TESTS}), library)
 
 
 # -- what is one of them -----------------------------------------------------------------------------------------------
@@ -193,6 +195,30 @@ def test_their_values_are_no_inputs(with_phoenix: PhoenixProject) -> None:
         "utf-8",
     )
     assert "(v6)" not in with_phoenix.record("recorded").read_text("utf-8")
+
+
+# -- how fast robot time passes ----------------------------------------------------------------------------------------
+
+
+#: It writes the real time of each turn of its loop.
+TIMED = ROBOT.replace(
+    "def robotPeriodic(self):",
+    """def robotPeriodic(self):
+            with open("real_time.txt", "a", encoding="utf-8") as file:
+                file.write(f"{time.clock_gettime(time.CLOCK_MONOTONIC)}\\n")""",
+).replace("import os", "import os\n    import time")
+
+
+def test_robot_time_waits_for_them(with_phoenix: PhoenixProject) -> None:
+    """In tests, replays and matches of fuzz: at half its speed, each packet of 20 ms takes 40 ms at least."""
+    settings = "[tool.pyfrc.test]\nreal_time_speed = 0.5\n[tool.pyfrc.fuzz]\nmatch_seconds = 0.2\n"
+    with_phoenix.project.write({"pyproject.toml": settings, "robot.py": TIMED})
+    script, noted = with_phoenix.record("recorded"), with_phoenix.path / "real_time.txt"
+    for command in (("test", "-j", "1", "--", "-k", "teleop"), ("replay", str(script)), ("fuzz", "--runs", "1")):
+        noted.unlink()
+        with_phoenix.output(*command)
+        times = [float(line) for line in noted.read_text("utf-8").split()]
+        assert times[9] - times[0] >= 8 * 0.04  # the first turn is the program's start, the second its first packet's
 
 
 # -- the commands say it once ------------------------------------------------------------------------------------------

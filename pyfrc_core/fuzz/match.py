@@ -19,6 +19,7 @@ from ..runtime.crash_moment import CrashMoment
 from ..runtime.exceptions import TestEnded, TestRanTooLong
 from ..runtime.hang_detector import HangDetector
 from ..runtime.loop_limit import LoopLimit
+from ..runtime.real_time_pace import RealTimePace
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.boots import boots_of, restore_entries, without_entries
 from ..runtime.scripts.files import traced
@@ -334,6 +335,7 @@ def _robot(
         run.open()
         CrashMoment(log, run)
         LoopLimit(run, project.files, project.settings)
+        RealTimePace(run, project.settings)
         notes = MisbehaviorNotes(run.clock, project.files, ends_with)
         with ExitStack() as closing:
             if use_oracle:

@@ -28,6 +28,7 @@ from ..runtime.hang_detector import HangDetector
 from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.patches import patches
+from ..runtime.real_time_pace import RealTimePace
 from ..runtime.refresh import explain_missing_refresh
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.files import recorded, traced
@@ -180,6 +181,7 @@ class PyFrcPlugin:
             if self.crash_log is not None:
                 CrashMoment(self.crash_log, run)
             LoopLimit(run, self.project.files, self.project.settings)
+            RealTimePace(run, self.project.settings)
             if self.crash_log is None:
                 closing.callback(_forget, run, request.node)
             closing.enter_context(self._recorded(run, request.node))
