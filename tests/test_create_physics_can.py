@@ -197,22 +197,14 @@ def test_swerve_on_talons_moves(make_project: MakeProject) -> None:
     run_test(
         project,
         """
-import time
-
-
 def test_moving(control, hal_data, robot, physics_controller):
     hal_data["alliance_station"] = "blue1"
     with control.run_robot():
         control.step_timing(seconds=0.5, autonomous=False, enabled=False)
         start = physics_controller.get_pose()
         hal_data["joysticks"][0]["axes"][1] = -0.8
-        for _ in range(200):
-            control.step_timing(seconds=0.02, autonomous=False, enabled=True)
-            time.sleep(0.02)
-            if physics_controller.get_pose().translation().distance(start.translation()) > 0.5:
-                break
-        else:
-            raise AssertionError("it has not moved")
+        control.step_timing(seconds=2, autonomous=False, enabled=True)
+        assert physics_controller.get_pose().translation().distance(start.translation()) > 0.5
         assert max(abs(module.drive_motor.get_position().value) for module in robot.container.drivetrain.modules) > 0.1
 """,
     )
