@@ -27,7 +27,11 @@ def _jobs(ctx: click.Context, param: click.Parameter, value: str | None) -> int 
 @project_options
 @click.option("--builtin", is_flag=True, help="Run the ready-made tests if the project has none of its own.")
 @click.option(
-    "-j", "--jobs", callback=_jobs, metavar="N", help="How many tests run at a time. Default: auto, one per core."
+    "-j",
+    "--jobs",
+    callback=_jobs,
+    metavar="N",
+    help="How many tests run at a time. Default: auto, one per core (one more with phoenix6).",
 )
 @click.option("--seed", type=click.IntRange(min=0), help="Random seed. Default: 0.")
 @click.option(

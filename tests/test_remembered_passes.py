@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import sys
@@ -295,6 +296,13 @@ def test_what_the_tests_write_themselves_prevents_no_deploy(make_project) -> Non
     result = made.run(*NO_ROBOT)
     assert "warning: files have changed since the tests began: log.txt\n" in result.output
     assert result.first_error.startswith("no robot found")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
+def test_a_named_pipe_in_the_project_is_not_read(make_project) -> None:
+    made = make_project({"robot.py": SMALL, "tests/test_it.py": "def test_it():\n    pass\n"})
+    os.mkfifo(made.path / "pipe")
+    assert made.run("test").code == 0
 
 
 def test_a_project_that_is_removed_while_its_tests_run(make_project) -> None:

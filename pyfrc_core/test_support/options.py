@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from ..config.settings import DEFAULT_SEED, TestSettings
-from ..processors import usable_processors
 
 Isolation: TypeAlias = Literal["auto", "fork", "spawn", "none"]
 
@@ -20,7 +19,8 @@ class TestOptions:
     """Options of a test run.
 
     :param seed: the seed of Python's and numpy's random generators in every test
-    :param jobs: how many tests run at the same time
+    :param jobs: how many tests run at the same time; "auto": as many as there are processors, and one more if they wait
+        for devices that are simulated in real time
     :param isolation: where each test that uses the robot runs
     :param trace_directory: where to write a trace of the robot in each test
     :param record_directory: where to record the robot's inputs in each test, as scripts for replay
@@ -31,7 +31,7 @@ class TestOptions:
     __test__ = False  # pytest: not a test class, despite its name
 
     seed: int = DEFAULT_SEED
-    jobs: int = 1
+    jobs: int | Literal["auto"] = 1
     isolation: Isolation = "auto"
     trace_directory: Path | None = None
     record_directory: Path | None = None
@@ -51,10 +51,9 @@ class TestOptions:
         only_changed: bool = False,
     ) -> TestOptions:
         """Return the options of the command line, completed by the project's settings and the defaults."""
-        jobs = jobs or settings.jobs
         return cls(
             seed=DEFAULT_SEED if seed is None else seed,
-            jobs=usable_processors() if jobs == "auto" else jobs,
+            jobs=jobs or settings.jobs,
             isolation=isolation or settings.isolation,
             trace_directory=trace_directory,
             record_directory=record_directory,

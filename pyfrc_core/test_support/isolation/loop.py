@@ -17,13 +17,15 @@ import itertools
 import os
 import sys
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 
 from ...compat import pytest_private
+from ...compat.real_time_devices import real_time_libraries
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.worker import wait_for_any
+from ...processors import usable_processors
 from ...project.robot_files import RobotFiles
 from ...runtime.failures import headline_is_the_robots
 from ...runtime.fork_obstacles import reasons_not_to_fork
@@ -88,7 +90,7 @@ class IsolatedTests:
         return hasattr(config, "workerinput") or config.pluginmanager.hasplugin("dsession")
 
     def _run_all(self, session: pytest.Session) -> None:
-        jobs = 1 if session.config.option.usepdb else self._plugin.options.jobs
+        jobs = 1 if session.config.option.usepdb else _number_of_jobs(self._plugin.options.jobs)
         items = session.items
         waiting: list[pytest.Item] = []
         if any(map(self._uses_robot, items)):
@@ -289,6 +291,11 @@ def _set_up_shared(session: pytest.Session, item: pytest.Item) -> None:
             request.getfixturevalue("tmp_path_factory").getbasetemp()
         for name in shared:
             request.getfixturevalue(name)
+
+
+def _number_of_jobs(jobs: int | Literal["auto"]) -> int:
+    """Return how many tests run at the same time; the robot's modules have been imported."""
+    return usable_processors() + bool(real_time_libraries()) if jobs == "auto" else jobs
 
 
 def _other_parameters(before: pytest.Item, item: pytest.Item) -> bool:
