@@ -18,7 +18,7 @@ TWICE = Settings(test=TestSettings(real_time_speed=2))
 
 
 class RealTime:
-    """Real time, in milliseconds: it passes while somebody sleeps, or where a test lets it pass."""
+    """Real time, in milliseconds: it passes in `sleep`, and where a test lets it pass."""
 
     def __init__(self) -> None:
         self.now = 1000.0
