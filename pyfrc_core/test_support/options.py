@@ -9,6 +9,7 @@ from typing import Literal, TypeAlias
 from ..config.settings import DEFAULT_SEED, TestSettings
 
 Isolation: TypeAlias = Literal["auto", "fork", "spawn", "none"]
+Jobs: TypeAlias = int | Literal["auto"]
 
 #: The package of the ready-made tests; they use this one, which imports none of them.
 READY_MADE_TESTS = "pyfrc_core.tests"
@@ -31,7 +32,7 @@ class TestOptions:
     __test__ = False  # pytest: not a test class, despite its name
 
     seed: int = DEFAULT_SEED
-    jobs: int | Literal["auto"] = 1
+    jobs: Jobs = 1
     isolation: Isolation = "auto"
     trace_directory: Path | None = None
     record_directory: Path | None = None
@@ -44,7 +45,7 @@ class TestOptions:
         settings: TestSettings,
         *,
         seed: int | None = None,
-        jobs: int | Literal["auto"] | None = None,
+        jobs: Jobs | None = None,
         isolation: Isolation | None = None,
         trace_directory: Path | None = None,
         record_directory: Path | None = None,

@@ -17,7 +17,7 @@ import itertools
 import os
 import sys
 from collections.abc import Iterator
-from typing import Any, Literal
+from typing import Any
 
 import pytest
 
@@ -30,6 +30,7 @@ from ...project.robot_files import RobotFiles
 from ...runtime.failures import headline_is_the_robots
 from ...runtime.fork_obstacles import reasons_not_to_fork
 from ...runtime.module_files import resolve_module_files
+from ..options import Jobs
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
 from .durations import Durations, longest_first
@@ -293,7 +294,7 @@ def _set_up_shared(session: pytest.Session, item: pytest.Item) -> None:
             request.getfixturevalue(name)
 
 
-def _number_of_jobs(jobs: int | Literal["auto"]) -> int:
+def _number_of_jobs(jobs: Jobs) -> int:
     """Return how many tests run at the same time; the robot's modules have been imported."""
     return usable_processors() + bool(real_time_libraries()) if jobs == "auto" else jobs
 
