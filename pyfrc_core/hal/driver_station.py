@@ -220,11 +220,6 @@ class JoystickData(LiveDict):
         hs.getJoystickAxes(self._port, self._axes)
         return self._axis_values.tolist()  # type: ignore[return-value]
 
-    @property
-    def plugged(self) -> bool:
-        """Whether the robot sees any control; if not, its data are sent to nothing."""
-        return self.counts() != (0, 0, 0)
-
     def outputs(self) -> tuple[int, int, int]:
         """Return what the robot sends back: the outputs' bits, the left and the right rumble."""
         return getJoystickOutputs(self._port)

@@ -40,6 +40,7 @@ class TreeReader:
 
     def __init__(self, tree: LiveDict, modules: Modules) -> None:
         self._tree = tree
+        self._can, self._robot = tree["CAN"], tree["robot"]
         self._modules = modules
         self._always = list(self._fixed())
         event = [(leaf.path, leaf.read) for leaf in _of(tree["event"])]
@@ -48,7 +49,8 @@ class TreeReader:
         slots = [slot for _, channels in initialized for slot in channels]
         slots += [*modules.initialized(), tree["accelerometer"]._slot("active")]
         self._devices = CreatedDevices(slots)
-        sent_back = _SentBack(list(tree["joysticks"]))
+        controls = [(stick, RarelyChanged(stick, partial(_controls, stick))) for stick in tree["joysticks"]]
+        sent_back = _SentBack(controls)
         self._created: list[bool] = []
         self._signature: Signature | None = None
         #: How many resets were announced before the HAL's reports were registered.
@@ -57,9 +59,9 @@ class TreeReader:
         self._live_paths: list[str] = []
         self._parts = Parts(
             RarelyChanged(tree["event"], lambda: [(path, get()) for path, get in event]),
-            *(RarelyChanged(stick, partial(_controls, stick)) for stick in tree["joysticks"]),
+            *(part for _, part in controls),
             RarelyChanged(sent_back, sent_back.read),
-            FreeValues("robot", tree["robot"].free()),
+            FreeValues("robot", self._robot.free()),
             FreeValues("custom", tree["custom"]),
         )
         #: The positions that each of the last versions has changed.
@@ -70,7 +72,7 @@ class TreeReader:
 
     def any_exist(self) -> bool:
         """Return whether any device exists, or any thread of WPILib that waits for an alarm."""
-        created = self._devices.any_created() or bool(self._tree["CAN"].signature())
+        created = self._devices.any_created() or bool(self._can.signature())
         return created or hal.simulation.getNumNotifiers() > 0
 
     def existing(self) -> list[str]:
@@ -79,14 +81,14 @@ class TreeReader:
         slots += ["pneumatics or power distribution"] * len(list(self._modules.initialized()))
         slots.append("accelerometer")
         names = [name for name, there in zip(slots, self._devices.created_now(), strict=True) if there]
-        if self._tree["CAN"].signature():
-            names += [join("CAN", name) for name in sorted(self._tree["CAN"])]
+        if self._can.signature():
+            names += [join("CAN", name) for name in sorted(self._can)]
         return names + ["a notifier"] * (hal.simulation.getNumNotifiers() > 0)
 
     def refresh(self) -> None:
         """Update `paths`, `values` and `version`."""
-        devices, created = self._tree["CAN"].signature(), self._devices.created()
-        self._tree["robot"].sync(devices)
+        devices, created = self._can.signature(), self._devices.created()
+        self._robot.sync(devices)
         if devices is not self._signature or created is not self._created or self._resets != resets.number:
             self._signature, self._created, self._resets = devices, created, resets.number
             self._register()
@@ -171,11 +173,11 @@ class TreeReader:
         for branch in (modules.pcm_compressor, modules.ph_compressor, modules.pdp):
             for module in branch.values():
                 yield from _of(module)
-        for name in sorted(tree["CAN"]):
-            yield from _of(tree["CAN"].device(name))
+        for name in sorted(self._can):
+            yield from _of(self._can.device(name))
 
     def _bridged(self) -> Iterator[Leaf]:
-        for key, (device, value) in self._tree["robot"].bridged().items():
+        for key, (device, value) in self._robot.bridged().items():
             yield next(_of(device, value))._replace(path=join("robot", key))
 
 
@@ -214,21 +216,25 @@ def _controls(stick: JoystickData) -> list[tuple[str, Any]]:
 
 
 class _SentBack:
-    """What the robot sends to the joysticks that are plugged in: robots often set it in each packet."""
+    """What the robot sends to the joysticks that are plugged in: robots often set it in each packet.
+
+    :param controls: the joysticks, each with the part of its controls, which has paths when it is plugged in and is
+        refreshed before this
+    """
 
     reports = (*JoystickData.reports, *JoystickData.output_reports)
 
-    def __init__(self, sticks: Sequence[JoystickData]) -> None:
-        self._sticks = sticks
+    def __init__(self, controls: Sequence[tuple[JoystickData, Part]]) -> None:
+        self._controls = controls
 
     def fingerprint(self) -> object:
-        return [stick.outputs() for stick in self._sticks if stick.plugged]
+        return [stick.outputs() for stick, part in self._controls if part.paths]
 
     def read(self) -> list[tuple[str, Any]]:
         keys = ("outputs", "left_rumble", "right_rumble")
         return [
             (f"{stick._path}.{key}", value)
-            for stick in self._sticks
-            if stick.plugged
+            for stick, part in self._controls
+            if part.paths
             for key, value in zip(keys, stick.outputs(), strict=True)
         ]
