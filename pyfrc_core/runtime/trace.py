@@ -65,7 +65,7 @@ class Trace:
             written.append(with_real_time(line, marked) if marked else line)
         self._hash.update("".join(hashed).encode())
         if self._out is not None:
-            self._out.writelines(f"{line}\n" for line in written)
+            self._out.write("\n".join([*written, ""]))
 
     def _take_marked(self, changed: dict[str, Any]) -> dict[str, Any]:
         """Remove the values that do not repeat, and return them."""

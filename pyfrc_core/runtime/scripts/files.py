@@ -12,6 +12,9 @@ from ..trace import Trace
 from .recorder import Recorder
 from .script import trace_beside
 
+#: The bytes of a trace that are written at once: a robot with hundreds of values has some kilobytes in each packet.
+_BUFFER = 1 << 17
+
 
 @contextmanager
 def traced(run: RobotRun, file: Path, then: Callable[[], object] | None = None) -> Iterator[Trace]:
@@ -20,7 +23,7 @@ def traced(run: RobotRun, file: Path, then: Callable[[], object] | None = None) 
     :param then: called after each look
     """
     file.parent.mkdir(parents=True, exist_ok=True)
-    with file.open("w", encoding="utf-8") as out:
+    with file.open("w", buffering=_BUFFER, encoding="utf-8") as out:
         trace = Trace(run.hal_data, out)
 
         def look(now: float) -> None:

@@ -11,10 +11,8 @@ from .network_trace import NetworkTrace
 class _Lines(list[str]):
     """A file for a trace's lines."""
 
-    def write(self, line: str) -> None:
-        self.append(line)
-
-    writelines = list.extend
+    def write(self, lines: str) -> None:
+        self += [f"{line}\n" for line in lines.split("\n")[:-1]]
 
 
 class Traces:
