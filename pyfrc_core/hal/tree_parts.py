@@ -102,9 +102,9 @@ class Parts:
     def refresh(self) -> tuple[int, list[Part]]:
         """Refresh what may have changed; return the greatest change, and the parts that have changed."""
         greatest, changed = NOTHING, []
-        for parts in [*(self._reported[number] for number in self._flags.take()), self._polled]:
-            for part in parts:
-                if change := part.refresh():
-                    greatest = max(greatest, change)
-                    changed.append(part)
+        reported = [part for number in self._flags.take() for part in self._reported[number]]
+        for part in reported + self._polled:
+            if change := part.refresh():
+                greatest = max(greatest, change)
+                changed.append(part)
         return greatest, changed
