@@ -241,8 +241,8 @@ def led_bytes(index: int, buffer: ctypes.Array[ctypes.c_char]) -> bytes:
 
     :param buffer: from `led_buffer`
     """
-    count = _library().HALSIM_GetAddressableLEDData(index, buffer)
-    return ctypes.string_at(buffer, 4 * count)
+    count: int = _library().HALSIM_GetAddressableLEDData(index, buffer)
+    return buffer[: 4 * count]  # type: ignore[return-value]  # a slice of characters is bytes
 
 
 def current_bytes(module: int, buffer: ctypes.Array[ctypes.c_double]) -> bytes:

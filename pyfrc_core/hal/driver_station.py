@@ -62,11 +62,11 @@ def program_state() -> str | None:
     """
     if not hs.getProgramStarted():
         return None
+    if DriverStation.isTeleopEnabled():  # the mode of most packets
+        return "teleop"
     if DriverStation.isDisabled():
         return "disabled"
-    if DriverStation.isAutonomous():
-        return "autonomous"
-    return "test" if DriverStation.isTest() else "teleop"
+    return "autonomous" if DriverStation.isAutonomous() else "test"
 
 
 class EventData(LiveDict):
