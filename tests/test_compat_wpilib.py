@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 import sys
 from subprocess import run
 
@@ -289,10 +290,10 @@ print(list(notes.take()))
     assert said_by(program) == expected, wpilib_private.NATIVE_HAL.gone
 
 
-def test_the_memory_of_a_value_stays_where_it_is() -> None:
-    program = """
+_ARM = """
+from math import nan
 from hal import simulation as hs
-from pyfrc_core.compat.hal_memory import value_memory
+from pyfrc_core.compat.hal_memory import ManyNumbers, value_memory
 
 device = hal.SimDevice("Arm")
 made = [
@@ -301,21 +302,63 @@ made = [
 ]
 handle = hs.getSimDeviceHandle("Arm")
 memory = value_memory(handle)
+"""
+
+
+def test_the_memory_of_a_value_stays_where_it_is() -> None:
+    program = (
+        _ARM
+        + """
 names = {hs.getSimValueHandle(handle, name): name for name in "dileb"}
-print({names[value]: place.number.value for value, place in memory.items()})
+print({names[value]: place.read() for value, place in memory.items()})
 more = [device.createDouble(f"more {number}", 0, 0.0) for number in range(500)]
 others = [hal.SimDevice(f"Other {number}") for number in range(200)]
 made[0].set(-0.0), made[1].set(7), made[2].set(-1 << 40), made[3].set(1), made[4].set(False)
-print(all(place.bits.value == place.bits_of(place.number.value) for place in memory.values()))
-print({names[value]: place.number.value for value, place in memory.items()})
+print({names[value]: place.read() for value, place in memory.items()})
 made[0].reset()
-print({names[value]: place.number.value for value, place in memory.items()}["d"])
+print({names[value]: place.read() for value, place in memory.items()}["d"])
 """
+    )
     expected = [
         str({"d": 1.5, "i": -2, "l": 1 << 40, "e": 2}),
-        "True",
         str({"d": -0.0, "i": 7, "l": -1 << 40, "e": 1}),
         "0.0",
+    ]
+    assert said_by(program) == expected, wpilib_private.NATIVE_HAL.gone
+
+
+def test_numbers_in_memory_that_have_changed_are_found() -> None:
+    program = (
+        _ARM
+        + """
+more = [device.createDouble(f"more {number}", 0, 0.0) for number in range(40)]
+other = hal.SimDevice("Other")
+far = other.createDouble("far", 0, nan)
+memory |= value_memory(handle) | value_memory(hs.getSimDeviceHandle("Other"))
+positions = {}
+for position, (value, place) in enumerate(memory.items()):
+    positions.setdefault(place.format, []).append(position)
+places = list(memory.values())
+found = [place.read() for place in places]
+values = found.copy()
+groups = [ManyNumbers([places[at] for at in some], some, [found[at] for at in some]) for some in positions.values()]
+
+def update():
+    changed = sorted(at for numbers in groups for at in numbers.update(found, values))
+    assert repr(found) == repr(values) == repr([place.read() for place in places])
+    return [(at, found[at]) for at in changed]
+
+print(sorted(positions), update())
+made[0].set(-0.5), made[1].set(7), made[2].set(-1 << 40), made[3].set(0), more[7].set(-0.0), far.set(nan)
+print(update(), update())
+made[0].set(0.5), made[0].set(-0.5), more[7].set(0.0), more[39].set(nan), far.set(1e300)
+print(update())
+"""
+    )
+    expected = [
+        "['d', 'i', 'q'] []",
+        str([(0, -0.5), (1, 7), (2, -1 << 40), (3, 0), (11, -0.0)]) + " []",
+        str([(11, 0.0), (43, math.nan), (44, 1e300)]),
     ]
     assert said_by(program) == expected, wpilib_private.NATIVE_HAL.gone
 

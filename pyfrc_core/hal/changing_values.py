@@ -9,13 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
-from itertools import compress
 from math import copysign
-from operator import ne
 from typing import Any, NamedTuple
 
 from ..compat.hal_callbacks import Report, WriteFlags, resets
-from ..compat.hal_memory import NumberMemory, value_memory
+from ..compat.hal_memory import ManyNumbers, NumberMemory, value_memory
 
 #: How many looks decide which values are written often, and for how many looks this holds: five seconds.
 _CHOOSING_LOOKS, _LOOKS_BETWEEN = 3, 250
@@ -87,13 +85,15 @@ class ChangingValues:
         #: What was written in the looks in which they are chosen, and how many of these looks follow.
         self._chosen: set[int] = set()
         self._choosing = _CHOOSING_LOOKS
-        self.values = [_converted(leaf, found) for leaf, found in zip(leaves, self._found, strict=True)]
+        self.values = [
+            found if leaf.convert is None else leaf.convert(found)
+            for leaf, found in zip(leaves, self._found, strict=True)
+        ]
 
     def look(self, values: list[Any]) -> list[int]:
         """Read what may have changed into `values`; return the positions of the changed values, in order."""
         changed = self._read_written(values)
-        for position in self._unreported:
-            _read(position, self._leaves, self._found, values, changed)
+        changed += _read(self._unreported, self._leaves, self._found, values)
         changed.sort()
         return changed
 
@@ -107,9 +107,8 @@ class ChangingValues:
         if looks_left:
             changed = self._often.read_all(values)
         if written:
-            for number in written:
-                for position in self._reported[number]:
-                    _read(position, self._leaves, self._found, values, changed)
+            positions = [position for number in written for position in self._reported[number]]
+            changed += _read(positions, self._leaves, self._found, values)
             if not looks_left:
                 self._choose(written)
         return changed
@@ -138,22 +137,21 @@ class ChangingValues:
         self._flags.close()
 
 
-def _read(position: int, leaves: Sequence[Leaf], found: list[Any], values: list[Any], changed: list[int]) -> None:
-    """Read one value; if it has changed, add its position to `changed`."""
-    leaf, old = leaves[position], found[position]
-    new = leaf.read()
-    if old == new:
-        if (new and type(new) in _SCALARS) or same(old, new):  # 0.0 and -0.0 are equal, and not the same
-            return
-    elif new != new and same(old, new):  # NaN differs from itself
-        return
-    found[position] = new
-    values[position] = _converted(leaf, new)
-    changed.append(position)
-
-
-def _converted(leaf: Leaf, found: Any) -> Any:
-    return found if leaf.convert is None else leaf.convert(found)
+def _read(positions: Iterable[int], leaves: Sequence[Leaf], found: list[Any], values: list[Any]) -> list[int]:
+    """Read values; return the positions of those that have changed."""
+    changed = []
+    for position in positions:
+        leaf, old = leaves[position], found[position]
+        new = leaf.read()
+        if old == new:
+            if (new and type(new) in _SCALARS) or same(old, new):  # 0.0 and -0.0 are equal, and not the same
+                continue
+        elif new != new and same(old, new):  # NaN differs from itself
+            continue
+        found[position] = new
+        values[position] = new if leaf.convert is None else leaf.convert(new)
+        changed.append(position)
+    return changed
 
 
 class _OftenWritten:
@@ -173,29 +171,26 @@ class _OftenWritten:
         memory: Mapping[tuple[Report, ...], NumberMemory],
     ) -> None:
         self._leaves, self._found = leaves, found
-        #: Positions with the memory of their numbers, and of the bits by which these are compared.
-        self._numbers: list[tuple[int, NumberMemory]] = []
-        #: The positions of all others.
+        #: The positions of numbers whose memory is known, by format, and of all others.
+        numbers: dict[str, list[int]] = {}
         self._others: list[int] = []
         for position in positions:
             leaf = leaves[position]
             place = memory.get(leaf.reports)
             # What is at this address has to be what the HAL returns.
-            if place is not None and same(place.number.value, leaf.read()):
-                self._numbers.append((position, place))
+            if place is not None and same(place.read(), leaf.read()):
+                numbers.setdefault(place.format, []).append(position)
             else:
                 self._others.append(position)
-        self._bits = [place.bits for _, place in self._numbers]
-        self._last = [place.bits_of(found[position]) for position, place in self._numbers]
+        self._numbers = [
+            ManyNumbers([memory[leaves[at].reports] for at in some], some, [found[at] for at in some])
+            for some in numbers.values()
+        ]
 
     def read_all(self, values: list[Any]) -> list[int]:
         """Update `values`; return the positions of those that have changed."""
-        found, changed = self._found, []
-        last, self._last = self._last, [bits.value for bits in self._bits]
-        # A thread that writes after its bits were read changes them: the next look reads that number again.
-        for position, place in compress(self._numbers, map(ne, last, self._last)):
-            found[position] = values[position] = place.number.value
-            changed.append(position)
-        for position in self._others:
-            _read(position, self._leaves, found, values, changed)
+        found = self._found
+        changed = _read(self._others, self._leaves, found, values)
+        for numbers in self._numbers:
+            changed += numbers.update(found, values)
         return changed
