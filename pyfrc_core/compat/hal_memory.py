@@ -35,9 +35,6 @@ class NumberMemory(NamedTuple):
 
     def read(self) -> float:
         """Return the number."""
-        return float(self._number()) if self.format == "d" else int(self._number())
-
-    def _number(self) -> float:
         memory = (ctypes.c_char * struct.calcsize(self.format)).from_address(self.address)
         number: float = struct.unpack(self.format, memory)[0]
         return number
