@@ -69,8 +69,7 @@ class Recorder:
         if stepping:
             self._stepping_since = self._run.clock.now_us
         if only_time:
-            if not self._match_time.counting:  # what was left before matters only then
-                self._left = modes.match_time()
+            self._left = modes.match_time()
             self._network.skip_later()
             return
         # Nothing has changed if the clock has called only the packet since the look. What code between two calls of the
@@ -187,32 +186,25 @@ class Recorder:
 
 
 class _MatchTime:
-    """Records the match time as one countdown. The code that runs a match writes it before each packet.
-
-    Attributes:
-        counting: whether it has counted down since it was last written
-    """
+    """Records the match time as one countdown. The code that runs a match writes it before each packet."""
 
     def __init__(self) -> None:
-        self.counting = False
         self._countdown = Countdown()
+        self._counting = False
         #: What was last written to stand still, and may turn out to be the beginning of a countdown.
         self._last: dict[str, Any] = {}
 
     def hear(self, writes: dict[str, object], before: float, left: float, at_us: int, stepping: bool) -> None:
-        """Add to `writes` what has to be said of the seconds that are left now.
-
-        :param before: what was left before it was written; anything while it is counting
-        """
-        if self.counting:
+        """Add to `writes` what has to be said of the seconds that are left now."""
+        if self._counting:
             if not stepping or left == self._countdown.left(at_us):
                 return
-            self.counting = False
+            self._counting = False
         elif left == before:
             return
         elif REMAINING in self._last and left == self._countdown.left(at_us):
             self._last[MATCH_TIME] = self._last.pop(REMAINING)
-            self.counting = True
+            self._counting = True
             return
         writes[REMAINING] = left
         self._countdown.start(left, at_us)
