@@ -38,7 +38,7 @@ def test_crashes_in_a_row_lead_back_to_the_program_that_ran(robot: Roborio, make
         info = project.run("deploy-info", "--robot", robot.where)
         if "not running" not in info.stdout:
             break
-    assert "program    release 2, ended at its last watched start; started again " in info.stdout
+    assert "program    release 2, ended after its last start; started again " in info.stdout
     assert "  release 1 " in info.stdout
     assert ", seen to run" in info.stdout
     project.write({"more.py": ""})

@@ -150,7 +150,8 @@ def test_a_record_is_written_whole(agents: Agents, tmp_path: Path) -> None:
                         ended = session.watch(1.0).alive
                 record = json.loads((robot.home / ".pyfrc/releases/1.json").read_text())
                 outcomes.append(record.pop("ran", False))
-                record.pop("ended", None)
+                for name in ("ended", "lasted", "process"):
+                    record.pop(name, None)
                 assert record == known
             assert outcomes == sorted(outcomes)
             assert {True, False} == set(outcomes)
@@ -166,9 +167,9 @@ def test_a_record_is_written_whole(agents: Agents, tmp_path: Path) -> None:
         (True, True, None, "release 1, running"),
         (True, False, None, "release 1, not running"),
         (None, True, 0.42, "release 1, running for 0.4 s"),
-        (False, True, 0.42, "release 1, ended at its last watched start; started again 0.4 s ago"),
-        (False, True, None, "release 1, ended at its last watched start; started again"),
-        (False, False, None, "release 1, ended at its last watched start; not running"),
+        (False, True, 0.42, "release 1, ended after its last start; started again 0.4 s ago"),
+        (False, True, None, "release 1, ended after its last start; started again"),
+        (False, False, None, "release 1, ended after its last start; not running"),
     ],
 )
 def test_what_is_known_of_the_program(
@@ -184,5 +185,5 @@ def test_what_is_known_of_the_program(
     facts = dataclasses.replace(facts_of(robot, agents), running=running, program_age=age)
     lines = info_text(facts, "").splitlines()
     assert f"program    {says}" in lines
-    listed = {True: ", seen to run", False: ", ended at its last watched start", None: ""}[runs]
+    listed = {True: ", seen to run", False: ", ended after its last start", None: ""}[runs]
     assert lines[-1] == f"* release 1   date unknown{listed}"

@@ -150,12 +150,12 @@ def robot() -> Iterator[Roborio]:
 def test_it_starts_on_a_robot(
     project: RobotProject, template: str, robot: Roborio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # A MagicRobot does not report its start. It takes less than two seconds here, on a roboRIO many more.
+    # A MagicRobot does not report its start, which takes less than two seconds here, on a roboRIO many more.
     monkeypatch.setattr(starting, "UNHEARD_SECONDS", 5.0)
     shown = io.StringIO()
     options = DeployOptions(choice=RobotChoice(robot=robot.where), skip_tests=True)
     session.deploy(find_project(project.path), options, UserInterface(DeployProgress(shown)))
-    runs = "a MagicRobot does not report" if template == "magic" else "the program runs"
+    runs = "does not report the end of its start" if template == "magic" else "the program runs"
     assert runs in shown.getvalue()
 
 

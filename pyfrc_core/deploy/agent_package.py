@@ -58,6 +58,7 @@ _MODULES = (
     "disk",
     "imports",
     "robot_paths",
+    "release_record",
     "virtual",
     "inventory",
     "activity",

@@ -29,7 +29,8 @@ class Release:
     :param previous:    the release that it replaced
     :param deploy_json: who deployed it, when, from where
     :param ran:         whether any watch has confirmed that it runs
-    :param ended:       whether it ended during its last watched start
+    :param ended:       whether it has ended during its last watched start or since
+    :param damaged:     whether its record cannot be read
     """
 
     number: int
@@ -41,6 +42,7 @@ class Release:
     deploy_json: Mapping[str, str]
     ran: bool = False
     ended: bool = False
+    damaged: bool = False
 
     @classmethod
     def of(cls, fields: Fields) -> Release:
@@ -55,6 +57,7 @@ class Release:
             deploy_json=fields.record("deploy"),
             ran=fields.flag("ran"),
             ended=fields.flag("ended"),
+            damaged="damaged" in fields and fields.flag("damaged"),
         )
 
 

@@ -10,7 +10,7 @@ from .facts import Release, RobotFacts
 from .progress import UserInterface
 from .target_connection import RobotChoice, choose_target, connected_agent
 
-_ENDED = "ended at its last watched start"
+_ENDED = "ended after its last start"
 
 
 def show_info(project: Project | None, choice: RobotChoice, talk: UserInterface) -> None:
@@ -61,6 +61,7 @@ def _release_line(release: Release, current: int | None) -> str:
     parts += ["left by another tool"] if release.taken else []
     if release.ran or release.ended:
         parts.append(_ENDED if release.ended else "seen to run")
+    parts += ["its record is damaged"] if release.damaged else []
     mark = "*" if release.number == current else " "
     return f"{mark} release {release.number:<4}" + ", ".join(part for part in parts if part)
 

@@ -38,7 +38,7 @@ from .target_connection import (
 
 if TYPE_CHECKING:
     from .agent_client import AgentClient
-    from .facts import Deployed, Plan
+    from .facts import Deployed, Plan, RobotFacts
     from .manifest import Manifest
 
 
@@ -99,6 +99,7 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
         with running_agent(connection, progress, imports.modules(), early.agent, manifest) as robot:
             if robot.facts.other_languages:
                 progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
+            _note_unfit_releases(robot.facts, progress)
             refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
             check_packages(imports, packages, robot.facts, talk, dry_run=options.dry_run, refuse=options.check_versions)
             if checked.importing is not None:
@@ -132,6 +133,7 @@ def rollback(project: Project | None, choice: RobotChoice, release: int | None, 
         connection,
         robot,
     ):
+        _note_unfit_releases(robot.facts, talk.progress)
         try:
             restored = go_back(robot, talk, release)
         finally:
@@ -139,6 +141,14 @@ def rollback(project: Project | None, choice: RobotChoice, release: int | None, 
         result = {"host": connection.host, "release": restored}
         talk.progress.result(result, f"The robot runs release {restored} again.")
     return connection.address
+
+
+def _note_unfit_releases(facts: RobotFacts, progress: DeployProgress) -> None:
+    for each in facts.releases:
+        if each.damaged:
+            progress.note(f"  the record of release {each.number} on the robot is damaged: it cannot be started again")
+        elif each.number == facts.current and each.ran and each.ended:
+            progress.note(f"  release {each.number} ended after its last start: no rollback selects it now")
 
 
 def _replace_bad_kill_script(robot: AgentClient, connection: Connection, progress: DeployProgress) -> None:

@@ -92,7 +92,7 @@ def _restart(robot: AgentClient, talk: UserInterface) -> Watched:
     if watched.verdict == start_monitor.UNHEARD:
         why = "its console is silent, which is normal without a Driver Station"
         if state.heard:
-            why = "a MagicRobot does not report the end of its start"
+            why = "a main loop of its own, such as a MagicRobot's, does not report the end of its start"
         talk.progress.note(f"  judged by its process alone: {why}; {_known_of(state)}")
     if watched.alive and state.lived:
         talk.progress.note(

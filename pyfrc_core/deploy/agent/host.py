@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import Union
 
 from .console import PORTS
+from .disk import text_of
 from .inventory import find_other_languages
+from .release_record import Boot
 from .robot_paths import CODE, HOME, Refusal, RobotPaths
 from .virtual import VirtualRobotClient
 
@@ -77,6 +79,12 @@ class RoboRio:
             return bool(Path(f"/proc/{process}/cmdline").read_bytes())  # empty: a zombie
         except OSError:
             return False
+
+    def boot(self) -> Boot:
+        """Return the last start of the system. In a container, this is the start of its first process."""
+        name = text_of(Path("/proc/sys/kernel/random/boot_id"))
+        age = age_of([1])
+        return Boot("") if name is None or age is None else Boot(f"{name.strip()} {_start_of(1)}", age)
 
     def serves_network_tables(self, process: int) -> bool | None:
         """Return whether a process listens at the port of NetworkTables."""
@@ -178,10 +186,14 @@ def age_of(processes: Iterable[int]) -> float | None:
     ages = []
     for process in processes:
         with suppress(OSError, ValueError, IndexError):
-            began = int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[19])
             uptime = float(Path("/proc/uptime").read_text().split()[0])
-            ages.append(max(0.0, uptime - began / os.sysconf("SC_CLK_TCK")))
+            ages.append(max(0.0, uptime - _start_of(process) / os.sysconf("SC_CLK_TCK")))
     return max(ages, default=None)
+
+
+def _start_of(process: int) -> int:
+    """Return the start of a process, in clock ticks since the system's start."""
+    return int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[19])
 
 
 def cpu_seconds(process: int) -> float:

@@ -21,7 +21,15 @@ _PIECE = 50_000
 #: Characters of output that are kept until the watch begins.
 _KEPT_OUTPUT = 1 << 16
 _LEFT_OUT = "[pyfrc has left out earlier output]\n"
-_IMPORTS_MAGICBOT = re.compile(rb"^[ \t]*(?:from|import)\b[^#\n]*\bmagicbot\b", re.MULTILINE)
+#: A robot class that inherits WPILib's loop, which reports the end of `robotInit`.
+_WPILIBS_LOOP = re.compile(
+    rb"^[ \t]*class[ \t]+\w+[ \t]*\([^)#]*\b(?:Timed|TimedCommand|Timeslice)Robot\b", re.MULTILINE
+)
+#: A main loop of the program's own, which does not.
+_OWN_LOOP = re.compile(
+    rb"^[ \t]*(?:def[ \t]+startCompetition\b|[^#\n]*\bobserveUserProgramStarting\b|(?:from|import)\b[^#\n]*\bmagicbot\b)",
+    re.MULTILINE,
+)
 
 
 class Program:
@@ -38,6 +46,8 @@ class Program:
         self._next_listing = 0.0
         #: Output of the new program that was not sent yet.
         self._output = ""
+        #: The program's process at the end of the watch, if it was seen.
+        self.process: int | None = None
 
     def restart(self, main: Path | None = None, has_run: bool = False) -> bool:
         """Restart the program; return when the old one has ended. The console is connected before.
@@ -78,6 +88,7 @@ class Program:
                 verdict = STARTING  # the laptop has disconnected, or sent another request
             if verdict is not None:
                 self._console.disconnect()
+                self.process = monitor.process
                 return {"verdict": verdict, "has_run": monitor.has_run, **self._state(monitor, now)}
             if now >= report:
                 wire.send(watching=self._state(monitor, now))
@@ -119,17 +130,21 @@ def process_state(host: Host, process: int) -> Message:
 
 
 def _reports_start(main: Path | None) -> bool:
-    """Return whether a program reports the end of `robotInit`. The loop of `magicbot.MagicRobot` does not.
+    """Return whether a program reports the end of `robotInit`: whether WPILib's loop runs it.
 
+    The loop of `magicbot.MagicRobot` does not report it, nor does one of the program's own or of another library.
     The base class of the robot may be in any module of the program.
 
     :param main: the program's main file, if known
     """
     if main is None:
         return True
+    found = False
     for name, entry in files_below(main.parent):
-        if name.endswith(".py"):
+        if name.endswith(".py") and not name.startswith("tests/"):
             with suppress(OSError), open(entry.path, "rb") as source:  # noqa: PTH123
-                if _IMPORTS_MAGICBOT.search(source.read()):
+                text = source.read()
+                if _OWN_LOOP.search(text):
                     return False
-    return True
+                found = found or _WPILIBS_LOOP.search(text) is not None
+    return found

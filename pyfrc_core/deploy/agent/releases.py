@@ -9,6 +9,8 @@ from __future__ import annotations
 import json
 import os
 import re
+import stat
+from collections.abc import Callable
 from contextlib import suppress
 from itertools import count
 from pathlib import Path
@@ -18,9 +20,8 @@ from .activity import Activity
 from .carrying import Carried, carry_over
 from .disk import allow_changes, make_links_absolute, remove, remove_if_possible, text_of, write_whole
 from .robot_paths import CODE, COMMAND, DEBUG_COMMAND, HOME, Refusal, RobotPaths
+from .release_record import Record, parse_record, standing
 from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link, replace_link
-
-Record = dict[str, Any]
 
 _KEPT = 3
 _TRASH, _CARRIED = "trash-", "carried"
@@ -93,20 +94,18 @@ class Releases:
         return self.paths.releases / f"{number}.json"
 
     def record(self, number: int) -> Record:
-        """Return the record of a release: files with hashes, start commands, origin; empty if there is none."""
+        """Return the record of a release: files with hashes, start commands, origin; empty if it is damaged or missing."""
         file = self._record_file(number)
         try:
             state = file.stat()
         except OSError:
             return {}
+        if not stat.S_ISREG(state.st_mode):
+            return {}
         # The file is only ever replaced, possibly by another agent.
         identity = (state.st_dev, state.st_ino, state.st_mtime_ns, state.st_size)
         if self._records.get(number, ((), {}))[0] != identity:
-            try:
-                record = json.loads(text_of(file) or "{}")
-            except ValueError:
-                record = {}
-            self._records[number] = identity, record if isinstance(record, dict) else {}
+            self._records[number] = identity, parse_record(text_of(file) or "")
         return dict(self._records[number][1])
 
     def contents(self, number: int | None) -> set[str]:
@@ -118,34 +117,30 @@ class Releases:
         self.paths.releases.mkdir(parents=True, exist_ok=True)
         write_whole(self._record_file(number), json.dumps(record))
 
-    def ran(self, number: int) -> bool:
-        """Return whether a watch has ever confirmed that this release runs."""
-        return bool(self.record(number).get("ran"))
+    def update_record(self, number: int, change: Callable[[Record], Record]) -> None:
+        """Change the record of a release, if it still exists.
 
-    def record_start(self, number: int, ran: bool, ended: bool) -> None:
-        """Record the result of a watched start, if the release still exists.
-
-        :param ran:   whether any watch has confirmed that it runs
-        :param ended: whether it ended during the last watched start
+        The change is valid for this agent even if it cannot be written.
         """
         record = self.record(number)
-        known = {**record, "ran": ran, "ended": ended}
-        if record and known != record:
-            self.write_record(number, known)
+        if record and (changed := change(record)) != record:
+            self._records[number] = self._records[number][0], changed
+            self.write_record(number, changed)
 
     def fallback(self, number: int | None) -> int | None:
         """Return the release that a rollback from this one selects, or None if there is none.
 
-        This is the release that it replaced. If that release was never confirmed to run, it is the newest earlier one
-        that was, if any.
+        This is the release that it replaced, if that is good. Otherwise it is the newest earlier good one, else the one
+        that has run for longest.
         """
         numbers = self.numbers()
         earlier = [each for each in numbers if number is None or each < number]
         before = self.record(number).get("from") if number is not None else None
-        if before not in numbers:
+        if before not in earlier:
             before = max(earlier, default=None)
-        ran = [each for each in earlier if self.ran(each)]
-        return before if before in ran or not ran else ran[-1]
+        if before is None or standing(self.record(before)).good:
+            return before
+        return max(earlier, key=lambda each: (*standing(self.record(each)), each == before, each))
 
     def current(self) -> int | None:
         """Return the release that ``~/py`` links to, or None: another tool's program, or no program."""
@@ -313,7 +308,7 @@ class Releases:
     def prune(self, kept: int = _KEPT, needed: int | None = None) -> None:
         """Remove old releases.
 
-        Releases that the robot may start, and the newest one that was confirmed to run, are always kept.
+        Releases that the robot may start, the newest good one, and the one that has run for longest are always kept.
 
         :param kept: how many releases to keep
         :param needed: another release that is kept, if any
@@ -322,7 +317,10 @@ class Releases:
         keep = {int(each) for each in self._startable()}
         if needed is not None:
             keep.add(needed)
-        keep.update([each for each in numbers if self.ran(each)][-1:])
+        if numbers:
+            keys = {each: standing(self.record(each)) for each in numbers}
+            keep.add(max(numbers, key=lambda each: (keys[each].good, each)))
+            keep.add(max(numbers, key=lambda each: (keys[each].lasted, each)))
         current = self.current()
         if kept > 1 and current is not None and self.record(current).get("from") in numbers:
             keep.add(self.record(current)["from"])

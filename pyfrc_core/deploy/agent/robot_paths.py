@@ -60,15 +60,19 @@ class RobotPaths:
 
 
 class Lock:
-    """The exclusive right to change the robot's programs. The system releases it when the process ends."""
+    """The exclusive right to change the robot's programs. The system releases it when the process ends.
 
-    def __init__(self, paths: RobotPaths, who: str) -> None:
+    :param wait: seconds to wait for another process to release it
+    """
+
+    def __init__(self, paths: RobotPaths, who: str, wait: float = _GRACE) -> None:
         self._file = paths.lock
         self._who = who
+        self._wait = wait
         self._stream: FileIO | None = None
 
     def __enter__(self) -> None:
-        give_up = time.monotonic() + _GRACE
+        give_up = time.monotonic() + self._wait
         while True:
             self._file.parent.mkdir(parents=True, exist_ok=True)
             stream = self._file.open("a+b", buffering=0)

@@ -21,6 +21,7 @@ from .imports import look_up
 from .inventory import IMAGE_FILE, image_in
 from .kept import keep
 from .program import Program
+from .release_record import after_watch, now
 from .releases import Releases
 from .robot_paths import COMMAND, DEBUG_COMMAND, Lock, Refusal, RobotPaths
 from .start_monitor import ENDED, RUNNING, UNHEARD
@@ -144,6 +145,7 @@ class Agent:
         ini = text_of(self._paths.of("/etc/natinst/share/ni-rt.ini"))
         releases, python = self._releases, look_up(request.get("modules") or ())
         program = self._host.processes()
+        self._review(program)
         known = releases.contents(releases.current())
         return {
             **python,
@@ -168,11 +170,20 @@ class Agent:
             "other_languages": self._host.other_languages(),
         }
 
+    def _review(self, processes: set[int]) -> None:
+        """Compare the program's processes with the one that a watch has seen run, and update the release's record."""
+        current = self._releases.current()
+        change = partial(now, boot=self._host.boot(), processes=processes, age=age_of(processes))
+        if current is not None and change(record := self._releases.record(current)) != record:
+            # Not while another computer deploys: its watch writes the record then. A full disk prevents nothing.
+            with suppress(OSError, Refusal), Lock(self._paths, self._who, wait=0.0):
+                self._releases.update_record(current, change)
+
     def _summary(self, number: int) -> Message:
         record = self._releases.record(number)
         known = {key: record.get(key) for key in ("main", "debug", "deploy", "from")}
         known.update({key: bool(record.get(key)) for key in ("taken", "ran", "ended")})
-        return {"release": number, "files": len(record.get("files", ())), **known}
+        return {"release": number, "files": len(record.get("files", ())), "damaged": not record, **known}
 
     @contextmanager
     def _transaction(self, keep: bool = False) -> Iterator[None]:
@@ -230,6 +241,9 @@ class Agent:
             main = None if name is None else self._paths.code / name
             has_run = current is not None and current == self._has_run
             self._has_run = None  # the next restart is not preceded by a comparison
+            if current is not None:
+                with suppress(OSError):  # the process that ends now was not seen to crash
+                    self._releases.update_record(current, lambda record: {**record, "process": None})
             survived = self._activity.wait_for(self._program.restart, main, has_run)
             with suppress(OSError):  # the next deploy does the rest
                 if current is not None:
@@ -246,9 +260,12 @@ class Agent:
             watched = self._program.watch(self._wire, seconds, float(request.get("unheard", seconds)))
             started, self._started = self._started, None
             if started is not None:
-                ran = watched["verdict"] in (RUNNING, UNHEARD) or self._releases.ran(started)
+                verdict, process = watched["verdict"], self._program.process
+                runs, boot, age = verdict in (RUNNING, UNHEARD), self._host.boot(), watched["age"]
                 with suppress(OSError):  # a full disk must not change the verdict
-                    self._releases.record_start(started, ran, watched["verdict"] == ENDED)
+                    self._releases.update_record(
+                        started, lambda record: after_watch(record, runs, verdict == ENDED, process, age, boot)
+                    )
             return watched
 
     def _roll_back(self, request: Message) -> Message:

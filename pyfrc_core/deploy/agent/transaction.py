@@ -16,7 +16,8 @@ from .carrying import Carried
 from .compiling import CompiledForms, Compiler, compile_below
 from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest, sha256_of
 from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, write_whole
-from .releases import Record, Releases, start_commands
+from .release_record import NEVER_RUN, Record
+from .releases import Releases, start_commands
 from .robot_paths import COMMAND, DEBUG_COMMAND, Refusal
 from .wire import Message, Wire
 
@@ -275,7 +276,7 @@ class Deploy:
         self._wire.send(phase="switch")
         current = self._releases.current()
         if current is not None and wanted:
-            self._releases.record_start(current, ran=False, ended=False)  # it is another program now
+            self._releases.update_record(current, lambda record: {**record, **NEVER_RUN})  # another program now
         self._releases.flush(self._paths.own)
         compiled = CompiledForms()
         for each in wanted:

@@ -6,10 +6,12 @@ and it does not exist on a roboRIO.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from collections.abc import Callable
 
+from .release_record import Boot
 from .robot_paths import RobotPaths
 
 VARIABLE = "PYFRC_VIRTUAL_ROBOT"
@@ -63,6 +65,10 @@ class VirtualRobotClient:
     def is_running(self, process: int) -> bool:
         """Return whether a process of the program still runs."""
         return process in self.processes()
+
+    def boot(self) -> Boot:
+        """Return its last start."""
+        return Boot(hashlib.sha256(self.key.encode()).hexdigest())
 
     def serves_network_tables(self, process: int) -> bool | None:
         """Return None: each virtual robot on a computer has another port."""

@@ -1,0 +1,143 @@
+"""A release's record: reading it, and what it says of how the program runs.
+
+A watch sees only the first seconds of a program. The process that it saw is therefore recorded, and the next agent
+compares it with the process that runs then: another one means that the program has ended and was started again.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Collection, Mapping
+from typing import Any, NamedTuple
+
+Record = dict[str, Any]
+
+#: Seconds after which a program counts as lasting. A younger process than the one that was seen counts as the end of the
+#: program, also if it was restarted from the Driver Station; one that lasts proves the opposite again.
+LONG = 60.0
+#: Seconds after its boot within which a robot has started its program.
+_BOOT = 180.0
+#: The fields of a release that no watch has seen yet.
+NEVER_RUN: Record = {"ran": False, "ended": False, "lasted": 0.0, "process": None}
+
+
+class Boot(NamedTuple):
+    """One start of the robot's system.
+
+    :param name: differs for each start; empty if unknown
+    :param age:  seconds since then; None if unknown
+    """
+
+    name: str
+    age: float | None = None
+
+
+class Standing(NamedTuple):
+    """How well a release runs; the best compares as the greatest.
+
+    :param readable: whether its record can be read
+    :param good:     whether a watch has seen it run, and nothing says otherwise
+    :param lasted:   for how many seconds it was seen to run, at most `LONG`
+    """
+
+    readable: bool
+    good: bool
+    lasted: float
+
+
+def standing(record: Mapping[str, Any]) -> Standing:
+    """Return how well the release of a record runs."""
+    good = bool(record.get("ran") and not record.get("ended"))
+    return Standing(bool(record), good, record.get("lasted") or 0.0)
+
+
+def after_watch(record: Record, runs: bool, ended: bool, process: int | None, age: float, boot: Boot) -> Record:
+    """Return the record after a watched start.
+
+    :param runs:    whether the watch has confirmed that the program runs
+    :param ended:   whether it has ended
+    :param process: its process, if it has one
+    :param age:     for how many seconds that has run
+    """
+    seen = runs and process is not None and boot.name
+    return {
+        **record,
+        "ran": runs or bool(record.get("ran")),
+        "ended": ended,
+        "lasted": max(record.get("lasted") or 0.0, min(age, LONG) if runs else 0.0),
+        "process": {"boot": boot.name, "id": process} if seen else None,
+    }
+
+
+def now(record: Record, boot: Boot, processes: Collection[int], age: float | None) -> Record:
+    """Return the record with what the program's current processes say.
+
+    :param age: for how many seconds the program has run; None if unknown
+    """
+    seen = record.get("process")
+    if not seen:
+        return record  # no watch has seen it run since its last start
+    if processes and age is not None and age >= LONG:
+        return {**record, "ended": False, "lasted": LONG}
+    if seen["boot"] == boot.name:
+        is_restarted = seen["id"] not in processes
+    else:
+        is_restarted = boot.age is not None and age is not None and boot.age - age > _BOOT
+    if is_restarted:
+        return {**record, "ended": True}
+    return {**record, "lasted": max(record.get("lasted") or 0.0, round(age or 0.0, 1))}
+
+
+def _is_table(key: Callable[[Any], bool], value: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    return lambda table: isinstance(table, dict) and all(key(each) and value(table[each]) for each in table)
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _is_number(value: Any) -> bool:
+    return type(value) is int and value >= 0
+
+
+def _is_release(value: Any) -> bool:
+    return _is_number(value) and value < 1 << 53
+
+
+def _is_carried(value: Any) -> bool:
+    return (
+        isinstance(value, dict)
+        and _is_release(value.get("from"))
+        and _is_table(_is_text, _is_number)(value.get("files"))
+    )
+
+
+def _is_process(value: Any) -> bool:
+    return isinstance(value, dict) and _is_text(value.get("boot")) and _is_number(value.get("id"))
+
+
+#: Whether the value of each field is valid.
+_FIELDS: dict[str, Callable[[Any], bool]] = {
+    "files": _is_table(_is_text, _is_text),
+    "carried": _is_carried,
+    "main": lambda value: value is None or _is_text(value),
+    "debug": lambda value: value is None or isinstance(value, bool),
+    "commands": _is_table(_is_text, lambda value: value is None or _is_text(value)),
+    "deploy": lambda value: isinstance(value, dict),
+    "from": lambda value: value is None or _is_release(value),
+    "ran": lambda value: isinstance(value, bool),
+    "ended": lambda value: isinstance(value, bool),
+    "lasted": lambda value: isinstance(value, (int, float)) and 0 <= value <= LONG,
+    "process": lambda value: value is None or _is_process(value),
+}
+
+
+def parse_record(text: str) -> Record:
+    """Return the record in a file; empty if it is damaged."""
+    try:
+        record = json.loads(text)
+    except (ValueError, RecursionError):
+        return {}
+    if not isinstance(record, dict) or "commands" not in record:
+        return {}
+    return record if all(is_valid(record[key]) for key, is_valid in _FIELDS.items() if key in record) else {}

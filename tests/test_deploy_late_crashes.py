@@ -1,0 +1,253 @@
+"""Programs that crash after their watched start, and programs with a main loop of their own."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+from conftest import RobotProject
+from roborio import Roborio, require_roborio
+from roborio.fixtures import local_robot  # noqa: F401 - `robot`
+from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
+from test_virtual_robot import ROBOT as GOOD
+from test_virtual_robot import started
+
+from pyfrc_core.deploy import session, starting
+from pyfrc_core.deploy.agent.program import _reports_start
+from pyfrc_core.deploy.agent.release_record import LONG, Boot, Record, after_watch, now, parse_record, standing
+from pyfrc_core.deploy.agent_client import DeployRequest
+from pyfrc_core.deploy.progress import DeployProgress, UserInterface
+from pyfrc_core.deploy.session import DeployOptions
+from pyfrc_core.deploy.target_connection import RobotChoice
+from pyfrc_core.project import find_project
+
+#: Each start prints its number.
+LATE = """
+import time
+from pathlib import Path
+
+import wpilib
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        starts = Path.home() / "starts of NUMBER"
+        with starts.open("a") as file:
+            file.write(".")
+        print("release NUMBER, start", starts.stat().st_size, flush=True)
+        self.began = time.monotonic()
+
+    def disabledPeriodic(self):
+        if time.monotonic() - self.began > 2.5:
+            raise RuntimeError("late")
+"""
+OWN_LOOP = """
+import time
+
+import wpilib
+
+class LoggedLike(wpilib.RobotBase):
+    def startCompetition(self):
+        print("my loop", flush=True)
+        while True:
+            time.sleep(0.02)
+
+    def endCompetition(self):
+        pass
+
+class MyRobot(LoggedLike):
+    pass
+"""
+Said = Callable[[str], object]
+Robot = tuple[str, Said]
+
+
+@contextmanager
+def look_alike() -> Iterator[Robot]:
+    require_roborio()
+    with Roborio(wpilib=version("wpilib")) as robot:
+        yield robot.where, robot.said
+
+
+@pytest.fixture(params=["virtual robot", "look-alike"])
+def a_robot(request: pytest.FixtureRequest, make_project, tmp_path: Path) -> Iterator[tuple[RobotProject, Robot]]:
+    """A project, and a robot: its address, and what waits for its program's output."""
+    project = make_project({"robot.py": GOOD})
+    if request.param == "look-alike":
+        with look_alike() as robot:
+            yield project, robot
+    else:
+        with started(project, tmp_path / "robot") as virtual:
+            yield project, (virtual.address, virtual.said)
+
+
+def test_after_three_late_crashers_a_rollback_goes_to_the_program_that_runs(
+    a_robot: tuple[RobotProject, Robot],
+) -> None:
+    project, (address, said) = a_robot
+
+    def run(*command: str) -> str:
+        result = project.run(*command, "--robot", address)
+        assert result.code == 0, result.output
+        return result.output
+
+    run("deploy", "--skip-tests")
+    for number in (2, 3, 4):
+        project.write({"robot.py": LATE.replace("NUMBER", str(number))})
+        output = run("deploy", "--skip-tests")
+        assert "the program runs" in output
+        assert (f"release {number - 1} ended after its last start" in output) == (number > 2)
+        said(f"release {number}, start 2")
+    releases = {each["number"]: each for each in json.loads(run("deploy-info", "--json").splitlines()[-1])["releases"]}
+    assert {number: each["ended"] for number, each in releases.items()} == {1: False, 3: True, 4: True}
+    assert "program    release 4, ended after its last start; " in run("deploy-info")
+    assert "The robot runs release 1 again." in run("deploy", "--rollback")
+
+
+def test_a_program_with_its_own_loop_runs(a_robot: tuple[RobotProject, Robot], monkeypatch: pytest.MonkeyPatch) -> None:
+    project, (address, _) = a_robot
+    project.write({"robot.py": OWN_LOOP})
+    monkeypatch.setattr(starting, "UNHEARD_SECONDS", 5.0)
+    shown = io.StringIO()
+    options = DeployOptions(choice=RobotChoice(robot=address), skip_tests=True)
+    session.deploy(find_project(project.path), options, UserInterface(DeployProgress(shown)))
+    assert "its process has run for 5 s" in shown.getvalue()
+    assert "judged by its process alone: a main loop of its own, such as a MagicRobot's, does not" in shown.getvalue()
+    info = project.run("deploy-info", "--robot", address).stdout
+    assert ", seen to run" in info
+
+
+@pytest.mark.parametrize(
+    ("source", "reports"),
+    [
+        ("class Robot(wpilib.TimedRobot):\n", True),
+        ("class Robot(commands2.TimedCommandRobot):\n", True),
+        ("class Robot(\n    Mixin,\n    wpilib.TimedRobot,\n):\n", True),
+        ("class Robot(pykit.loggedrobot.LoggedRobot):\n", False),
+        ("from magicbot import MagicRobot\nclass Robot(MagicRobot):\n", False),
+        ("class Robot(wpilib.TimedRobot):\n    def startCompetition(self):\n", False),
+        (
+            "class Robot(wpilib.IterativeRobotBase):\n    def run(self):\n        hal.observeUserProgramStarting()\n",
+            False,
+        ),
+        ("# class Robot(wpilib.TimedRobot)\n", False),
+    ],
+)
+def test_which_programs_report_the_end_of_their_start(source: str, reports: bool, tmp_path: Path) -> None:
+    main = tmp_path / "robot.py"
+    main.write_text("import base\n")
+    (tmp_path / "base.py").write_text(source)
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests/fake.py").write_text("class Fake(wpilib.TimedRobot):\n")
+    assert _reports_start(main) == reports
+
+
+# -- what a record says --------------------------------------------------------------------------------------------
+
+THIS, OTHER = Boot("this", 1000.0), Boot("other", 1000.0)
+WATCHED = after_watch({"commands": {}}, True, False, 7, 2.0, THIS)
+
+
+def seen(boot: Boot, process: int | None, age: float | None, record: Record = WATCHED) -> tuple[bool, float]:
+    standing_now = standing(now(record, boot, set() if process is None else {process}, age))
+    return standing_now.good, standing_now.lasted
+
+
+def test_a_release_is_good_while_nothing_says_otherwise() -> None:
+    assert seen(THIS, 7, 20.0) == (True, 20.0)
+    assert seen(THIS, 7, 3600.0) == (True, LONG)
+    assert seen(THIS, 8, 20.0) == (False, 2.0), "it was restarted"
+    assert seen(THIS, None, None) == (False, 2.0), "it does not run"
+    assert seen(THIS, 8, 70.0) == (True, LONG), "it was restarted, and lasts"
+    assert seen(THIS, 8, None) == (False, 2.0), "a system that knows no ages"
+    assert seen(OTHER, 8, 990.0) == (True, LONG)
+    assert seen(OTHER, 8, 20.0) == (False, 2.0), "it was restarted long after the boot"
+    assert seen(Boot("other", 50.0), 8, 20.0) == (True, 20.0), "it was started at the boot"
+    assert seen(Boot("other"), 8, 20.0) == (True, 20.0), "a virtual robot, which starts at any time"
+
+
+def test_a_withdrawn_mark_returns_only_with_a_program_that_lasts() -> None:
+    withdrawn = now(WATCHED, THIS, {8}, 20.0)
+    assert seen(THIS, 8, 40.0, withdrawn) == (False, 2.0)
+    assert seen(Boot("other", 50.0), 9, 20.0, withdrawn) == (False, 20.0)
+    assert seen(THIS, 8, 60.0, withdrawn) == (True, LONG)
+    again = after_watch(withdrawn, True, False, 9, 2.0, THIS)
+    assert standing(again).good
+
+
+def test_nothing_is_concluded_of_a_program_that_no_watch_has_seen() -> None:
+    for record in (
+        {"commands": {}, "ran": True, "ended": False},
+        after_watch({"commands": {}}, False, True, None, 1.0, THIS),
+        after_watch({"commands": {}}, True, False, 7, 2.0, Boot("")),
+        {**WATCHED, "process": None},
+    ):
+        assert now(record, THIS, {8}, 100.0) == record
+
+
+def test_the_release_that_ran_for_long_is_kept_when_others_ran_for_seconds(
+    robot: LocalRobot, agents: Agents, tmp_path: Path
+) -> None:
+    for number in range(1, 6):
+        project = project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# {number}\n"})
+        with closing(robot.start(agents, runs=True)) as client:
+            deployed = client.deploy(project, DeployRequest("robot.py", {}))
+            client.restart()
+            client.watch(1.0)
+        file = robot.home / f".pyfrc/releases/{number}.json"
+        record = json.loads(file.read_text())
+        file.write_text(json.dumps({**record, "lasted": LONG if number == 1 else 20.0, "ended": number < 5}))
+    assert deployed.fallback == 1
+    with closing(robot.start(agents)) as client:
+        assert [each.number for each in client.facts.releases] == [1, 4, 5]
+
+
+GARBAGE = [
+    b"",
+    b"\0\0\0\0",
+    b"\xff\xfe{",
+    b"{",
+    b"null",
+    b"[]",
+    b"{}",
+    b"[" * 100_000,
+    b'{"commands": ' + b"9" * 5000 + b"}",
+    b'{"commands": {}, "files": [1]}',
+    b'{"commands": {}, "files": {"robot.py": 5}}',
+    b'{"commands": "rm"}',
+    b'{"commands": {}, "from": "one"}',
+    b'{"commands": {}, "from": -1}',
+    b'{"commands": {}, "carried": {"from": 1}}',
+    b'{"commands": {}, "carried": null}',
+    b'{"commands": {}, "main": 3}',
+    b'{"commands": {}, "deploy": 3}',
+    b'{"commands": {}, "ran": "yes"}',
+    b'{"commands": {}, "lasted": NaN}',
+    b'{"commands": {}, "lasted": 1e400}',
+    b'{"commands": {}, "process": [1]}',
+]
+
+
+@pytest.mark.parametrize("garbage", GARBAGE, ids=[each[:40].decode(errors="replace") for each in GARBAGE])
+def test_a_damaged_record_is_no_record(garbage: bytes) -> None:
+    assert parse_record(garbage.decode(errors="surrogateescape")) == {}
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_damaged_record_prevents_no_deploy_and_no_rollback(
+    robot: LocalRobot, agents: Agents, tmp_path: Path, number: int
+) -> None:
+    for each in (1, 2, 3):
+        robot.deploy(agents, project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# {each}\n"}))
+    (robot.home / f".pyfrc/releases/{number}.json").write_bytes(b'{"commands": {}, "files": [1]}')
+    with closing(robot.start(agents)) as client:
+        assert {each.number: each.damaged for each in client.facts.releases} == {
+            each: each == number for each in (1, 2, 3)
+        }
+        assert client.rollback().release.number == (1 if number == 2 else 2)
+    robot.deploy(agents, project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# 4\n"}))
+    assert robot.startable() == {"robot.py": f"{ROBOT_PY}# 4\n".encode()}
