@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import json
 import os
@@ -22,11 +23,14 @@ from ports import lasting_port
 from skips import require
 from started_commands import StartedCommand
 
+from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.errors import PyfrcError
 from pyfrc_core.project import find_project
 from pyfrc_core.virtual_robot.console import ConsoleServer
+from pyfrc_core.virtual_robot.control import Control
 from pyfrc_core.virtual_robot.disk import RobotDisk
+from pyfrc_core.virtual_robot.supervisor import Supervisor
 
 #: Wall seconds after which a test gives up, and after which a robot is killed. They decide nothing else.
 SECONDS, ROBOT_SECONDS = 120, 240
@@ -320,3 +324,98 @@ def test_other_users_of_the_computer_are_not_let_in(project: RobotProject, direc
             assert first_bytes() == b""
         finally:
             os.seteuid(0)
+
+
+# -- what a robot program leaves, and clients that say nothing ------------------------------------------------------
+
+LEAVES_PROCESSES = """
+import os
+import subprocess
+import sys
+import wpilib
+
+SLEEP = [sys.executable, "-c", "import time; time.sleep(3600)"]
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        # One in its process group, and one in a session of its own whose parent process has ended.
+        child = subprocess.Popen(SLEEP)
+        start = f"import subprocess as s; print(s.Popen({SLEEP!r}, stdout=s.DEVNULL, start_new_session=True).pid)"
+        other = subprocess.check_output([sys.executable, "-c", start])
+        print("children", child.pid, int(other), flush=True)
+"""
+
+
+@pytest.mark.parametrize("stop", ["interrupt", "kill", "undeploy"])
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux finds processes that have left their group")
+def test_a_stopped_robot_leaves_no_child_processes(project: RobotProject, directory: Path, stop: str) -> None:
+    project.write({"robot.py": LEAVES_PROCESSES})
+    with started(project, directory) as robot:
+        deploy(robot, project)
+        children = [int(word) for word in robot.said("children").split()[1:]]
+        assert len(children) == 2
+        if stop == "undeploy":
+            on(robot, project, "undeploy", "--yes")
+        elif stop == "kill":
+            robot.command.kill()
+        else:
+            robot.command.send_signal(signal.SIGINT)
+            robot.command.wait()
+        assert all(ended(child) for child in children)
+
+
+def test_silent_connections_stop_no_deploy(project: RobotProject, directory: Path) -> None:
+    """To every port at which the robot listens: SSH, console, control, and its program's."""
+    missing = ["Linux"] if sys.platform != "linux" else []
+    require("that silent connections stop no deploy", missing)
+    with started(project, directory) as robot, contextlib.ExitStack() as silent:
+        deploy(robot, project)
+        program = robot.pid()
+        ports = listening_ports(parent_of(program)) | listening_ports(program)
+        assert len(ports) >= 3
+        for port in ports:
+            for _ in range(3):
+                silent.enter_context(socket.create_connection(("127.0.0.1", port), timeout=SECONDS))
+        project.write({"robot.py": ROBOT.replace("version 1", "version 2")})
+        assert "the program runs" in deploy(robot, project)
+        assert "release 2, running" in on(robot, project, "deploy-info")
+
+
+def parent_of(process: int) -> int:
+    return int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
+
+
+def listening_ports(process: int) -> set[int]:
+    """Return the TCP ports at which a process listens."""
+    links = {os.readlink(each) for each in Path(f"/proc/{process}/fd").iterdir()}  # noqa: PTH115
+    rows = [row.split() for row in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+    return {int(row[1].split(":")[1], 16) for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in links}
+
+
+def test_a_control_request_needs_the_key(project: RobotProject, directory: Path) -> None:
+    program = Supervisor(RobotPaths(str(directory)), lambda line: None, lambda text: None)
+    control = Control(program)
+    try:
+        for request, response in ((f"{control.key} processes\n", b"[]"), ("0000 processes\n", b""), ("\n", b"")):
+            with socket.create_connection(("127.0.0.1", control.port), timeout=SECONDS) as client:
+                client.sendall(request.encode())
+                assert client.recv(100) == response
+    finally:
+        control.close()
+
+
+def test_clients_that_read_nothing_delay_a_line_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pyfrc_core.virtual_robot.console._SEND_SECONDS", 0.0)
+    server = ConsoleServer("127.0.0.1")
+    try:
+        with contextlib.ExitStack() as stack:
+            deaf = [stack.enter_context(socket.create_connection(("127.0.0.1", server.port))) for _ in range(3)]
+            server.send(b"first")
+            for _ in range(400):
+                server.send(b"x" * 60_000)
+            reader = stack.enter_context(socket.create_connection(("127.0.0.1", server.port), timeout=SECONDS))
+            server.send(b"last")
+            assert reader.recv(100).endswith(b"last")
+            assert not server._clients[1:], deaf
+    finally:
+        server.close()

@@ -1,4 +1,8 @@
-"""Child processes of the virtual robot: each runs in a process group of its own, which ends as a whole."""
+"""Child processes of the virtual robot: each runs in a process group of its own, which ends as a whole.
+
+A robot program may start processes that leave the group. On Linux, they are found by a variable of the program's
+environment, which they inherit.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+#: The variable in the environment of a robot program.
+MARK = "PYFRC_VIRTUAL_ROBOT_PROGRAM"
 #: Seconds to wait for a process to end after SIGTERM.
 _PATIENCE = 1.0
 
@@ -53,3 +59,18 @@ def kill_group(process: subprocess.Popen[bytes]) -> None:
     else:
         with suppress(ProcessLookupError, PermissionError):  # on macOS: the group has only zombies
             os.killpg(process.pid, signal.SIGKILL)
+
+
+def kill_marked(mark: str) -> None:
+    """Kill all processes with this value of `MARK` in their environment, except for this one (Linux only)."""
+    wanted = f"{MARK}={mark}".encode()
+    found = True
+    while found:  # a process may have started another one meanwhile
+        found = False
+        for entry in Path("/proc").iterdir() if sys.platform == "linux" else ():
+            if not entry.name.isdecimal() or int(entry.name) == os.getpid():
+                continue
+            with suppress(OSError):  # it has ended, or belongs to another user
+                if wanted in (entry / "environ").read_bytes().split(b"\0"):
+                    os.kill(int(entry.name), signal.SIGKILL)
+                    found = True

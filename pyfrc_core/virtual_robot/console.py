@@ -13,7 +13,7 @@ PORT = 1741
 
 _TEXT = 12
 _MAX_LINE_BYTES = 65000
-#: Seconds after which a client that reads nothing is disconnected.
+#: Seconds for which clients that read nothing may delay a line, all together, before they are disconnected.
 _SEND_SECONDS = 1.0
 
 
@@ -45,8 +45,10 @@ class ConsoleServer:
         with self._lock:
             self._accept()
             self._number += 1
+            deadline = time.monotonic() + _SEND_SECONDS
             for client in list(self._clients):
                 try:
+                    client.settimeout(max(0.0, deadline - time.monotonic()))
                     client.sendall(text_frame(line, self._number))
                 except OSError:
                     self._clients.remove(client)
@@ -69,7 +71,6 @@ class ConsoleServer:
         with suppress(OSError):  # none is waiting, or the server is closed
             while True:
                 client, _ = self._server.accept()
-                client.settimeout(_SEND_SECONDS)
                 self._clients.append(client)
 
 

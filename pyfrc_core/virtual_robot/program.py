@@ -15,6 +15,7 @@ import threading
 from pathlib import Path
 
 from ..deploy.agent.host import NETWORK_TABLES_PORT
+from . import children
 
 
 def main() -> None:
@@ -41,6 +42,7 @@ def _end_with_supervisor() -> None:
     def wait() -> None:
         while os.read(supervisor, 1024):
             pass
+        children.kill_marked(os.environ[children.MARK])
         os._exit(1)
 
     threading.Thread(target=wait, daemon=True).start()

@@ -13,8 +13,9 @@ from ..deploy.agent.virtual import VARIABLE, VirtualRobotClient
 from ..errors import PyfrcError
 from ..terminal_text import visible
 from .console import ConsoleServer
+from .control import Control
 from .disk import RobotDisk
-from .supervisor import Control, Supervisor
+from .supervisor import Supervisor
 
 HOST = "127.0.0.1"
 #: The first default port, and the number of ports to try.

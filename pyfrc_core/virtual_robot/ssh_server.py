@@ -36,6 +36,7 @@ _USERS = (PROGRAM_USER, ADMINISTRATOR)
 _NOT_FOUND = 127  # a shell's exit code for a command that does not exist
 _SIGNALLED = 128  # a shell adds the signal's number to this exit code
 _STEP_SECONDS = 15.0
+_PAUSE_SECONDS = 0.1  # after a connection that could not be accepted
 
 
 class SshServer:
@@ -57,6 +58,7 @@ class SshServer:
         self._greeting = f"{VIRTUAL_ROBOT_GREETING} console={console}"
         self._home = home
         self._environment = environment
+        self._closed = threading.Event()
         self._lock = threading.Lock()
         self._transports: set[Transport] = set()
         self._processes: set[subprocess.Popen[bytes]] = set()
@@ -64,6 +66,7 @@ class SshServer:
 
     def close(self) -> None:
         """Close all connections, and kill their commands."""
+        self._closed.set()
         close_server(self._listening)
         with self._lock:
             transports, processes = list(self._transports), list(self._processes)
@@ -74,10 +77,13 @@ class SshServer:
             process.wait()
 
     def _accept(self) -> None:
-        with suppress(OSError):
-            while True:
+        while not self._closed.is_set():
+            try:
                 connected, _ = self._listening.accept()
-                threading.Thread(target=self._greet, args=(connected,), daemon=True).start()
+            except OSError:  # it is closed; or the client is gone again; or too many files are open
+                self._closed.wait(_PAUSE_SECONDS)
+                continue
+            threading.Thread(target=self._greet, args=(connected,), daemon=True).start()
 
     def _greet(self, connected: socket.socket) -> None:
         if is_other_user(connected):

@@ -10,9 +10,6 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
-from contextlib import suppress
-from multiprocessing import AuthenticationError
-from multiprocessing.connection import Connection, Listener
 from pathlib import Path
 
 from ..deploy.agent.disk import text_of
@@ -34,6 +31,7 @@ class Supervisor:
         self._paths = paths
         self._on_line = on_line
         self._on_end = on_end
+        self._mark = secrets.token_hex(8)
         self._state = threading.Condition()
         self._wanted = True
         self._closed = False
@@ -89,6 +87,7 @@ class Supervisor:
             reader.start()
             code = process.wait()
             children.kill_group(process)
+            children.kill_marked(self._mark)
             reader.join(_FINAL_OUTPUT_SECONDS)  # child processes of the program may keep its output open
             with self._state:
                 asked_for = not self._wanted
@@ -107,7 +106,8 @@ class Supervisor:
             self._on_end(f"no program is started: this is not a start command of a Python program: {command.strip()}")
             return None
         home = str(self._paths.home)
-        environment = {**os.environ, "HOME": home, "USERPROFILE": home, "PYTHONUSERBASE": site.getuserbase()}
+        user = {"HOME": home, "USERPROFILE": home, "PYTHONUSERBASE": site.getuserbase()}
+        environment = {**os.environ, **user, children.MARK: self._mark}
         return children.start(words, self._paths.home, environment, stderr=subprocess.STDOUT)
 
     def _read(self, process: subprocess.Popen[bytes]) -> None:
@@ -144,56 +144,3 @@ def program_words(command: str, paths: RobotPaths) -> list[str] | None:
 
 def _end_of(code: int) -> str:
     return f"exit code {code}" if code >= 0 else f"signal {-code}"
-
-
-class Control:
-    """A server through which deploy agents stop and start the program.
-
-    :param supervisor: starts and stops the program
-    """
-
-    def __init__(self, supervisor: Supervisor) -> None:
-        self._supervisor = supervisor
-        self._closed = False
-        self._key = secrets.token_bytes(32)
-        # Agents of several laptops may connect at the same time.
-        self._listener = Listener(("127.0.0.1", 0), backlog=16, authkey=self._key)
-        threading.Thread(target=self._accept, name="virtual robot: control", daemon=True).start()
-
-    @property
-    def key(self) -> str:
-        """The authentication key for agents, in hexadecimal."""
-        return self._key.hex()
-
-    @property
-    def port(self) -> int:
-        """The port on this computer."""
-        address = self._listener.address
-        assert isinstance(address, tuple)
-        return int(address[1])
-
-    def close(self) -> None:
-        """Stop the server."""
-        self._closed = True
-        self._listener.close()
-
-    def _accept(self) -> None:
-        while True:
-            try:
-                connection = self._listener.accept()
-            except AuthenticationError:
-                continue
-            except (OSError, EOFError):
-                if self._closed:
-                    return
-                continue
-            threading.Thread(target=self._serve, args=(connection,), daemon=True).start()
-
-    def _serve(self, connection: Connection) -> None:
-        with connection, suppress(EOFError, OSError):
-            request = connection.recv()
-            if request == "stop":
-                self._supervisor.stop()
-            elif request == "restart":
-                self._supervisor.restart()
-            connection.send(self._supervisor.processes())

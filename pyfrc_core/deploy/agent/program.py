@@ -27,7 +27,8 @@ _WPILIBS_LOOP = re.compile(
 )
 #: A main loop of the program's own, which does not.
 _OWN_LOOP = re.compile(
-    rb"^[ \t]*(?:def[ \t]+startCompetition\b|[^#\n]*\bobserveUserProgramStarting\b|(?:from|import)\b[^#\n]*\bmagicbot\b)",
+    rb"^[ \t]*(?:def[ \t]+startCompetition\b|[^#\n]*\bobserveUserProgramStarting\b"
+    rb"|(?:from|import)\b[^#\n]*\bmagicbot\b)",
     re.MULTILINE,
 )
 

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 Record = dict[str, Any]
 
-#: Seconds after which a program counts as lasting. A younger process than the one that was seen counts as the end of the
-#: program, also if it was restarted from the Driver Station; one that lasts proves the opposite again.
+#: Seconds after which a program counts as lasting. A new process that is younger counts as the end of the program, also
+#: after a restart from the Driver Station. When it lasts, it proves the opposite.
 LONG = 60.0
 #: Seconds after its boot within which a robot has started its program.
 _BOOT = 180.0

@@ -14,13 +14,12 @@ from collections.abc import Callable
 from contextlib import suppress
 from itertools import count
 from pathlib import Path
-from typing import Any
 
 from .activity import Activity
 from .carrying import Carried, carry_over
 from .disk import allow_changes, make_links_absolute, remove, remove_if_possible, text_of, write_whole
-from .robot_paths import CODE, COMMAND, DEBUG_COMMAND, HOME, Refusal, RobotPaths
 from .release_record import Record, parse_record, standing
+from .robot_paths import CODE, COMMAND, DEBUG_COMMAND, HOME, Refusal, RobotPaths
 from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link, replace_link
 
 _KEPT = 3
@@ -94,7 +93,7 @@ class Releases:
         return self.paths.releases / f"{number}.json"
 
     def record(self, number: int) -> Record:
-        """Return the record of a release: files with hashes, start commands, origin; empty if it is damaged or missing."""
+        """Return the record of a release (files with hashes, start commands, origin), or nothing if it is damaged."""
         file = self._record_file(number)
         try:
             state = file.stat()

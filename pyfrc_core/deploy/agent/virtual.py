@@ -83,9 +83,9 @@ class VirtualRobotClient:
         return False
 
     def _request(self, name: str) -> list[int]:
-        # Imported here: a roboRIO does not need it.
-        from multiprocessing.connection import Client
+        import socket  # not before, since a roboRIO does not need it
 
-        with Client(("127.0.0.1", self.control), authkey=bytes.fromhex(self.key)) as connection:
-            connection.send(name)
-            return list(connection.recv())
+        with socket.create_connection(("127.0.0.1", self.control)) as connection:
+            connection.sendall(f"{self.key} {name}\n".encode())
+            with connection.makefile() as response:
+                return list(json.load(response))
