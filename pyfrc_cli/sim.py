@@ -73,7 +73,7 @@ _FILE = click.Path(path_type=Path, dir_okay=False)
     type=click.Choice(["view", "drive"]),
     is_flag=False,
     flag_value="view",
-    help="Serve the page to the network, too, to look only or to drive.",
+    help="Serve the page to the network, too, to look only or to drive; to drive: also NetworkTables.",
 )
 @click.option(
     "--port",

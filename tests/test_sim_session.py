@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import socket
 import subprocess
 import sys
 import tempfile
@@ -563,3 +564,17 @@ def test_dashboards_see_the_robot_and_are_recorded(project: Project) -> None:
                 assert f"port {port} is taken" in another.status.note
     finally:
         ntcore.NetworkTableInstance.destroy(dashboard)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has a second address that is this computer's alone")
+@pytest.mark.parametrize("shared", [False, True])
+def test_other_computers_reach_networktables_only_if_they_are_shared(shared: bool, project: Project) -> None:
+    port = lasting_port()
+    with Simulation(project, replace(STILL, nt_port=port, nt_shared=shared)) as simulation:
+        settle(simulation)
+        socket.create_connection(("127.0.0.1", port), PATIENCE).close()
+        if shared:
+            socket.create_connection(("127.0.0.2", port), PATIENCE).close()
+        else:
+            with pytest.raises(ConnectionRefusedError):
+                socket.create_connection(("127.0.0.2", port), PATIENCE)

@@ -132,6 +132,9 @@ def test_its_options_belong_to_it(make_project) -> None:
         result = made.run("sim", "--ui", "none", "--seconds", "1", *option)
         assert result.code == 2
         assert "Add --ui web" in result.output
+    unshared = made.run("sim", "--ui", "none", "--seconds", "1", "--share", "drive")
+    assert unshared.code == 2
+    assert "Add --nt-port 5810" in unshared.output
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()

@@ -34,7 +34,7 @@ class SimRequest:
     :param speed: robot seconds per second; None: real time, or as fast as possible when unattended
     :param nt_port: None: the usual port, or none when unattended; 0: none
     :param quiet: print only the robot's output and what is wrong
-    :param share: what clients on the network may do with a page; None: they are not served
+    :param share: what clients on the network may do; None: they are not served. Those who may drive get NetworkTables
     :param port: where to serve a page; None: at any free port
     :param allow_host: where else browsers find a page, through a forwarded port
     """
@@ -62,7 +62,7 @@ class SimRequest:
     @property
     def is_for_page(self) -> bool:
         """Whether options are given that only a page has."""
-        return self.share is not None or self.port is not None or bool(self.allow_host)
+        return self.share == "view" or self.port is not None or bool(self.allow_host)
 
 
 def simulate(project: Project, request: SimRequest, say: Callable[[str], object]) -> int:
@@ -80,6 +80,11 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
     ends_by_itself = any(each is not None for each in (request.mode, request.seconds, request.script))
     unattended = not kind.interactive and ends_by_itself
     port = request.nt_port if request.nt_port is not None else 0 if unattended else NT4_PORT
+    if not kind.is_served and request.share is not None and not port:
+        raise UsageError(
+            "without a page, --share drive shares NetworkTables, and these are not served here",
+            remedy=f"Add --nt-port {NT4_PORT}.",
+        )
     options = SimOptions(
         speed=request.speed if request.speed is not None else 0.0 if unattended else 1.0,
         paused=request.paused or not kind.interactive,
@@ -88,6 +93,7 @@ def simulate(project: Project, request: SimRequest, say: Callable[[str], object]
         run_until=request.seconds,
         recording=kind.interactive or request.watch or not (request.record is None and request.page is None),
         nt_port=port or None,
+        nt_shared=request.share == "drive",
         wpilog=request.wpilog,
         extensions=(*request.extensions, *kind.extensions),
         start_position=request.start_position,
@@ -125,7 +131,7 @@ def _front_end_name(request: SimRequest, say: Callable[[str], object]) -> str:
         return request.ui
     if request.mode is not None:  # possible without a person only
         return "none"
-    if request.is_for_page:
+    if request.is_for_page or request.share is not None:
         return "web"
     name, why = default_name()
     if why and not request.quiet:

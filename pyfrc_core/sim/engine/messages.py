@@ -41,6 +41,7 @@ class Job:
     :param recording: whether to report the inputs, and what the robot does in each packet
     :param station: the driver station at `forward_to_us`
     :param nt_port: where to serve NetworkTables to dashboards; None: nowhere
+    :param nt_shared: whether dashboards on other computers can connect
     :param wpilog: where to write WPILib's data log
     :param extensions: WPILib's simulation extensions to load, by name
     :param tags: the field's tags, if they are known already
@@ -56,6 +57,7 @@ class Job:
     recording: bool = True
     station: StationState = StationState()
     nt_port: int | None = None
+    nt_shared: bool = False
     wpilog: Path | None = None
     extensions: tuple[str, ...] = ()
     tags: tuple[Tag, ...] | None = None

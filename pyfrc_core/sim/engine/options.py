@@ -24,6 +24,7 @@ class SimOptions:
     :param run_until: pause at this moment, in seconds of robot time
     :param recording: whether to record inputs and outputs; going back in time is possible only then
     :param nt_port: where to serve NetworkTables to dashboards; None: nowhere
+    :param nt_shared: whether dashboards on other computers can connect, and change every value
     :param wpilog: where to write WPILib's data log
     :param extensions: WPILib's simulation extensions to load, by name
     :param start_position: where the robot starts, one of the field's `starts`
@@ -38,6 +39,7 @@ class SimOptions:
     run_until: float | None = None
     recording: bool = True
     nt_port: int | None = None
+    nt_shared: bool = False
     wpilog: Path | None = None
     extensions: tuple[str, ...] = ()
     start_position: str | None = None

@@ -273,6 +273,7 @@ class Simulation(Controls):
             recording=options.recording,
             station=recording.station,
             nt_port=options.nt_port,
+            nt_shared=options.nt_shared,
             wpilog=options.wpilog,
             extensions=options.extensions,
             tags=self._tags,

@@ -56,20 +56,24 @@ class Choosers:
 class Served:
     """The robot's tables, served to dashboards.
 
+    Who connects can change every value, and needs no key: by default, only this computer's dashboards can.
+
+    :param shared: whether dashboards on other computers can connect
     :param write: writes a target, as in input scripts
     """
 
-    def __init__(self, port: int, write: Callable[[str, object], object]) -> None:
+    def __init__(self, port: int, shared: bool, write: Callable[[str, object], object]) -> None:
         self._write = write
         self._robot = ntcore.NetworkTableListenerPoller(ntcore.NetworkTableInstance.getDefault())
         self._robot.addListener([""], _VALUES)
         self._instance = ntcore.NetworkTableInstance.create()
         self._publishers: dict[str, tuple[str, ntcore.GenericPublisher]] = {}
         self._from_outside: dict[str, Any] = {}
-        self.problem = _problem_with(port)
+        listen = "" if shared else "127.0.0.1"
+        self.problem = _problem_with(listen, port)
         self.address = None if self.problem else f"localhost:{port}"
         if self.problem is None:
-            self._instance.startServer("", "", 0, port)
+            self._instance.startServer("", listen, 0, port)
         self._news = ntcore.NetworkTableListenerPoller(self._instance)
         self._news.addListener([""], _FROM_OUTSIDE)
 
@@ -111,12 +115,12 @@ def _plain(value: ntcore.Value) -> Any:
     return list(found) if isinstance(found, tuple) else found
 
 
-def _problem_with(port: int) -> str | None:
+def _problem_with(listen: str, port: int) -> str | None:
     """Return why no server is possible at this port, which WPILib would only print to the console."""
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            probe.bind(("", port))
+            probe.bind((listen, port))
         except OSError as error:
             taken = error.errno == errno.EADDRINUSE
             why = "is taken. Is another simulation running?" if taken else f"cannot be had: {error.strerror}"

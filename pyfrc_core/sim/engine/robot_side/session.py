@@ -132,7 +132,7 @@ class Session:
         for command in job.commands:
             self._carry_out(command)
         if job.nt_port is not None:
-            self._served = Served(job.nt_port, self._write)
+            self._served = Served(job.nt_port, job.nt_shared, self._write)
             if self._served.problem:
                 self._notes.append(self._served.problem)
         self._connection.send(self._ready())

@@ -53,7 +53,7 @@ class WebFrontEnd(FrontEnd):
         try:
             server.start(WebApp(simulation, collector, commands, access))
             collector.start()
-            self._announce(server, access)
+            self._announce(server, access, simulation.options.nt_port)
             simulation.start()
             while not self._over.wait(_LOOK_SECONDS):
                 if collector.mistake is not None:
@@ -74,7 +74,7 @@ class WebFrontEnd(FrontEnd):
         if (collector := self.collector) is not None:
             collector.announce(f"saved: {', '.join(files)}")
 
-    def _announce(self, server: Server, access: Access) -> None:
+    def _announce(self, server: Server, access: Access, nt_port: int | None) -> None:
         if access.origins:
             for origin in access.origins:
                 self._say(f"The simulator is at {origin}/?token={access.drive}\n")
@@ -88,6 +88,8 @@ class WebFrontEnd(FrontEnd):
             self._say(
                 f"Shared with the network: who has this address {can}: {server.network_address(share == 'drive')}\n"
             )
+            if share == "drive" and nt_port is not None:
+                self._say(f"NetworkTables are shared, too, without a key: port {nt_port}\n")
         if not self._options.opens_browser:
             return
         if why := why_no_browser():
