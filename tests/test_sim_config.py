@@ -192,6 +192,10 @@ def test_the_values_cannot_be_changed(load: Load) -> None:
             '{"pyfrc": {"field": {\n"image": "no/such.png"}}}',
             '2: pyfrc.field.image = "no/such.png": there is no such file',
         ),
+        (
+            '{"pyfrc": {"field": {\n"image": "config.json"}}}',
+            '2: pyfrc.field.image = "config.json": it is no picture',
+        ),
         ('{"pyfrc": {"robot": {"l": 3,\n"h": 4}}}', "2: pyfrc.robot.h = 4: ignored: it is the older name of robot.l"),
         (
             '{"pyfrc": {"robot": {"start_positions": [{"name": "a", "x": 1, "y": 2}],\n"starting_y": 3}}}',
@@ -217,8 +221,20 @@ def test_what_has_no_effect_is_warned_of_with_its_line(load: Load, text: str, ex
 
 
 def test_an_image_that_is_there_is_no_matter(load: Load, root: Path) -> None:
-    (root / "sim/field.png").touch()
+    (root / "sim/field.png").write_bytes(b"\x89PNG\r\n\x1a\n")
     assert load('{"pyfrc": {"field": {"image": "field.png"}}}').warnings == ()
+
+
+@pytest.mark.parametrize("is_link", [False, True])
+def test_an_image_outside_of_the_project_is_warned_of(is_link: bool, load: Load, root: Path) -> None:
+    outside = root.parent / "outside.png"
+    outside.write_bytes(b"\x89PNG\r\n\x1a\n")
+    name = "../../outside.png"
+    if is_link:
+        name = "link.png"
+        (root / "sim" / name).symlink_to(outside)
+    (warning,) = load(json.dumps({"pyfrc": {"field": {"image": name}}})).warnings
+    assert "it is outside of the project, and is not shown" in str(warning)
 
 
 def test_of_very_many_warnings_some_are_told_and_that_there_is_more(load: Load) -> None:
@@ -474,7 +490,9 @@ def test_the_documents_table_has_every_key_and_its_default() -> None:
 
 
 def test_the_documents_example_is_without_mistakes_and_warnings(make_project: MakeProject) -> None:
-    project = make_project({"robot.py": ROBOT, "sim/config.json": EXAMPLE, "sim/field.png": ""})
+    project = make_project(
+        {"robot.py": ROBOT, "sim/config.json": EXAMPLE, "sim/field.png": "<svg xmlns='http://www.w3.org/2000/svg'/>"}
+    )
     result = project.run("config", "check", "--strict")
     assert (result.code, result.output) == (0, "sim/config.json: no mistakes\n")
     commands = re.findall(r"^[$] pyfrc (.+)$", DOCUMENT, re.MULTILINE)

@@ -220,7 +220,7 @@ def test_the_field_of_a_project_without_a_word_about_it(tmp_path: Path) -> None:
 
 def test_the_field_as_configured(tmp_path: Path) -> None:
     (tmp_path / "sim").mkdir()
-    (tmp_path / "sim/field.png").write_bytes(b"")
+    (tmp_path / "sim/field.png").write_bytes(b"\x89PNG\r\n\x1a\n")
     found = field(
         tmp_path,
         """{"pyfrc": {"robot": {"w": 1, "l": 2, "starting_x": 3, "starting_angle": 180},

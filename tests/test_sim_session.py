@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Iterator
 from dataclasses import FrozenInstanceError, replace
+from types import MappingProxyType
 
 import ntcore
 import pytest
@@ -23,6 +24,7 @@ from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import load_script, parse_script
 from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.sim.engine.snapshot import Snapshot
 from pyfrc_core.sim.engine.watch import Watch
 
 STILL = SimOptions(paused=True, speed=0)
@@ -40,6 +42,12 @@ def simulation(project: Project) -> Iterator[Simulation]:
     with Simulation(project, STILL) as simulation:
         settle(simulation)
         yield simulation
+
+
+def released(snapshot: Snapshot) -> Snapshot:
+    """Return the snapshot without what the joysticks do: going back releases them."""
+    values = {path: value for path, value in snapshot.values.items() if not path.startswith("joysticks")}
+    return replace(snapshot, values=MappingProxyType(values))
 
 
 def drive_forward(simulation: Simulation) -> None:
@@ -344,7 +352,7 @@ def test_a_robot_that_fails_takes_nothing_with_it(
         assert str(project.root) not in status.failure.details
     simulation.rewind(1.0)
     wait(simulation, lambda: simulation.status.state == "paused")
-    assert simulation.snapshot == before
+    assert released(simulation.snapshot) == released(before)
     run(simulation, 1)
     assert simulation.status.state == "paused"
 
@@ -459,7 +467,7 @@ def test_where_processes_cannot_be_forked(project: Project) -> None:
         run(simulation, 1)
         simulation.rewind(1.0)
         wait(simulation, lambda: simulation.status.state == "paused")
-        assert simulation.snapshot == there
+        assert released(simulation.snapshot) == released(there)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="connections have no files there")
@@ -578,3 +586,92 @@ def test_other_computers_reach_networktables_only_if_they_are_shared(shared: boo
         else:
             with pytest.raises(ConnectionRefusedError):
                 socket.create_connection(("127.0.0.2", port), PATIENCE)
+
+
+def stands(simulation: Simulation) -> bool:
+    """Whether the robot stays where it is, and no motor runs."""
+    before = simulation.snapshot
+    run(simulation, 0.5)
+    now = simulation.snapshot
+    return before.scene.robot == now.scene.robot and now.values["pwm[0].value"] == 0
+
+
+def test_a_moment_that_is_left_releases_what_was_held(simulation: Simulation) -> None:
+    drive_forward(simulation)
+    run(simulation, 1)
+    simulation.set_axis(0, 1, 0.0)
+    simulation.rewind(0.5)  # where it was held
+    settle(simulation)
+    assert simulation.snapshot.enabled
+    run(simulation, 0.1)
+    assert stands(simulation)
+
+
+def test_a_control_that_was_moved_while_disabled_is_released_too(simulation: Simulation) -> None:
+    simulation.set_axis(0, 1, -1.0)
+    run(simulation, 1)
+    simulation.rewind(0.5)
+    settle(simulation)
+    simulation.enable()
+    run(simulation, 0.1)
+    assert stands(simulation)
+
+
+def test_a_script_that_has_ended_holds_nothing(project: Project) -> None:
+    lines = [
+        '{"format": "pyfrc-input 1", "end": 1}',
+        '{"t": 0.1, "set": {"mode": "teleop", "joysticks[0].axes[1]": -1}}',
+    ]
+    with Simulation(project, replace(STILL, script=parse_script(lines))) as simulation:
+        settle(simulation)
+        run(simulation, 0.9)
+        assert simulation.snapshot.values["pwm[0].value"] == 1
+        run(simulation, 0.2)
+        assert stands(simulation)
+
+
+def test_who_leaves_releases_what_they_held_and_the_last_one_disables(simulation: Simulation) -> None:
+    one, other = simulation.attach(), simulation.attach()
+    other.enable()
+    one.set_axis(0, 1, -1.0)
+    other.set_button(0, 2, True)
+    run(simulation, 0.5)
+    assert simulation.snapshot.values["pwm[0].value"] == 1
+    one.leave()
+    run(simulation, 0.1)
+    assert simulation.snapshot.enabled
+    assert simulation.snapshot.values["joysticks[0].buttons"][2]
+    assert stands(simulation)
+    other.leave()
+    run(simulation, 0.1)
+    assert not simulation.snapshot.enabled
+    assert not any(simulation.snapshot.values["joysticks[0].buttons"])
+
+
+def test_who_has_released_everything_changes_nothing_by_leaving(simulation: Simulation) -> None:
+    one, other = simulation.attach(), simulation.attach()
+    other.enable()
+    one.set_axis(0, 1, -1.0)
+    one.set_axis(0, 1, 0.0)
+    other.set_axis(0, 1, -0.5)
+    one.leave()
+    run(simulation, 0.5)
+    assert simulation.snapshot.values["pwm[0].value"] == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_restart_keeps_what_was_chosen(simulation: Simulation) -> None:
+    simulation.set_alliance("blue3")
+    simulation.set_game_message("RLR")
+    simulation.choose("/SmartDashboard/Auto", "Forward")
+    simulation.choose_mode("autonomous")
+    run(simulation, 0.5)
+    simulation.set_alliance("blue2")  # also what the robot has not seen yet
+    simulation.restart()
+    settle(simulation)
+    run(simulation, 0.1)
+    now = simulation.snapshot
+    assert now.time == pytest.approx(0.1)
+    assert now.values["alliance_station"] == 5
+    assert now.values["event.game_specific_message"] == "RLR"
+    assert now.choosers[0].active == "Forward"
+    assert (now.mode, now.chosen_mode) == ("disabled autonomous", "autonomous")

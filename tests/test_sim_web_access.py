@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import os
 import socket
 from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
+from recorded_pages import run_in
 from sim_robots import FILES
 from web_pages import PATIENCE, Served, served
 from websockets.exceptions import ConnectionClosed, InvalidStatus
@@ -26,7 +29,7 @@ QUIET = {
             pass
     """,
     "sim/config.json": '{"pyfrc": {"field": {"image": "field.png"}}}',
-    "sim/field.png": "not really a picture",
+    "sim/field.png": "<svg xmlns='http://www.w3.org/2000/svg'/>",
 }
 
 
@@ -219,6 +222,51 @@ def test_share_to_drive_is_asked_for(make_project) -> None:
         with server.page(address) as page:
             assert page.hello["readonly"] is False
             page.command("enable")
+
+
+@pytest.mark.parametrize("image", ["SECRET", "link.png", "../secret.svg", "pipe", "secret.txt"])
+def test_no_file_but_a_picture_of_the_project_is_handed_out(image: str, make_project) -> None:
+    made = make_project({**FILES, "sim/secret.txt": "SECRET", "secret.svg": "SECRET"})
+    outside = made.path.parent / "outside.svg"
+    outside.write_text("<svg>SECRET</svg>")
+    (made.path / "sim/link.png").symlink_to(outside)
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(made.path / "sim/pipe")
+    name = str(outside) if image == "SECRET" else image
+    (made.path / "sim/config.json").write_text(json.dumps({"pyfrc": {"field": {"image": name}}}))
+    with served(made) as server, server.page(server.viewing_address) as page:
+        assert page.parts["field"]["image"] is None
+        page.until(lambda: any("field.image" in line["text"] for line in page.console))
+        query = urlsplit(server.viewing_address).query
+        assert server.get(f"/field-image?{query}")[0] == 404
+    result = made.run("sim", "--ui", "none", "--seconds", "0.1", "--page", "run.html")
+    assert result.code == 0, result.output
+    written = made.path / "run.html"
+    assert run_in(written)["hello"]["field"]["image"] is None
+    assert "SECRET" not in written.read_text("utf-8")
+
+
+def test_a_picture_that_becomes_a_link_is_not_handed_out(make_project) -> None:
+    made = make_project(QUIET)
+    outside = made.path.parent / "outside.svg"
+    outside.write_text("<svg>SECRET</svg>")
+    with served(made) as server:
+        address = f"/field-image?{urlsplit(server.address).query}"
+        status, headers, _ = server.get(address)
+        assert (status, headers["content-type"].partition(";")[0]) == (200, "image/svg+xml")
+        (made.path / "sim/field.png").unlink()
+        (made.path / "sim/field.png").symlink_to(outside)
+        assert server.get(address)[0] == 404
+
+
+def test_a_layout_that_is_a_link_is_not_handed_out(make_project) -> None:
+    made = make_project(FILES)
+    outside = made.path.parent / "outside.json"
+    outside.write_text('{"secret": 1}')
+    (made.path / ".pyfrc").mkdir()
+    (made.path / ".pyfrc/sim-layout.json").symlink_to(outside)
+    with served(made) as server, server.page(server.viewing_address) as page:
+        assert page.hello["layout"] is None
 
 
 def test_a_message_that_is_too_large_ends_its_page_only(make_project) -> None:

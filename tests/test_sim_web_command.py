@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 import socket
@@ -9,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
@@ -94,6 +96,33 @@ def test_it_opens_the_page_in_a_browser_where_there_is_one(make_project) -> None
         while not (opened.is_file() and opened.read_text()) and time.monotonic() < end:
             time.sleep(0.05)
         assert opened.read_text() == running.address
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere no program on the path is the browser")
+def test_the_key_stands_in_no_command_line(make_project) -> None:
+    """All users of the computer could read it there."""
+    made = make_project(FILES)
+    browser = made.path.parent / "bin" / "xdg-open"
+    browser.parent.mkdir()
+    browser.write_text(
+        f'#!/bin/sh\necho "$*" > {made.path}/part.txt && mv {made.path}/part.txt {made.path}/opened.txt\n'
+    )
+    browser.chmod(0o755)
+    environment = {"DISPLAY": ":77", "PATH": f"{browser.parent}:{os.environ['PATH']}"}
+    with simulating(made, environment=environment) as running:
+        end = time.monotonic() + PATIENCE
+        opened = made.path / "opened.txt"
+        while not opened.is_file() and time.monotonic() < end:
+            time.sleep(0.05)
+        arguments = opened.read_text()
+        assert urlsplit(running.address).query.removeprefix("token=") not in arguments
+        file = Path(urlsplit(arguments.strip()).path)
+        assert file.stat().st_mode & 0o777 == 0o600
+        assert f'url={running.address}"' in file.read_text()
+        with running.page() as page:
+            page.quit()
+            assert running.ended() == 0
+    assert not file.exists()
 
 
 def test_new_code_comes_with_a_saved_file(make_project) -> None:

@@ -17,6 +17,7 @@ from ..season import FIELDS
 from .findings import MOST_TOLD, Finding, Path, dotted, finding_at, in_order, mistakes, settings_error
 from .json_text import MOST_BYTES, JsonText
 from .lint import lint
+from .pictures import field_picture
 from .resolve import FROM_SEASON, Origins, ignored_keys, resolve
 from .sim import SimConfig, SimConfigFile
 from .tables import AXES
@@ -162,9 +163,9 @@ def _find_warnings(given: SimConfig, text: JsonText, directory: File) -> Iterato
     for path, why in ignored_keys(given):
         yield ("pyfrc", *path), f"{dotted(('pyfrc', *path))} = {text.excerpt(('pyfrc', *path))}: {why}", None
     image = given.field.image
-    if image is not None and not _is_file(directory, image):
+    if image is not None and (why := field_picture(directory.parent, image)[1]):
         path = ("pyfrc", "field", "image")
-        yield path, f"{dotted(path)} = {text.excerpt(path)}: there is no such file", "It is looked for in sim/."
+        yield path, f"{dotted(path)} = {text.excerpt(path)}: {why}", "It is looked for in sim/."
     for port, joystick in text.value["pyfrc"].get("joysticks", {}).items():
         for first, again in _same_axis(joystick.get("axes", {})):
             path = ("pyfrc", "joysticks", port, "axes", again)
@@ -196,13 +197,6 @@ def _same_axis(axes: dict[str, str]) -> Iterator[tuple[str, str]]:
         first = seen.setdefault(AXES.numbers[key], key)
         if first != key:
             yield first, key
-
-
-def _is_file(directory: File, name: str) -> bool:
-    try:
-        return (directory / name).is_file()
-    except (OSError, ValueError):  # a name that no file can have
-        return False
 
 
 def _leaves(value: object, path: Path) -> Iterator[tuple[Path, Any]]:

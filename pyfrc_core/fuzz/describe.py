@@ -7,9 +7,10 @@ from itertools import groupby
 
 from ..hal.modes import NOT_PRESSED
 from ..runtime.clock import PACKET_US
+from ..runtime.scripts.joysticks import CONTROL
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript
-from ..runtime.scripts.targets import CONTROL, MATCH_TIME, MODE, PLUGGED, REMAINING, RESTART
+from ..runtime.scripts.targets import MATCH_TIME, MODE, PLUGGED, REMAINING, RESTART
 from .failure import FuzzFailure
 from .values import Value, is_released
 

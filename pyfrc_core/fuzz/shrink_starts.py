@@ -8,7 +8,8 @@ from itertools import groupby, pairwise
 from typing import Any, NamedTuple
 
 from ..runtime.clock import PACKET_US
-from ..runtime.scripts.targets import CONTROL, MATCH_TIME, MODE, PLUGGED
+from ..runtime.scripts.joysticks import CONTROL
+from ..runtime.scripts.targets import MATCH_TIME, MODE, PLUGGED
 from .values import is_released
 
 #: How long before the failure the kept part begins, in packets, from what is shortest to run.

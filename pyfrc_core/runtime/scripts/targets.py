@@ -41,8 +41,6 @@ _KEPT = re.compile(
 _BUTTON = re.compile(r"joysticks\[[0-5]\]\.buttons\[(\d+)\]")
 #: A joystick that is plugged in or unplugged: its port.
 PLUGGED = re.compile(r"joysticks\[([0-5])\]\.plugged")
-#: A control of a joystick: its port, its sort, its number.
-CONTROL = re.compile(r"joysticks\[([0-5])\]\.(axes|buttons|povs)\[(\d+)\]")
 
 
 def plugged(port: int) -> str:

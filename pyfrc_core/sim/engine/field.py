@@ -5,9 +5,9 @@ from __future__ import annotations
 import importlib.util
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...config.pictures import field_picture
 from ...errors import UsageError, nearest
 from ...physics.pose import METRES_PER_FOOT
 from ...season import CURRENT
@@ -39,17 +39,9 @@ def field_of(project: Project) -> Field:
         robot_width=config.robot.w,
         robot_length=config.robot.l,
         starts=starts,
-        image=_image(project, config),
+        image=None if config.field.image is None else field_picture(project.root, config.field.image)[0],
         objects=tuple(_shape(each) for each in config.field.objects),
     )
-
-
-def _image(project: Project, config: SimConfig) -> Path | None:
-    """Return the configured image; None where the file does not exist, of which the configuration warns."""
-    if config.field.image is None:
-        return None
-    file = project.root / "sim" / config.field.image
-    return file if file.is_file() else None
 
 
 def _shape(given: FieldObject) -> Shape:

@@ -11,6 +11,7 @@ from time import monotonic
 from types import TracebackType
 from typing import Any
 
+from ...config.pictures import field_picture
 from ...errors import PyfrcError, UsageError
 from ...processes.crash_report import describe_exit, moment_of
 from ...project import Project
@@ -20,7 +21,9 @@ from .change_streams import ChangeStreams
 from .changes import ChangeCursor
 from .commands import Command
 from .controls import Controls
+from .driver import Driver
 from .field import field_of, robot_at, start_named
+from .left_behind import choices_of, ending_released, releases_after
 from .messages import Failed, Job, Message, Ready, Replayed, Update
 from .options import SimOptions
 from .output_log import OutputCursor, OutputLog
@@ -68,6 +71,7 @@ class Simulation(Controls):
         until_us = None if self.options.run_until is None else to_us(self.options.run_until)
         self._time = TimeState(self.options.paused, until_us, speed=self.options.speed)
         self._pending = PendingCommands()
+        self._drivers: set[Driver] = set()
         #: Held while a command is sent or a process is launched: the process gets them in the order of their calls.
         self._sending = threading.RLock()
         #: The moment that the robot's process replays to before it goes on.
@@ -140,6 +144,10 @@ class Simulation(Controls):
         with self.reports:
             return self.reports.wait_for(condition, timeout)
 
+    def attach(self) -> Driver:
+        """Return the controls of one person, which are released when that person leaves."""
+        return Driver(self._send, self._drivers)
+
     # -- beginning and end ----------------------------------------------------------------------------------------
 
     def start(self) -> None:
@@ -149,8 +157,8 @@ class Simulation(Controls):
             options = self.options
             self._begin(self._recording, to_us(options.start_at), self._time)
             image = self.project.sim_config.field.image
-            if image is not None and self.field.image is None:
-                self._note(f"sim/config.json: pyfrc.field.image: there is no file {image!r} in sim/. Correct the path.")
+            if image is not None and (why := field_picture(self.project.root, image)[1]):
+                self._note(f"sim/config.json: pyfrc.field.image: {image!r}: {why}.")
 
     def close(self) -> None:
         """End the robot's process, whatever it is doing."""
@@ -174,20 +182,27 @@ class Simulation(Controls):
     def rewind(self, seconds: float) -> None:
         """Go back to a moment, and go on from there. What came after it is kept in `recordings`.
 
-        A robot that has failed can go back to a moment before its failure.
+        The joysticks are released: what was held at that moment is not held any more. A robot that has failed can go
+        back to a moment before its failure.
         """
         if not self.options.recording:
             self._note("Going back is impossible: this simulation is not recorded.")
             return
         with self._sending, self.reports:
             to = max(0, min(to_us(seconds), self._moment_us)) // PACKET_US * PACKET_US
-            self._keep_and_begin(self._recording.until(to), to, self._time_wanted.continued_at(to))
+            part = self._recording.until(to)
+            self._keep_and_begin(part, to, self._time_wanted.continued_at(to), releases_after(part))
 
     def restart(self) -> None:
-        """Start the robot again, at time 0. What was recorded is kept in `recordings`."""
+        """Start the robot again, at time 0. What was recorded is kept in `recordings`.
+
+        The alliance, the game data, the choosers' options and the chosen mode stay as they were chosen.
+        """
         with self._sending, self.reports:
             to = to_us(self.options.start_at)
-            self._keep_and_begin(Recording(self._first_script()), to, self._time_wanted.continued_at(to))
+            first = self._first_script()
+            choices = choices_of(self._recording, self._pending.commands, first, self._snapshot)
+            self._keep_and_begin(Recording(first), to, self._time_wanted.continued_at(to), choices)
 
     def reload(self) -> None:
         """Load the robot's code again, replay the same inputs until this moment, and go on from there."""
@@ -392,6 +407,7 @@ class Simulation(Controls):
 
     def _first_script(self) -> InputScript:
         script = self.options.script or InputScript((), 0, robot=self.project.main_file.name)
+        script = ending_released(script)
         if self.options.start_position is not None:
             script = replace(script, steps=(Step(0, self._at_start(self.options.start_position)), *script.steps))
         return script

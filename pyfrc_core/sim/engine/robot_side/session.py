@@ -129,6 +129,8 @@ class Session:
         run, job = self._run, self._job
         self._taken_over, self._replaying = True, False
         self._station.take_over()
+        if job.recording:
+            self._traces.skip_hal(run.clock.now)
         for command in job.commands:
             self._carry_out(command)
         if job.nt_port is not None:
@@ -137,8 +139,7 @@ class Session:
                 self._notes.append(self._served.problem)
         self._connection.send(self._ready())
         self.send_update(dict(run.hal_data.leaves()))
-        if job.recording:
-            self._traces.begin(run.clock.now)
+        self._traces.is_on = job.recording
         self._pace.begin(run.clock.now_us)
 
     @property

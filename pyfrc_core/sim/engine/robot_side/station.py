@@ -10,11 +10,9 @@ from ....config.sim import FieldConfig
 from ....hal import modes
 from ....runtime.match import MatchPeriods
 from ....runtime.robot import RobotRun
-from ....runtime.scripts.targets import CONTROL
+from ....runtime.scripts.joysticks import CONTROL, NEUTRAL
 from ..commands import ChooseMode, EmergencyStop, Enable, Practice
 from ..messages import StationState
-
-_NEUTRAL = {"axes": 0.0, "buttons": False, "povs": modes.NOT_PRESSED}
 
 E_STOP = "control.eStop"
 
@@ -85,7 +83,7 @@ class Station:
             self._write(target, value)
             return
         taps = {each: packets for each, packets in self.state.taps.items() if each != target}
-        is_neutral = value == _NEUTRAL[control[2]]
+        is_neutral = value == NEUTRAL[control[2]]
         if is_neutral and target in self._pressed:
             taps[target] = 1
         elif self._delivers(modes.mode_name()):
@@ -108,7 +106,7 @@ class Station:
             for target, value in self.state.sticks.items():
                 control = CONTROL.fullmatch(target)
                 if control is not None:
-                    self._write(target, value if after else _NEUTRAL[control[2]])
+                    self._write(target, value if after else NEUTRAL[control[2]])
 
     def _delivers(self, mode: str) -> bool:
         if mode.startswith("disabled"):
@@ -138,7 +136,7 @@ class Station:
         for target, packets in self.state.taps.items():
             control = CONTROL.fullmatch(target)
             if packets == 0 and control is not None and self._delivers(modes.mode_name()):
-                self._write(target, _NEUTRAL[control[2]])
+                self._write(target, NEUTRAL[control[2]])
         self.state = replace(self.state, taps={each: 0 for each, packets in self.state.taps.items() if packets})
 
     def _go_on_with_practice(self) -> None:

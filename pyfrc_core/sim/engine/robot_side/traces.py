@@ -44,13 +44,12 @@ class Traces:
         if self._network is not None and not self.is_on:
             self._network.skip(now)
 
-    def begin(self, now: float) -> None:
-        """Note what changes from now on."""
+    def skip_hal(self, now: float) -> None:
+        """Take over what `hal_data` shows, where it is known: only what changes from now on is noted."""
         if not self.is_on:
             self._trace.look(now)
             self._trace.write_lines()
             self._lines.clear()
-            self.is_on = True
 
     def take(self) -> tuple[str, ...]:
         """Return the new lines of `hal_data`."""

@@ -7,6 +7,7 @@ import hashlib
 import mimetypes
 import os
 import traceback
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,8 @@ from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from .access import Access, Guard, Receive, Scope, Send
+from ....config.pictures import field_picture, picture_kind
+from .access import Access, Guard, Receive, Role, Scope, Send
 from .commands import Commands
 from .greeting import greeting
 from .page_client import PageClient
@@ -35,6 +37,8 @@ _TYPES = {".css": "text/css", ".svg": "image/svg+xml"}
 _NO_KEY = "This address lacks its key. Open the address that pyfrc sim has printed.\n"
 #: The codes that close a connection: it sent something other than text; pyfrc has a mistake.
 _UNSUPPORTED, _ERROR = 1003, 1011
+#: The most pages at once, so that those who only look cannot use up this computer; those who drive are not counted out.
+_MOST_PAGES = 32
 #: How long a page that does not read delays the end, in seconds.
 _CLOSING_SECONDS = 2.0
 #: What sending and receiving raise when a page has gone; RuntimeError: it was closed meanwhile.
@@ -68,12 +72,14 @@ async def _script(request: Request) -> Response:
 class WebApp:
     """Serves the pages of one simulation.
 
-    :param commands: what pages can do
+    :param close: ends the simulation
     """
 
-    def __init__(self, simulation: Simulation, collector: Collector, commands: Commands, access: Access) -> None:
+    def __init__(
+        self, simulation: Simulation, collector: Collector, close: Callable[[], object], access: Access
+    ) -> None:
         self._simulation, self._collector, self._access = simulation, collector, access
-        self._commands = commands
+        self._close = close
         self._clients: dict[int, PageClient] = {}
         self._count = 0
         self._executor = ThreadPoolExecutor(1, "pyfrc sim: web commands")
@@ -112,27 +118,29 @@ class WebApp:
         return FileResponse(PAGE / "index.html", headers={"Cache-Control": "no-cache"})
 
     async def _image(self, request: Request) -> Response:
-        file = self._simulation.field.image
+        image = self._simulation.project.sim_config.field.image
         if self._access.role_of(request.scope) is None:
             return PlainTextResponse(_NO_KEY, 403)
-        if file is None or not file.is_file():
+        # Looked at again: the file may be another one since the page was made.
+        file = None if image is None else field_picture(self._simulation.project.root, image)[0]
+        if file is None:
             return PlainTextResponse("There is no picture of the field.\n", 404)
-        return FileResponse(file, headers={"Cache-Control": "no-cache"})
+        return FileResponse(file, media_type=picture_kind(file), headers={"Cache-Control": "no-cache"})
 
     async def _page(self, socket: WebSocket) -> None:
         role = self._access.role_of(socket.scope)
-        if role is None:
+        if role is None or (role == "view" and len(self._clients) >= _MOST_PAGES):
             await socket.close(1008)
             return
         await socket.accept()
         self._count += 1
         number, token = self._count, socket.query_params.get("token", "")
         image = f"/field-image?token={token}"
+        driver = self._simulation.attach() if role == "drive" else None
         client = PageClient(
             socket,
-            role,
             self._collector,
-            self._commands,
+            None if driver is None else Commands(self._simulation, driver, self._collector, self._close),
             UpdateBuilder(self._collector, image),
             lambda: greeting(self._simulation, number, role == "view"),
             lambda: len(self._clients),
@@ -150,12 +158,19 @@ class WebApp:
                 task.cancel()
             for found in await asyncio.gather(*tasks, return_exceptions=True):
                 if isinstance(found, Exception) and not isinstance(found, _GONE):
-                    await self._report(socket, found)
+                    await self._report(socket, found, role)
+            if driver is not None:
+                with suppress(RuntimeError):  # the simulation has ended
+                    self._executor.submit(driver.leave)  # after what the page has asked for
 
     @staticmethod
-    async def _report(socket: WebSocket, error: Exception) -> None:
-        """Print an error of pyfrc's own, and end the connection: the page connects again, and gets everything."""
-        traceback.print_exception(error)
+    async def _report(socket: WebSocket, error: Exception, role: Role) -> None:
+        """Print an error of pyfrc's own, and end the connection: the page connects again, and gets everything.
+
+        Who only looks has no right to fill the driver's terminal.
+        """
+        if role == "drive":
+            traceback.print_exception(error)
         with suppress(*_GONE):
             await socket.close(_ERROR)
 

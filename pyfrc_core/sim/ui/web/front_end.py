@@ -5,15 +5,17 @@ from __future__ import annotations
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ....browser import open_in_browser, why_no_browser
+from ....browser import open_in_browser, why_no_browser, write_redirection
+from ....text_files import keep_out_of_version_control
 from .. import FrontEnd
 from .access import Access
 from .app import WebApp
 from .collector import Collector
-from .commands import Commands
 from .forwarding import allowed_origins, codespace_origins
 from .server import Server, WebOptions
 
@@ -40,6 +42,8 @@ class WebFrontEnd(FrontEnd):
         self._allowed = allowed_origins(options.allowed_hosts)
         self._over = threading.Event()
         self.server: Server | None = None
+        #: The file that leads a browser to the page.
+        self._redirection: Path | None = None
         #: What keeps the whole history of the simulation.
         self.collector: Collector | None = None
 
@@ -47,13 +51,12 @@ class WebFrontEnd(FrontEnd):
         self.server = server = Server(self._options, self._access)
         access = replace(self._access, origins=(*self._allowed, *codespace_origins(server.port)))
         self.collector = collector = Collector(simulation, server.wake)
-        commands = Commands(simulation, collector, self.close)
         switch_seconds = sys.getswitchinterval()
         sys.setswitchinterval(_SWITCH_SECONDS)
         try:
-            server.start(WebApp(simulation, collector, commands, access))
+            server.start(WebApp(simulation, collector, self.close, access))
             collector.start()
-            self._announce(server, access, simulation.options.nt_port)
+            self._announce(server, access, simulation)
             simulation.start()
             while not self._over.wait(_LOOK_SECONDS):
                 if collector.mistake is not None:
@@ -63,6 +66,8 @@ class WebFrontEnd(FrontEnd):
             server.close()
             simulation.close()
             sys.setswitchinterval(switch_seconds)
+            if self._redirection is not None:
+                self._redirection.unlink(missing_ok=True)
         return 0
 
     def close(self) -> None:
@@ -74,7 +79,7 @@ class WebFrontEnd(FrontEnd):
         if (collector := self.collector) is not None:
             collector.announce(f"saved: {', '.join(files)}")
 
-    def _announce(self, server: Server, access: Access, nt_port: int | None) -> None:
+    def _announce(self, server: Server, access: Access, simulation: Simulation) -> None:
         if access.origins:
             for origin in access.origins:
                 self._say(f"The simulator is at {origin}/?token={access.drive}\n")
@@ -88,8 +93,8 @@ class WebFrontEnd(FrontEnd):
             self._say(
                 f"Shared with the network: who has this address {can}: {server.network_address(share == 'drive')}\n"
             )
-            if share == "drive" and nt_port is not None:
-                self._say(f"NetworkTables are shared, too, without a key: port {nt_port}\n")
+            if share == "drive" and (port := simulation.options.nt_port) is not None:
+                self._say(f"NetworkTables are shared, too, without a key: port {port}\n")
         if not self._options.opens_browser:
             return
         if why := why_no_browser():
@@ -98,11 +103,18 @@ class WebFrontEnd(FrontEnd):
                 f"on another computer, forward port {server.port} to it first."
             )
         else:
-            threading.Thread(target=self._open, args=(server.address,), name="pyfrc sim: browser", daemon=True).start()
+            directory = simulation.project.root.resolve() / ".pyfrc"
+            threading.Thread(
+                target=self._open, args=(server.address, directory), name="pyfrc sim: browser", daemon=True
+            ).start()
         self._advise("Ctrl-C ends the simulation.")
 
-    def _open(self, address: str) -> None:
-        if not open_in_browser(address):
+    def _open(self, address: str, directory: Path) -> None:
+        with suppress(OSError):  # then it is written elsewhere
+            directory.mkdir(exist_ok=True)
+            keep_out_of_version_control(directory)
+        self._redirection = write_redirection(address, directory)
+        if not open_in_browser(address if self._redirection is None else self._redirection.as_uri()):
             self._advise("No browser was found. Open the address in one.")
 
     def _advise(self, text: str) -> None:

@@ -15,8 +15,10 @@ MOST = 256 * 1024
 def load_layout(root: Path) -> Any:
     """Return the saved layout; None if there is none that can be read."""
     try:
-        return json.loads(_file(root).read_text("utf-8"))
-    except (OSError, ValueError):
+        file = _file(root).resolve()
+        # Another file would be handed to those who look at the page.
+        return json.loads(file.read_text("utf-8")) if file.is_relative_to(root.resolve()) else None
+    except (OSError, ValueError, RuntimeError, RecursionError):
         return None
 
 

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-import json
 from collections.abc import Callable
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
 from ...engine.network_paths import TYPE
-from .access import Role
-from .commands import CommandError, Commands
+from .commands import Commands
 from .json_text import json_text
 from .layouts import save_layout
+from .messages import CommandError, Message, read_message
 from .updates import UpdateBuilder
 
 if TYPE_CHECKING:
@@ -22,14 +21,17 @@ if TYPE_CHECKING:
 
 #: The shortest interval of updates, in seconds: somewhat less than a packet.
 _INTERVAL = 0.014
-#: The most paths that one page may ask for at once.
-_MOST_PATHS = 64
+#: The longest error, in characters: it may quote what the page has sent.
+_MOST_ERROR = 300
+#: The most points of one curve.
+_MOST_POINTS = 20_000
 _READ_ONLY = "This window only shows the simulation; it cannot drive."
 
 
 class PageClient:
     """One page.
 
+    :param commands: None for a page that only looks
     :param hello: returns what a page gets first, without the state
     :param clients: returns the number of pages
     :param executor: carries out commands, one after the other
@@ -38,15 +40,14 @@ class PageClient:
     def __init__(
         self,
         socket: WebSocket,
-        role: Role,
         collector: Collector,
-        commands: Commands,
+        commands: Commands | None,
         builder: UpdateBuilder,
         hello: Callable[[], dict[str, Any]],
         clients: Callable[[], int],
         executor: Executor,
     ) -> None:
-        self._socket, self._role = socket, role
+        self._socket = socket
         self._collector, self._commands, self._builder = collector, commands, builder
         self._hello, self._clients, self._executor = hello, clients, executor
         #: Set when there may be something new.
@@ -70,18 +71,13 @@ class PageClient:
 
     async def receive(self, text: str) -> None:
         """Carry out one message of the page."""
+        number: dict[str, Any] = {}
         try:
-            message = json.loads(text)
-        except ValueError:
-            message = None
-        if not isinstance(message, dict):
-            await self._send({"type": "error", "message": "a message is one JSON object"})
-            return
-        number = {"id": message["id"]} if isinstance(message.get("id"), (int, str)) else {}
-        try:
+            message = read_message(text)
+            number = {} if message.id is None else {"id": message.id}
             answer = await self._answer(message)
         except CommandError as wrong:
-            await self._send({"type": "error", **number, "message": str(wrong)})
+            await self._send({"type": "error", **number, "message": str(wrong)[:_MOST_ERROR]})
             return
         if number:
             await self._send({"type": "answer", **number, **answer})
@@ -95,12 +91,12 @@ class PageClient:
         async with self._sending:
             await self._socket.send_text(text)
 
-    async def _answer(self, message: dict[str, Any]) -> dict[str, Any]:
-        match message.get("type"):
+    async def _answer(self, message: Message) -> dict[str, Any]:
+        match message.text("type"):
             case "command":
-                return await self._in_order(lambda: self._commands.carry_out(message))
+                return await self._in_order(lambda commands: commands.carry_out(message))
             case "layout":
-                return await self._in_order(lambda: self._save_layout(message.get("layout")))
+                return await self._in_order(lambda commands: self._save_layout(message.raw("layout")))
             case "values":
                 return await asyncio.to_thread(self._values, message)
             case "plot":
@@ -108,17 +104,17 @@ class PageClient:
             case "first_difference":
                 return await asyncio.to_thread(self._first_difference, message)
             case "subscribe":
-                self._builder.subscribe(_paths(message))
+                self._builder.subscribe(message.paths())
                 return {}
             case "ping":
                 return {}
             case other:
-                raise CommandError(f"There is no message {other!r}. Reload the page.")
+                raise CommandError(f"There is no message {other[:80]!r}. Reload the page.")
 
-    async def _in_order(self, act: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-        if self._role != "drive":
+    async def _in_order(self, act: Callable[[Commands], dict[str, Any]]) -> dict[str, Any]:
+        if self._commands is None:
             raise CommandError(_READ_ONLY)
-        return await asyncio.get_running_loop().run_in_executor(self._executor, act)
+        return await asyncio.get_running_loop().run_in_executor(self._executor, act, self._commands)
 
     def _save_layout(self, layout: Any) -> dict[str, Any]:
         try:
@@ -127,28 +123,27 @@ class PageClient:
             raise CommandError(f"The layout was not saved: {wrong}") from None
         return {}
 
-    def _values(self, message: dict[str, Any]) -> dict[str, Any]:
-        time = _time(message, "t")
-        values = self._collector.runs.values_at(time, _branch(message))
+    def _values(self, message: Message) -> dict[str, Any]:
+        time = message.time("t")
+        values = self._collector.runs.values_at(time, message.branch())
         if values is None:
             raise _no_branch()
         return {"t": time, "values": {path: value for path, value in values.items() if not path.startswith(TYPE)}}
 
-    def _first_difference(self, message: dict[str, Any]) -> dict[str, Any]:
-        paths, branch = None if message.get("paths") is None else _paths(message), _branch(message)
+    def _first_difference(self, message: Message) -> dict[str, Any]:
+        paths, branch = message.paths() if "paths" in message else None, message.branch()
         found = None if branch is None else self._collector.runs.first_difference(branch, paths)
         if found is None:
             raise _no_branch()
         return {"t": found.time, "paths": found.paths}
 
-    def _plot(self, message: dict[str, Any]) -> dict[str, Any]:
-        points = message.get("points", 800)
+    def _plot(self, message: Message) -> dict[str, Any]:
         found = self._collector.runs.plots(
-            _paths(message),
-            _time(message, "from"),
-            _time(message, "to"),
-            points if isinstance(points, int) else 800,
-            _branch(message),
+            message.paths(),
+            message.time("from"),
+            message.time("to"),
+            message.integer("points", 1, _MOST_POINTS, 800),
+            message.branch(),
         )
         if found is None:
             raise _no_branch()
@@ -157,24 +152,3 @@ class PageClient:
 
 def _no_branch() -> CommandError:
     return CommandError("This branch is no longer kept.")
-
-
-def _paths(message: dict[str, Any]) -> list[str]:
-    paths = message.get("paths")
-    if not isinstance(paths, list) or not all(isinstance(path, str) for path in paths) or len(paths) > _MOST_PATHS:
-        raise CommandError(f"paths: a list of at most {_MOST_PATHS} texts is needed")
-    return paths
-
-
-def _time(message: dict[str, Any], key: str) -> float:
-    value = message.get(key)
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or value != value:
-        raise CommandError(f"{key}: a time in seconds is needed, not {value!r}")
-    return float(value)
-
-
-def _branch(message: dict[str, Any]) -> int | None:
-    value = message.get("branch")
-    if value is not None and not isinstance(value, int):
-        raise CommandError(f"branch: a number is needed, not {value!r}")
-    return value

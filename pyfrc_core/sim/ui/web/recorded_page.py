@@ -12,6 +12,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ....config.pictures import field_picture
 from ...engine.snapshot import Failure
 from .collector import Collector
 from .greeting import greeting
@@ -70,7 +71,8 @@ def recorded_page(simulation: Simulation, collector: Collector, title: RunTitle)
 
 def _hello(simulation: Simulation, collector: Collector, title: RunTitle) -> dict[str, Any]:
     found = {**greeting(simulation, 1, True), **UpdateBuilder(collector, "").update(1)}
-    image = simulation.field.image
+    name = simulation.project.sim_config.field.image
+    image = None if name is None else field_picture(simulation.project.root, name)[0]
     try:
         found["field"] |= {"image": None if image is None else data_url(image)}
     except OSError:  # it is gone

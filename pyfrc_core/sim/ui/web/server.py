@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 #: The largest message that a page may send, in bytes.
 _MOST_MESSAGE = 1 << 20
+#: How often pages are asked whether they are there, and how long they may take to answer, in seconds: the browser
+#: answers by itself, however busy its page is.
+_PING_SECONDS, _GONE_SECONDS = 1.0, 3.0
 #: How long each step of the end may take, in seconds; longer than the app waits for a page.
 _CLOSING_SECONDS = 3.0
 
@@ -93,6 +96,9 @@ class Server:
             server_header=False,
             ws_max_size=_MOST_MESSAGE,
             ws_per_message_deflate=False,  # takes longer than sending it on the same computer
+            # A page that does not respond has gone: what it held is released, and a robot without a driver is disabled.
+            ws_ping_interval=_PING_SECONDS,
+            ws_ping_timeout=_GONE_SECONDS,
             timeout_graceful_shutdown=1,
         )
         self._app, self._server = app, uvicorn.Server(config)

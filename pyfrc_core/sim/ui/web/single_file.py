@@ -15,6 +15,8 @@ import re
 from functools import cache, lru_cache
 from pathlib import Path, PurePosixPath
 
+from ....config.pictures import picture_kind
+
 #: The page's files.
 PAGE = Path(__file__).with_name("page")
 
@@ -26,7 +28,7 @@ _EXPORT_DEFAULT = re.compile(r"\bexport default\b")
 _EXPORT = re.compile(r"^export\s+(?=(?:async\s+)?(?:function\*?|class|const|let)\s+(?P<name>[\w$]+))", re.MULTILINE)
 _URL = re.compile(r'url\("(?P<file>[^"]+)"\)')
 _STYLES = re.compile(r'[ ]*<link rel="stylesheet" href="/static/(?P<file>[^"]+)">\n')
-_TYPES = {".woff2": "font/woff2", ".svg": "image/svg+xml", ".png": "image/png", ".jpg": "image/jpeg"}
+_TYPES = {".woff2": "font/woff2", ".svg": "image/svg+xml"}
 
 
 def single_file(title: str, data: bytes) -> str:
@@ -75,7 +77,7 @@ def data_url(file: Path) -> str:
 
     :raises OSError: when it cannot be read
     """
-    kind = _TYPES.get(file.suffix.lower(), "image/jpeg")
+    kind = picture_kind(file) or _TYPES[file.suffix.lower()]
     return f"data:{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
 
 

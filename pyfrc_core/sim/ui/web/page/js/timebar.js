@@ -117,7 +117,8 @@ function RunMenu() {
 async function save() {
   const file = await askText("Save the recording in the project's directory as", "drive.jsonl");
   if (!file) return;
-  const answer = await command("save", { file });
+  let answer = await command("save", { file });
+  if (answer?.exists && confirm(`${answer.exists} exists. Replace it?`)) answer = await command("save", { file, replace: true });
   if (answer?.file) model.set("problem", `Saved ${answer.file}`);
 }
 

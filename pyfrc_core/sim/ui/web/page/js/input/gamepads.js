@@ -12,6 +12,7 @@ const STICKS = 6;
 const passedOn = {}; // joystick: what was sent last, target: value
 let names = "";
 let starts = null;
+let hello = null;
 let polling = false; // once a frame
 
 export function gamepads() {
@@ -73,12 +74,14 @@ function poll() {
   polling = gamepads().length > 0 || Object.keys(passedOn).length > 0;
   if (polling) requestAnimationFrame(poll);
   if (!model.hello || model.readonly || model.connection !== "open") return;
-  // A robot that was restarted knows nothing of what was passed on.
-  if (model.status.starts !== starts && model.status.state !== "starting") {
+  // A robot that was restarted, and a server that has lost this page, know nothing of what was passed on.
+  if (model.hello !== hello || (model.status.starts !== starts && model.status.state !== "starting")) {
+    hello = model.hello;
     starts = model.status.starts;
     for (const stick of Object.keys(passedOn)) delete passedOn[stick];
   }
-  const pads = gamepads();
+  // A page that is not seen gets nothing from its gamepads: they are released.
+  const pads = document.hidden ? [] : gamepads();
   const seen = pads.map((pad) => pad.id).join("\n");
   if (seen !== names) {
     names = seen;
@@ -123,4 +126,5 @@ function look() {
 
 export function startGamepads() {
   setInterval(look, 100);
+  document.addEventListener("visibilitychange", poll); // frames no longer come when it is hidden
 }

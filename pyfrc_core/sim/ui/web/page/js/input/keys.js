@@ -25,6 +25,7 @@ const REPEATING = new Set(["f6"]);
 const held = new Set();
 const pressedAs = new Map(); // code: name at the time of the press
 let sent = {};
+let starts = null;
 
 export function keyName(event) {
   if (BY_CODE[event.code]) return BY_CODE[event.code];
@@ -140,11 +141,19 @@ function releaseAll() {
   move();
 }
 
+// A robot that was restarted, and a server that has lost this page, know nothing of what was sent.
+function again() {
+  starts = model.status.starts;
+  sent = {};
+  move();
+}
+
 export function startKeys() {
   addEventListener("keydown", down);
   addEventListener("keyup", up);
   addEventListener("blur", releaseAll);
   model.listen((changed) => {
+    if (changed.has("hello") || (model.status.starts !== starts && model.status.state !== "starting")) again();
     if (model.hint && changed.has("station") && model.station.enabled) model.set("hint", "");
   });
   document.addEventListener("focusin", (event) => isTyping(event.target) && releaseAll());

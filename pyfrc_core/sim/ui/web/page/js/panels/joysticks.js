@@ -86,7 +86,7 @@ class Axis extends Component {
   }
 }
 
-class Button extends Component {
+export class Button extends Component {
   element = createRef();
 
   componentDidMount() {
@@ -109,10 +109,11 @@ class Button extends Component {
     command("button", { stick, button, pressed });
   }
 
-  render({ button, label }) {
-    return html`<button ref=${this.element} class="stick-button" title=${`${label || `Button ${button}`}: the right mouse button keeps it pressed`}
+  render({ button, label, touch }) {
+    const title = touch ? `Button ${button}` : `${label || `Button ${button}`}: the right mouse button keeps it pressed`;
+    return html`<button ref=${this.element} class="stick-button" title=${title}
       disabled=${model.readonly} onPointerDown=${this.down} onPointerUp=${this.up} onPointerCancel=${this.up}
-      onContextMenu=${this.keep} onKeyDown=${this.key} onKeyUp=${this.keyUp}><b>${button}</b><small>${label}</small></button>`;
+      onContextMenu=${this.keep} onKeyDown=${this.key} onKeyUp=${this.keyUp} onBlur=${this.up}><b>${button}</b><small>${label}</small></button>`;
   }
 
   down = (event) => {
@@ -130,18 +131,19 @@ class Button extends Component {
 
   keep = (event) => {
     event.preventDefault();
-    this.press(!this.pressed);
+    if (!this.props.touch) this.press(!this.pressed); // a long touch is none of the right mouse button
   };
 
   key = (event) => {
     if (![" ", "Enter"].includes(event.key) || event.repeat) return;
     event.preventDefault();
     event.stopPropagation();
+    this.holding = true;
     this.press(true);
   };
 
   keyUp = (event) => {
-    if ([" ", "Enter"].includes(event.key)) this.press(false);
+    if ([" ", "Enter"].includes(event.key)) this.up();
   };
 }
 
@@ -158,7 +160,18 @@ class Pov extends Component {
 
   componentWillUnmount() {
     this.unbind();
+    this.letGo();
   }
+
+  hold(angle) {
+    this.holding = true;
+    this.turn(angle);
+  }
+
+  letGo = () => {
+    if (this.holding) this.turn(-1);
+    this.holding = false;
+  };
 
   turn(angle) {
     command("pov", { stick: this.props.stick, pov: 0, angle });
@@ -169,11 +182,11 @@ class Pov extends Component {
       ${POVS.map((angle) => angle === -1
         ? html`<i key=${angle}>POV</i>`
         : html`<button key=${angle} aria-label=${`POV ${angle}°`} disabled=${model.readonly}
-          onPointerDown=${(event) => event.button === 0 && (event.currentTarget.setPointerCapture(event.pointerId), this.turn(angle))}
-          onPointerUp=${(event) => event.button === 0 && this.turn(-1)}
+          onPointerDown=${(event) => event.button === 0 && (event.currentTarget.setPointerCapture(event.pointerId), this.hold(angle))}
+          onPointerUp=${this.letGo} onPointerCancel=${this.letGo} onBlur=${this.letGo}
           onContextMenu=${(event) => (event.preventDefault(), this.turn(this.angle === angle ? -1 : angle))}
-          onKeyDown=${(event) => [" ", "Enter"].includes(event.key) && !event.repeat && (event.preventDefault(), event.stopPropagation(), this.turn(angle))}
-          onKeyUp=${(event) => [" ", "Enter"].includes(event.key) && this.turn(-1)}>${ARROWS[angle]}</button>`)}
+          onKeyDown=${(event) => [" ", "Enter"].includes(event.key) && !event.repeat && (event.preventDefault(), event.stopPropagation(), this.hold(angle))}
+          onKeyUp=${(event) => [" ", "Enter"].includes(event.key) && this.letGo()}>${ARROWS[angle]}</button>`)}
     </div>`;
   }
 }

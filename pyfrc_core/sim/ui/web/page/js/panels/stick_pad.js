@@ -29,7 +29,7 @@ export class StickPad extends Component {
 
   componentWillUnmount() {
     this.unbind();
-    if (this.dragging) this.move(0, 0);
+    if (this.dragging || this.pushed) this.move(0, 0);
   }
 
   paint(x, y) {
@@ -40,7 +40,7 @@ export class StickPad extends Component {
 
   render({ round, label }) {
     return html`<div class=${round ? "stick round" : "stick"} ref=${this.element} tabindex="0" role="application" aria-label=${label}
-      onPointerDown=${this.begin} onPointerMove=${this.drag} onPointerUp=${this.end} onPointerCancel=${this.end} onKeyDown=${this.key} onKeyUp=${this.keyUp}>
+      onPointerDown=${this.begin} onPointerMove=${this.drag} onPointerUp=${this.end} onPointerCancel=${this.end} onKeyDown=${this.key} onKeyUp=${this.keyUp} onBlur=${this.letGo}>
       <div class="area"><i class="knob"></i></div></div>`;
   }
 
@@ -83,10 +83,17 @@ export class StickPad extends Component {
     if (!way || event.repeat || model.readonly) return;
     event.preventDefault();
     event.stopPropagation();
+    this.pushed = true;
     this.move(...way);
   };
 
   keyUp = (event) => {
-    if (event.key.startsWith("Arrow")) this.move(0, 0);
+    if (event.key.startsWith("Arrow")) this.letGo();
+  };
+
+  // Without the keyboard, it does not hear that the key goes up.
+  letGo = () => {
+    if (this.pushed) this.move(0, 0);
+    this.pushed = false;
   };
 }

@@ -1,7 +1,7 @@
 // Two big sticks for a tablet: the left and the right stick of joystick 0, or Y of joysticks 0 and 1 for tank robots.
-import { command } from "../connection.js";
 import { model } from "../model.js";
 import { Live, html } from "../view.js";
+import { Button } from "./joysticks.js";
 import { StickPad } from "./stick_pad.js";
 
 const KINDS = {
@@ -23,10 +23,7 @@ export class TouchPanel extends Live {
         <select aria-label="What the sticks move" value=${chosen} onChange=${(event) => this.setState({ kind: event.target.value })}>
           ${Object.entries(KINDS).map(([name, each]) => html`<option key=${name} value=${name} selected=${name === chosen}>${each.title}</option>`)}
         </select>
-        <div class="touch-buttons">${[1, 2, 3, 4].map((button) => html`<button key=${button} class="stick-button" disabled=${model.readonly}
-          onPointerDown=${(event) => (event.currentTarget.setPointerCapture(event.pointerId), command("button", { stick: 0, button, pressed: true }))}
-          onPointerUp=${() => command("button", { stick: 0, button, pressed: false })}
-          onContextMenu=${(event) => event.preventDefault()}><b>${button}</b></button>`)}</div>
+        <div class="touch-buttons">${[1, 2, 3, 4].map((button) => html`<${Button} key=${button} stick=${0} button=${button} touch />`)}</div>
       </div>
       <${StickPad} key=${`right ${chosen}`} stick=${right[0]} x=${right[1]} y=${right[2]} round label="Right stick" />
     </div>`;
