@@ -134,6 +134,7 @@ def test_a_page_that_does_not_respond_counts_as_gone(make_project: Any) -> None:
                 "Connection: Upgrade\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
                 "Sec-WebSocket-Version: 13\r\n\r\n".encode()
             )
+            assert silent.recv(12) == b"HTTP/1.1 101"
             for text in (
                 '{"type":"command","name":"enable"}',
                 '{"type":"command","name":"axis","stick":0,"axis":1,"value":-1}',

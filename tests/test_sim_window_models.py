@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any, get_args
 
 import pytest
@@ -20,6 +21,7 @@ from pyfrc_core.physics.pose import Pose
 from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
 from pyfrc_core.sim.ui.models.devices import SETTABLE, DeviceRows, Row, RowKind, panels_of
+from pyfrc_core.sim.ui.models.driver_station_keys import DriverStationKeys
 from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading, hat_angle
 from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
 from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
@@ -490,6 +492,24 @@ def test_gamepads_go_where_the_user_says() -> None:
     router.poll()
     assert told.calls == [("set_axis", 0, 0, 0.3)]
     assert "pyfrc[gamepads]>=2026.1" in HINT
+
+
+def test_keys_that_are_held_are_passed_on_again() -> None:
+    """To a robot that was restarted."""
+    made, told = sticks()
+    told.project = SimpleNamespace(sim_config=SimConfig())
+    keys = DriverStationKeys(told, made, close=lambda: None)
+    keys.press("w")
+    keys.press("1")
+    before = list(told.calls)
+    assert ("set_axis", 0, 1, -1.0) in before
+    told.calls.clear()
+    keys.forget()
+    assert sorted(told.calls) == sorted(before)
+    keys.release_all()
+    told.calls.clear()
+    keys.forget()
+    assert told.calls == []
 
 
 def test_hats() -> None:

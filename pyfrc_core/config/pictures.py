@@ -11,6 +11,7 @@ _KINDS = (
     (re.compile(rb"\xff\xd8\xff"), "image/jpeg"),
     (re.compile(rb"GIF8[79]a"), "image/gif"),
     (re.compile(rb"RIFF....WEBP", re.DOTALL), "image/webp"),
+    (re.compile(rb"P6\s+\d+\s+\d+\s+\d+\s"), "image/x-portable-pixmap"),  # Tk shows it, browsers do not
     (re.compile(rb"BM.{12}\x28\x00\x00\x00", re.DOTALL), "image/bmp"),
     (re.compile(rb"(?:\xef\xbb\xbf)?\s*<(?:\?xml\s[^>]*>\s*(?:<!--.*?-->\s*)*<)?svg[\s>]", re.DOTALL), "image/svg+xml"),
 )

@@ -80,6 +80,11 @@ class DriverStationKeys:
         self._driver.release_all()
         self._move()
 
+    def forget(self) -> None:
+        """Pass on what is held again: the robot was restarted, and knows nothing of it."""
+        self._axes, self._buttons = {}, {}
+        self._move()
+
     def _toggle_connection(self) -> None:
         snapshot = self._simulation.snapshot
         if snapshot is not None:

@@ -62,7 +62,7 @@ class Window:
         self._snapshot: Snapshot | None = None
         self._status: Status | None = None
         self._due, self._alarm = 0.0, ""
-        #: The robot process that the gamepads' states were sent to.
+        #: The robot process that the states of keys and gamepads were sent to.
         self._starts = 0
         #: Messages of other threads that are not shown yet.
         self._announced: deque[str] = deque()
@@ -122,7 +122,7 @@ class Window:
         config = simulation.project.sim_config
         self.joystick = JoystickView(right, theme, tooltip, config, self.sticks, self.gamepads)
         self.joystick.frame.pack(side="top", fill="x", pady=(gap, 0))
-        keys = DriverStationKeys(simulation, self.sticks, close=self._quit)
+        self._driving = keys = DriverStationKeys(simulation, self.sticks, close=self._quit)
         self._keys = Keys(root, keys)
         self.drive = DriveView(right, theme, keys, self.focus_field)
         self.drive.frame.pack(side="top", fill="x", pady=(gap, 0))
@@ -183,10 +183,12 @@ class Window:
         """Show the newest snapshot."""
         simulation = self._simulation
         snapshot, status = simulation.snapshot, simulation.status
-        if self.gamepads is not None:
-            if status.state != "starting" and status.starts != self._starts:
-                self._starts = status.starts
+        if status.state != "starting" and status.starts != self._starts:
+            self._starts = status.starts
+            self._driving.forget()
+            if self.gamepads is not None:
                 self.gamepads.forget()
+        if self.gamepads is not None:
             self.gamepads.poll()
         while self._announced:
             self.console.mark(self._announced.popleft())
