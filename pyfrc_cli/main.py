@@ -45,6 +45,21 @@ COMMANDS = {
 }
 
 
+#: Names that other tools have for what pyfrc, or another tool, does.
+OTHER_NAMES = {
+    "run": "To run the robot on this computer: pyfrc sim. To start it on the robot: pyfrc deploy",
+    "sync": "To download what the robot needs: python -m pip install robotpy, then: python -m robotpy sync",
+    "installer": "To install packages on the robot: python -m pip install robotpy, then: python -m robotpy installer",
+    "rollback": "To go back to an earlier release: pyfrc deploy --rollback",
+    "netconsole": "To see the robot program's output: pyfrc console",
+    "logs": "To see the robot program's output: pyfrc console",
+    "create": "To create a project: pyfrc init",
+    "new": "To create a project: pyfrc init",
+    "simulate": "To simulate the robot: pyfrc sim",
+    "check": "To find problems of the project: pyfrc doctor",
+}
+
+
 class Commands(click.Group):
     """The group of all commands; each is imported when it is used."""
 
@@ -60,6 +75,8 @@ class Commands(click.Group):
         if args and args[0] not in COMMANDS and not args[0].startswith("-"):
             close = difflib.get_close_matches(args[0], COMMANDS, n=1)
             hint = f" Did you mean {close[0]!r}?" if close else ""
+            if args[0] in OTHER_NAMES:
+                hint = f" {OTHER_NAMES[args[0]]}"
             if args[0].endswith(".py"):
                 hint = " pyfrc finds the robot's file by itself, for example: pyfrc sim"
             raise click.UsageError(f"There is no command {args[0]!r}.{hint}", ctx)
@@ -136,6 +153,10 @@ def _remedy(error: click.ClickException) -> str:
         return "Write options of pytest after --, for example: pyfrc test -- -k drive"
     if command is not None and re.search(r"unexpected extra arguments? \(.*\.py\b", error.message):
         return "pyfrc finds the robot's file. Use --main FILE if it is not called robot.py."
+    if command in ("deploy", "deploy-info", "undeploy", "console"):
+        extra = re.search(r"unexpected extra argument \((\S+)\)", error.message)
+        if extra is not None and (extra[1].isdecimal() or re.search(r"[.:]|^roborio", extra[1], re.IGNORECASE)):
+            return f"Write: pyfrc {command} {'--team' if extra[1].isdecimal() else '--robot'} {extra[1]}"
     return ""
 
 

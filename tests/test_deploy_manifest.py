@@ -7,14 +7,15 @@ import os
 import sys
 import tracemalloc
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pyfrc_core.deploy.errors import RefusedError
-from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded
+from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded, private_files
+from pyfrc_core.file_hash import hash_file
 from pyfrc_core.passes.contents import read_contents
 from pyfrc_core.project import Project
 
@@ -154,14 +155,14 @@ def test_what_is_no_file_is_refused_by_name(tmp_path: Path) -> None:
 def test_what_cannot_be_read_is_refused_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Patched, since the user who runs these tests may have permission to read every file."""
     make(tmp_path, "robot.py", "secret.txt")
-    opened = Path.open
+    opened = os.open
 
-    def guarded(path: Path, *args: Any, **options: Any) -> IO[Any]:
-        if path.name == "secret.txt":
+    def guarded(path: str, *args: Any, **options: Any) -> int:
+        if Path(path).name == "secret.txt":
             raise PermissionError(13, "Permission denied", str(path))
         return opened(path, *args, **options)
 
-    monkeypatch.setattr(Path, "open", guarded)
+    monkeypatch.setattr(os, "open", guarded)
     with pytest.raises(RefusedError, match=r"secret.txt: this cannot be read: Permission denied\n.*exclude"):
         build_manifest(tmp_path)
 
@@ -174,3 +175,88 @@ def test_large_files_are_uploaded_only_when_they_are_meant(tmp_path: Path) -> No
         build_manifest(tmp_path)
     assert len(build_manifest(tmp_path, large=True).entries) == 13
     assert paths(tmp_path, "[01]*.bin") == ["just.bin"]
+
+
+# -- environments and private files ---------------------------------------------------------------------------------
+
+
+def test_environments_are_not_uploaded_whatever_they_are_called(tmp_path: Path) -> None:
+    make(tmp_path, "robot.py", "frc2026/pyvenv.cfg", "frc2026/lib/wpilib.py", "conda/conda-meta/history", "conda/a.py")
+    make(tmp_path, "lib/arm.py", "lib/nested/pyvenv.cfg", "lib/nested/b.py")
+    assert paths(tmp_path) == ["lib/arm.py", "robot.py"]
+    assert [each for each in read_contents(Project(tmp_path / "robot.py")).sources if "lib/arm" not in each] == [
+        "robot.py"
+    ]
+
+
+def test_a_project_that_is_an_environment_itself_is_refused(tmp_path: Path) -> None:
+    make(tmp_path, "robot.py", "pyvenv.cfg", "lib/wpilib.py")
+    with pytest.raises(RefusedError, match=r"is itself a virtual environment.*\n.*python -m venv .venv"):
+        build_manifest(tmp_path)
+    assert paths(tmp_path, "pyvenv.cfg", "lib") == ["robot.py"]
+
+
+@posix
+def test_links_to_what_is_not_uploaded_are_private(tmp_path: Path) -> None:
+    make(tmp_path, "robot.py", ".env", ".config/deep/key.txt", "notes/plan.txt", "notes.txt")
+    (tmp_path / "settings.txt").symlink_to(".env")
+    (tmp_path / "config").symlink_to(".config")
+    (tmp_path / "plan.txt").symlink_to("notes/plan.txt")
+    (tmp_path / "other.txt").symlink_to("notes.txt")
+    assert private_files(tmp_path, ["notes"]) == {
+        "settings.txt": "leads to .env, which is not uploaded itself",
+        "config/deep/key.txt": "leads to .config/deep/key.txt, which is not uploaded itself",
+        "plan.txt": "leads to notes/plan.txt, which is not uploaded itself",
+    }
+    assert private_files(tmp_path, ["notes", "settings.txt", "plan.txt"], ["config/**"]) == {}
+
+
+IGNORED = """\
+*.log
+simgui*.json
+/data/*.bin
+
+# Our secrets
+tba.txt
+!/deploy/tba.txt
+
+*.pem
+tokens/
+/wifi.json
+"""
+
+
+def test_files_that_gitignore_names_as_secrets_are_private(tmp_path: Path) -> None:
+    root = tmp_path / "repository/robot"
+    secrets = ["deep/er/cert.pem", "tba.txt", "tokens/a/github.txt", "wifi_password.log"]
+    others = ["robot.py", "run.log", "simgui.json", "data/x.bin", "deploy/tba.txt", "deep/wifi.json", "token.txt"]
+    make(root, *secrets, *others, "nested/api_key.txt")
+    (root / ".gitignore").write_text(IGNORED)
+    (tmp_path / "repository/.git").mkdir()
+    (tmp_path / "repository/.gitignore").write_text("# passwords\nrobot/above.txt\n")
+    make(root, "above.txt")
+    (root / "nested/.gitignore").write_text("*.txt\n")
+    private = private_files(root)
+    assert sorted(private) == sorted([*secrets, "above.txt", "nested/api_key.txt"])
+    assert set(private.values()) == {".gitignore names it as a secret"}
+    assert private_files(tmp_path / "repository/robot/nested", (), ["api_key.txt"]) == {}
+
+
+def test_without_gitignore_nothing_is_a_secret(tmp_path: Path) -> None:
+    make(tmp_path, "robot.py", "secret.txt")
+    (tmp_path.parent / ".gitignore").write_text("secret.txt\n")
+    try:
+        assert private_files(tmp_path) == {}, "that of another project above"
+    finally:
+        (tmp_path.parent / ".gitignore").unlink()
+
+
+@posix
+def test_a_file_that_becomes_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
+    make(tmp_path, "robot.py", "a.txt")
+    hashed = hash_file(tmp_path / "a.txt")
+    (tmp_path / "a.txt").unlink()
+    os.mkfifo(tmp_path / "a.txt")
+    with pytest.raises(OSError, match="this is a pipe, a socket or a device"):
+        hash_file(tmp_path / "a.txt")
+    assert hashed == (hashlib.sha256(b"x").hexdigest(), 1)

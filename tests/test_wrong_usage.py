@@ -11,6 +11,8 @@ import pytest
 from conftest import MakeProject
 from test_failures import ANY_TEST, ROBOT
 
+from pyfrc_cli.main import COMMANDS, OTHER_NAMES
+
 
 @pytest.mark.parametrize(
     ("settings", "line", "message", "remedy"),
@@ -109,3 +111,32 @@ def test_a_wrong_option_is_told(make_project: MakeProject, args: list[str], mess
     assert result.code == 2
     assert message in result.stderr
     assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "remedy"),
+    [
+        ("deploy 10.12.34.2", "Write: pyfrc deploy --robot 10.12.34.2"),
+        ("deploy roborio-1234-frc.local", "Write: pyfrc deploy --robot roborio-1234-frc.local"),
+        ("deploy roboRIO-1234-FRC --skip-tests", "Write: pyfrc deploy --robot roboRIO-1234-FRC"),
+        ("deploy-info 127.0.0.1:2222", "Write: pyfrc deploy-info --robot 127.0.0.1:2222"),
+        ("undeploy 1234", "Write: pyfrc undeploy --team 1234"),
+        ("console 10.12.34.2", "Write: pyfrc console --robot 10.12.34.2"),
+        ("deploy everything", "unexpected extra argument (everything)"),
+        ("sync", "There is no command 'sync'. To download what the robot needs: python -m pip install robotpy, then: "),
+        ("run", "There is no command 'run'. To run the robot on this computer: pyfrc sim. To start it on the robot: "),
+        ("rollback", "There is no command 'rollback'. To go back to an earlier release: pyfrc deploy --rollback"),
+    ],
+)
+def test_what_other_tools_call_otherwise_leads_to_what_exists(
+    make_project: MakeProject, words: str, remedy: str
+) -> None:
+    result = make_project({"robot.py": ROBOT}).run(*words.split())
+    assert (result.code, result.stdout) == (2, "")
+    assert remedy in result.stderr.splitlines()[-1]
+
+
+def test_every_command_that_is_named_in_place_of_another_exists() -> None:
+    for name, text in OTHER_NAMES.items():
+        assert name not in COMMANDS
+        assert {words.split()[0].rstrip(".") for words in text.split("pyfrc ")[1:]} <= set(COMMANDS)

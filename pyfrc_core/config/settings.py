@@ -90,6 +90,8 @@ class DeploySettings:
 
     #: Patterns of files and directories that are not uploaded.
     exclude: tuple[str, ...] = ()
+    #: Patterns of files that are uploaded without a question although they seem to be private.
+    private: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

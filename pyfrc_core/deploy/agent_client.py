@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
+from ..file_hash import open_file
 from . import recovery_hints
 from .agent import start_monitor, wire
 from .agent_package import COMMAND, agent_hash, agent_package
@@ -380,7 +381,7 @@ def _chunks(entries: list[Entry]) -> Iterator[bytes]:
     for entry in entries:
         left = entry.size
         try:
-            with entry.file.open("rb") as stream:
+            with open_file(entry.file) as stream:
                 while left and (chunk := stream.read(min(left, wire.CHUNK_BYTES))):
                     yield chunk
                     left -= len(chunk)

@@ -17,6 +17,7 @@ from .agent_stream import PYTHON
 # this user's alone, it requests the sources. In both cases it reads the first message before it calls `main`.
 _BOOTSTRAP = """
 import hashlib,json,marshal,os,sys,types,zlib
+if sys.version_info<(3,9):sys.exit("Python "+".".join(map(str,sys.version_info[:2]))+" is too old")
 from importlib.util import MAGIC_NUMBER
 r=open(0,"rb",0)
 def g(n):

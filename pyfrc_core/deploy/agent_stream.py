@@ -7,6 +7,7 @@ frame from its first byte to its last, and one to all frames of a response.
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from collections.abc import Callable
@@ -25,6 +26,8 @@ MAX_RESPONSE_BYTES = 1 << 22
 #: The maximum number of frames before a response, including keep-alive messages.
 MAX_FRAMES = 100_000
 
+#: Printed by the bootstrap of `agent_package`.
+_TOO_OLD = re.compile(r"Python \d+\.\d+ is too old")
 PYTHON = "/usr/local/bin/python3"
 _RETRY = "The program on the robot is complete. Check the connection and run the command again."
 
@@ -225,6 +228,8 @@ class AgentStream:
         if status <= 0:
             return self._lost(error)
         last = output.splitlines()[-1] if output else f"exit code {status}"
+        if _TOO_OLD.fullmatch(last):
+            return RefusedError(f"the robot's {last}: pyfrc needs 3.9 or newer", where=self._where, remedy=PREPARE)
         return DeployError(f"the agent on the robot has ended: {one_line(last)}", where=self._where, remedy=_RETRY)
 
     def _error(self, message: dict[str, Any]) -> DeployError:

@@ -6,11 +6,13 @@ import os
 import stat
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 
 from ..file_hash import hash_file
+from ..project.environments import is_environment
 from .errors import RefusedError
+from .patterns import matches
+from .private_files import IgnoredSecrets
 
 #: Other tools exclude these as well.
 _DIRECTORIES_LEFT_OUT = {"__pycache__", "venv", "ctre_sim"}
@@ -76,37 +78,40 @@ def build_manifest(root: Path, exclude: Sequence[str] = (), large: bool = False)
 
 
 def is_excluded(path: str, patterns: Sequence[str]) -> bool:
-    """Return whether a path (relative, with forward slashes) matches one of the patterns.
+    """Return whether a path (relative, with forward slashes) matches one of the patterns; see `patterns`."""
+    return any(matches(path, pattern) for pattern in patterns)
 
-    A pattern without a slash matches the name of a file or directory at any depth. A pattern with a slash matches the
-    whole path; ``**`` matches any number of directories.
+
+def private_files(root: Path, exclude: Sequence[str] = (), meant: Sequence[str] = ()) -> dict[str, str]:
+    """Return the files that are probably not meant to be uploaded, each with the reason.
+
+    :param meant: patterns of files that are, from ``[tool.pyfrc.deploy] private``
     """
-    parts = path.split("/")
-    for pattern in patterns:
-        wanted = pattern.strip("/").split("/")
-        if (len(wanted) == 1 and "/" not in pattern.rstrip("/") and fnmatchcase(parts[-1], wanted[0])) or (
-            "/" in pattern.rstrip("/") and _fits(parts, wanted)
-        ):
-            return True
-    return False
-
-
-def _fits(parts: Sequence[str], wanted: Sequence[str]) -> bool:
-    if not wanted:
-        return not parts
-    if wanted[0] == "**":
-        return any(_fits(parts[skipped:], wanted[1:]) for skipped in range(len(parts) + 1))
-    return bool(parts) and fnmatchcase(parts[0], wanted[0]) and _fits(parts[1:], wanted[1:])
+    walk = _Walk(root, exclude, IgnoredSecrets(root.resolve()))
+    return {path: why for path, _ in walk.files() if (why := walk.private.get(path)) and not is_excluded(path, meant)}
 
 
 class _Walk:
-    """A walk through a project's directories that follows links within the project."""
+    """A walk through a project's directories that follows links within the project.
 
-    def __init__(self, root: Path, exclude: Sequence[str]) -> None:
+    :param secrets: what ``.gitignore`` names as secrets, if private files are wanted
+    """
+
+    def __init__(self, root: Path, exclude: Sequence[str], secrets: IgnoredSecrets | None = None) -> None:
         self._root = root.resolve()
         self._exclude = exclude
+        self._secrets = secrets
+        #: Paths of files that are probably not meant to be uploaded, each with the reason.
+        self.private: dict[str, str] = {}
 
     def files(self) -> Iterator[tuple[str, Path]]:
+        if is_environment(self._root) and not is_excluded("pyvenv.cfg", self._exclude):
+            raise RefusedError(
+                "the project's directory is itself a virtual environment, whose packages would be uploaded",
+                where=self._root,
+                remedy="Create it in a directory of its own: python -m venv .venv. Then remove pyvenv.cfg, bin, "
+                "include and lib here.",
+            )
         yield from self._within(self._root, "", (self._root,))
 
     def _within(self, directory: Path, prefix: str, above: tuple[Path, ...]) -> Iterator[tuple[str, Path]]:
@@ -120,8 +125,13 @@ class _Walk:
                 continue
             file = self._link_target(path, above) if item.is_symlink() else Path(item.path)
             if is_directory:
-                yield from self._within(file, f"{path}/", (*above, file))
+                if not is_environment(file):
+                    if self._secrets is not None:
+                        self._secrets.add(file)
+                    yield from self._within(file, f"{path}/", (*above, file))
             elif stat.S_ISREG(file.stat().st_mode):
+                if self._secrets is not None and (why := self._why_private(path, file, self._secrets)):
+                    self.private[path] = why
                 yield path, file
             else:
                 raise RefusedError(
@@ -129,6 +139,16 @@ class _Walk:
                     where=ascii_path(path),
                     remedy=_EXCLUDE_IT,
                 )
+
+    def _why_private(self, path: str, file: Path, secrets: IgnoredSecrets) -> str:
+        target = file.relative_to(self._root).as_posix()
+        parts = target.split("/")
+        above = ["/".join(parts[:count]) for count in range(1, len(parts) + 1)]
+        if any(each.startswith(".") for each in parts) or any(is_excluded(each, self._exclude) for each in above):
+            return f"leads to {ascii_path(target)}, which is not uploaded itself"
+        if secrets.include(file) or secrets.include(self._root / path):
+            return ".gitignore names it as a secret"
+        return ""
 
     def _link_target(self, path: str, above: tuple[Path, ...]) -> Path:
         file = self._root / path
@@ -166,14 +186,14 @@ def refuse_unless_utf8(paths: Sequence[str]) -> None:
     bad = [path for path in paths if any("\ud800" <= letter <= "\udfff" for letter in path)]
     if bad:
         raise RefusedError(
-            f"names that are not UTF-8 cannot be uploaded: {_listed([ascii(path) for path in bad])}",
+            f"names that are not UTF-8 cannot be uploaded: {listed([ascii(path) for path in bad])}",
             remedy="Rename them, or exclude them with exclude = [...] under [tool.pyfrc.deploy] in pyproject.toml.",
         )
 
 
 def _refuse_large(sizes: dict[str, int]) -> None:
     if sizes:
-        named = _listed([f"{ascii_path(path)} ({size:,} bytes)" for path, size in sizes.items()])
+        named = listed([f"{ascii_path(path)} ({size:,} bytes)" for path, size in sizes.items()])
         raise RefusedError(
             f"files over {LARGE:,} bytes, which are usually in a project by mistake: {named}",
             remedy="Upload them with --large, or exclude them with exclude = [...] under [tool.pyfrc.deploy] "
@@ -182,11 +202,12 @@ def _refuse_large(sizes: dict[str, int]) -> None:
 
 
 def listed_paths(paths: Sequence[str]) -> str:
-    """Return paths for a message: the first ones, and the number of the others."""
-    return _listed([ascii_path(path) for path in paths])
+    """Return paths for a message; see `listed`."""
+    return listed([ascii_path(path) for path in paths])
 
 
-def _listed(names: Sequence[str]) -> str:
+def listed(names: Sequence[str]) -> str:
+    """Return the first names, and the number of the others."""
     more = len(names) - _MAX_NAMED
     return ", ".join(names[:_MAX_NAMED]) + (f" and {more} more" if more > 0 else "")
 

@@ -79,6 +79,7 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     loading = load_in_background()
     progress = talk.progress
     refuse_other_main_files(project, options.nonstandard)
+    _ask_about_private_files(project, options, talk)
     target = choose_target(project, options.choice, talk.ask)
     checked = _Checked() if options.dry_run else _check_program(project, options, talk)
     with connect_early(project, target, options.choice) as early:
@@ -293,6 +294,22 @@ def _check_program(project: Project, options: DeployOptions, talk: UserInterface
     if not passed:
         ask_to_continue("the tests failed", talk.ask, "Correct the failures, or deploy without tests: --skip-tests")
     return _Checked(tested=before if passed else None)
+
+
+def _ask_about_private_files(project: Project, options: DeployOptions, talk: UserInterface) -> None:
+    from .manifest import ascii_path, listed, private_files
+
+    settings = project.settings.deploy
+    private = private_files(project.root, settings.exclude, settings.private)
+    if not private:
+        return
+    named = listed([f"{ascii_path(path)} ({private[path]})" for path in sorted(private)])
+    what = f"files would be uploaded that seem to be private: {named}"
+    if options.dry_run:
+        talk.progress.warning(what)
+        return
+    remedy = "Under [tool.pyfrc.deploy] in pyproject.toml, leave them out with exclude = [...], or upload them with "
+    ask_to_continue(what, talk.ask, f"{remedy}private = [...].")
 
 
 def _refuse_unimportable(importing: ImportCheck, talk: UserInterface) -> None:

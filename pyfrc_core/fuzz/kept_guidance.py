@@ -15,6 +15,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from ..project import Project
+from ..project.environments import is_environment
 from ..text_files import keep_out_of_version_control, write_whole
 from .stream import Shard, Stream
 
@@ -76,6 +77,10 @@ def fingerprint(project: Project) -> str:
 
 def _source_files(root: Path) -> Iterator[Path]:
     for directory, inside, files in os.walk(root):
-        inside[:] = sorted(name for name in inside if name not in _NOT_SEARCHED and not name.startswith("."))
+        inside[:] = sorted(
+            name
+            for name in inside
+            if name not in _NOT_SEARCHED and not name.startswith(".") and not is_environment(Path(directory, name))
+        )
         found = (Path(directory, name) for name in sorted(files) if name.endswith(".py"))
         yield from (file for file in found if file.is_file())  # not a link to nothing

@@ -13,6 +13,7 @@ from pathlib import Path
 from .._version import __version__
 from ..file_hash import hash_file
 from ..project import Project
+from ..project.environments import is_environment
 from ..project.loaded_modules import PACKAGES, loaded_modules
 
 #: Directories and files that the robot, its tests or other tools write, and no test reads.
@@ -73,7 +74,7 @@ def _files_below(directory: Path, left_out: Collection[Path]) -> Iterator[Path]:
             for name in directories
             if not name.startswith(".")
             and name not in _DIRECTORIES_WRITTEN
-            and not Path(place, name, "pyvenv.cfg").exists()
+            and not is_environment(Path(place, name))
             and Path(place, name) not in left_out
         )
         for name in files:

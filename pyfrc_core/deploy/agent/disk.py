@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from .system import link_file, linked_directory
+from .system import link_file, linked_directory, user
 
 BLOCK = 1 << 16
 
@@ -125,6 +125,23 @@ def link_or_copy(source: str, target: str) -> None:
         import shutil
 
         shutil.copy2(source, target, follow_symlinks=False)
+
+
+def disk_problem(error: OSError) -> tuple[str, str]:
+    """Return what is wrong with the robot's disk, and what the user can do."""
+    if error.errno == errno.EROFS:
+        remedy = "Switch the robot off and on again; if that does not help, image it."
+        return "the robot's disk cannot be written: it is read-only, as after an error", remedy
+    names = [Path(os.fsdecode(each)) for each in (error.filename, error.filename2) if isinstance(each, (str, bytes))]
+    for name in names if error.errno in (errno.EACCES, errno.EPERM) else ():
+        there = next((each for each in (name, *name.parents) if each.exists() and not each.is_symlink()), name)
+        if not os.access(there, os.W_OK):
+            remedy = f"Give it to {user()}, as admin on the robot: chown -R {user()} {there}"
+            return f"{there} on the robot belongs to another user, and {user()} cannot write to it", remedy
+    what = error.strerror or str(error) or type(error).__name__
+    is_taken = error.errno in (errno.EEXIST, errno.EISDIR, errno.ENOTDIR, errno.ENOTEMPTY)
+    remedy = "Remove or rename it on the robot." if is_taken else "Check its owner and permissions."
+    return f"{names[-1] if names else 'the robot'}: {what}", remedy
 
 
 def make_links_absolute(directory: Path, between: Path) -> None:

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO
 
 from .activity import Activity
 from .content_index import sha256_of
-from .disk import files_below, free_bytes, remove, text_of
+from .disk import disk_problem, files_below, free_bytes, remove, text_of
 from .host import Host, RoboRio, age_of
 from .imports import look_up
 from .inventory import IMAGE_FILE, image_in
@@ -129,8 +129,7 @@ class Agent:
                     free=free,
                 )
             else:
-                what = error.strerror or str(error) or type(error).__name__
-                self._send_error("disk", f"{error.filename or 'the robot'}: {what}", "Check its owner and permissions.")
+                self._send_error("disk", *disk_problem(error))
         except Exception:
             import traceback
 

@@ -7,6 +7,8 @@ import sys
 import time
 from pathlib import Path
 
+from ...project.environments import is_environment
+
 #: Directories without robot code.
 _NOT_OURS = {"__pycache__", "node_modules", "site-packages", "tests", "venv"}
 _TWO_SECONDS = 2_000_000_000  # in nanoseconds
@@ -16,7 +18,11 @@ def program_files(root: Path) -> dict[str, tuple[int, int]]:
     """Return the Python files and settings below a directory, each with its time (ns) and its size (bytes)."""
     found = {}
     for directory, below, files in os.walk(root):
-        below[:] = [name for name in below if name not in _NOT_OURS and not name.startswith(".")]
+        below[:] = [
+            name
+            for name in below
+            if name not in _NOT_OURS and not name.startswith(".") and not is_environment(Path(directory, name))
+        ]
         for name in files:
             if name.endswith(".py") or name in ("config.json", "pyproject.toml"):
                 try:
