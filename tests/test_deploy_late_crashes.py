@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import json
+import os
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from importlib.metadata import version
@@ -18,8 +20,11 @@ from test_virtual_robot import ROBOT as GOOD
 from test_virtual_robot import started
 
 from pyfrc_core.deploy import session, starting
+from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.program import _reports_start
 from pyfrc_core.deploy.agent.release_record import LONG, Boot, Record, after_watch, now, parse_record, standing
+from pyfrc_core.deploy.agent.releases import Releases
+from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.progress import DeployProgress, UserInterface
 from pyfrc_core.deploy.session import DeployOptions
@@ -251,3 +256,21 @@ def test_a_damaged_record_prevents_no_deploy_and_no_rollback(
         assert client.rollback().release.number == (1 if number == 2 else 2)
     robot.deploy(agents, project_of(tmp_path / "project", {"robot.py": f"{ROBOT_PY}# 4\n"}))
     assert robot.startable() == {"robot.py": f"{ROBOT_PY}# 4\n".encode()}
+
+
+def test_what_cannot_be_written_is_valid_and_written_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def new() -> Releases:
+        return Releases(RobotPaths(str(tmp_path)), Activity(lambda **said: None))
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    new().write_record(1, WATCHED)
+    releases = new()
+    with monkeypatch.context() as disk:
+        disk.setattr("pyfrc_core.deploy.agent.releases.write_whole", full)
+        with pytest.raises(OSError, match="No space"):
+            releases.update_record(1, lambda record: now(record, THIS, {8}, 20.0))
+    assert [standing(each.record(1)).good for each in (releases, new())] == [False, True]
+    releases.write_again()
+    assert not standing(new().record(1)).good

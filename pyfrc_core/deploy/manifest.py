@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -61,13 +62,19 @@ def build_manifest(root: Path, exclude: Sequence[str] = (), large: bool = False)
     :param large: whether to upload files over 250,000 bytes
     :raises RefusedError: with the files that cannot be uploaded
     """
-    try:
+    with _naming_unreadable_files(root):
         found = sorted(_Walk(root, exclude).files())
         refuse_unless_utf8([path for path, _ in found])
         sizes = {path: file.stat().st_size for path, file in found}
         if not large:
             _refuse_large({path: size for path, size in sizes.items() if size > LARGE})
         return Manifest(tuple(_entry(path, file) for path, file in found))
+
+
+@contextmanager
+def _naming_unreadable_files(root: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         raise RefusedError(
             f"this cannot be read: {error.strerror or error}",
@@ -87,8 +94,10 @@ def private_files(root: Path, exclude: Sequence[str] = (), meant: Sequence[str] 
 
     :param meant: patterns of files that are, from ``[tool.pyfrc.deploy] private``
     """
-    walk = _Walk(root, exclude, IgnoredSecrets(root.resolve()))
-    return {path: why for path, _ in walk.files() if (why := walk.private.get(path)) and not is_excluded(path, meant)}
+    with _naming_unreadable_files(root):
+        walk = _Walk(root, exclude, IgnoredSecrets(root.resolve()))
+        paths = [path for path, _ in walk.files()]
+    return {path: walk.private[path] for path in paths if path in walk.private and not is_excluded(path, meant)}
 
 
 class _Walk:

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..file_hash import open_file
 from .import_statements import Import, imports_in
 
 #: The start of a statement that does not belong to the previous one.
@@ -138,7 +139,8 @@ def _above(path: str) -> Iterator[str]:
 
 def _source_of(file: Path) -> bytes:
     try:
-        return file.read_bytes()
+        with open_file(file) as stream:
+            return stream.read()
     except OSError:
         return b""
 

@@ -85,8 +85,7 @@ def _files_below(directory: Path, left_out: Collection[Path]) -> Iterator[Path]:
 def hash_of_file(file: Path) -> str:
     """Return a hash of the file's content; of a file that cannot be read, one that no content has."""
     try:
-        # A pipe would be waited for.
-        return hash_file(file)[0][:_HASH_LETTERS] if file.is_file() else "unreadable"
+        return hash_file(file)[0][:_HASH_LETTERS]
     except OSError:
         return "unreadable"
 

@@ -55,6 +55,8 @@ class Releases:
         self.activity = activity
         #: Cached records, each with the identity of its file: device, inode, modification time, size.
         self._records: dict[int, tuple[tuple[int, ...], Record]] = {}
+        #: Releases whose cached record could not be written, as on a full disk.
+        self._unwritten: set[int] = set()
 
     def flush(self, directory: Path) -> None:
         """Wait until all data written to this file system is on the disk."""
@@ -115,16 +117,24 @@ class Releases:
         """Write the record of a release."""
         self.paths.releases.mkdir(parents=True, exist_ok=True)
         write_whole(self._record_file(number), json.dumps(record))
+        self._unwritten.discard(number)
 
     def update_record(self, number: int, change: Callable[[Record], Record]) -> None:
         """Change the record of a release, if it still exists.
 
-        The change is valid for this agent even if it cannot be written.
+        The change is valid for this agent even if it cannot be written; see `write_again`.
         """
         record = self.record(number)
         if record and (changed := change(record)) != record:
             self._records[number] = self._records[number][0], changed
+            self._unwritten.add(number)
             self.write_record(number, changed)
+
+    def write_again(self) -> None:
+        """Write the records that could not be written."""
+        for number in sorted(self._unwritten):
+            if record := self.record(number):
+                self.write_record(number, record)
 
     def fallback(self, number: int | None) -> int | None:
         """Return the release that a rollback from this one selects, or None if there is none.

@@ -249,6 +249,7 @@ class Agent:
                     self._releases.carry_late_writes(current)
                 if prune:
                     self._releases.prune()
+                self._releases.write_again()
         return {"survived": survived}
 
     def _watch(self, request: Message) -> Message:
