@@ -116,7 +116,10 @@ def test_verbose_shows_the_traceback_of_a_robot_that_cannot_be_imported(make_pro
 
 def test_plain_pytest_tells_a_robot_that_cannot_be_imported_in_a_line(make_project: MakeProject) -> None:
     project = make_project(
-        {"robot.py": "import wpilib\n\nimport not_installed\n", "tests/pyfrc_test.py": "from pyfrc.tests import *\n"}
+        {
+            "robot.py": "import wpilib\n\nimport not_installed\n\n\nclass Robot(wpilib.TimedRobot):\n    pass\n",
+            "tests/pyfrc_test.py": "from pyfrc.tests import *\n",
+        }
     )
     result = project.pytest()
     assert result.code == 1

@@ -1,56 +1,120 @@
 """The pytest plugin that pytest loads automatically: fixtures for a plain ``pytest`` in a robot project.
 
-An editor's test explorer runs pytest in this way. The module imports nothing at the top, since every pytest run in the
-environment loads it.
+An editor's test explorer runs pytest in this way. Every pytest run in the environment loads this module, so it imports
+nothing of pyfrc at the top, and does nothing outside a robot project of the user's own.
 """
 
 from __future__ import annotations
 
+import os
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pytest
 
-_LIBRARIES = ("wpilib", "commands2", "magicbot")
+#: Where one of these lies, another project begins: a robot.py further up is none of its business.
+_PROJECT_MARKS = ("pyproject.toml", "setup.py", "setup.cfg", ".git")
+
+_ROBOT_LIBRARY = re.compile(r"^\s*(?:import|from)\b[^#\n]*\b(?:wpilib|commands2|magicbot|pykit)\b", re.M)
+_ROBOT_CLASS = re.compile(r"^\s*class\s+(?:\w*Robot\w*\s*\(|\w+\s*\([^)]*Robot)|^[^#\n]*\bwpilib\.run\(", re.M)
+_SETTINGS = re.compile(r"^\s*\[tool\.(?:pyfrc|robotpy)\b", re.M)
+_OWN_MAIN = re.compile(r"^\s*\[tool\.pyfrc\][^\[]*^\s*main\s*=", re.M)
+
+
+class _Inactive:
+    """Says in a line why a robot project's fixtures are missing."""
+
+    def __init__(self, reason: str) -> None:
+        self._reason = reason
+
+    def pytest_report_header(self) -> str:
+        return f"pyfrc: not active: {self._reason}"
 
 
 def pytest_configure(config: pytest.Config) -> None:
     if config.pluginmanager.hasplugin("pyfrc.robot"):
-        return None  # `pyfrc test` has registered its own
+        return  # `pyfrc test` has registered its own
     for start in _start_directories(config):
-        for directory in (start, *start.parents):
-            if _is_robot_project(directory):
-                return _register(config, directory)
-    return None
+        directory = _robot_project_of(start)
+        if directory is not None:
+            reason = _other_owner(directory) or _other_wpilib() or _register(config, directory)
+            if reason:
+                config.pluginmanager.register(_Inactive(reason), "pyfrc.inactive")
+            return
 
 
 def _start_directories(config: pytest.Config) -> list[Path]:
-    """Return the directories named on the command line, then the current one."""
+    """Return the directories of the tests: those named on the command line, or else the current one."""
     here = Path(config.invocation_params.dir)
     named = [here / str(argument).partition("::")[0] for argument in config.args]
-    return [path if path.is_dir() else path.parent for path in named if path.exists()] + [here]
+    return [path if path.is_dir() else path.parent for path in named if os.path.exists(path)] or [here]
+
+
+def _robot_project_of(start: Path) -> Path | None:
+    """Return the directory of the robot project that tests in `start` belong to."""
+    for directory in (start, *start.parents):
+        if _is_robot_project(directory):
+            return directory
+        if any(os.path.exists(directory / mark) for mark in _PROJECT_MARKS):
+            return None
+    return None
 
 
 def _is_robot_project(directory: Path) -> bool:
-    """Return whether robot.py imports a robot library, or the settings have a section for pyfrc."""
-    main, settings = directory / "robot.py", directory / "pyproject.toml"
-    if main.is_file():
-        text = main.read_text("utf-8", "replace").replace("\0", "")  # in UTF-16, every second byte is 0
-        if any(library in text for library in _LIBRARIES):
-            return True
-    return settings.is_file() and "[tool.pyfrc" in settings.read_text("utf-8", "replace")
+    """Return whether robot.py has a robot class, or the settings are those of a robot project."""
+    main, settings = directory / "robot.py", _text(directory / "pyproject.toml")
+    if not os.path.isfile(main):
+        return _OWN_MAIN.search(settings) is not None
+    text = _text(main).replace("\0", "")  # in UTF-16, every second byte is 0
+    has_class = _ROBOT_LIBRARY.search(text) is not None and _ROBOT_CLASS.search(text) is not None
+    return has_class or _SETTINGS.search(settings) is not None
 
 
-def _register(config: pytest.Config, directory: Path) -> None:
+def _text(file: Path) -> str:
+    try:
+        return file.read_text("utf-8", "replace") if os.path.isfile(file) else ""
+    except OSError:
+        return ""
+
+
+def _other_owner(directory: Path) -> str:
+    """Return the reason not to run a robot of another user, whose directory happens to be above the tests."""
+    if not hasattr(os, "getuid"):
+        return ""
+    files = [directory / name for name in ("robot.py", "physics.py", "pyproject.toml")]
+    other = next((file for file in files if os.path.exists(file) and file.stat().st_uid != os.getuid()), None)
+    return f"{other} belongs to another user. If you trust it, run: pyfrc test" if other else ""
+
+
+def _other_wpilib() -> str:
+    """Return the reason not to run beside another season's `wpilib`, whose own tool has fixtures of the same names."""
+    from importlib import metadata
+
+    from .._version import __version__
+
+    season = __version__.split(".")[0]
+    try:
+        version = metadata.version("wpilib")
+    except metadata.PackageNotFoundError:
+        return ""
+    return "" if version.split(".")[0] == season else f"it is for wpilib {season}, and {version} is installed"
+
+
+def _register(config: pytest.Config, directory: Path) -> str:
+    """Register the fixtures, or return the reason why they cannot be."""
     import pytest
 
-    from ..errors import PyfrcError
-    from ..project import find_project
-    from ..project.hidden_libraries import refuse_hidden_libraries
-    from .isolation.loop import IsolatedTests
-    from .pytest_plugin import PyFrcPlugin
-    from .summary import SummaryPlugin
+    try:
+        from ..errors import PyfrcError
+        from ..project import find_project
+        from ..project.hidden_libraries import refuse_hidden_libraries
+        from .isolation.loop import IsolatedTests
+        from .pytest_plugin import PyFrcPlugin
+        from .summary import SummaryPlugin
+    except (ImportError, AttributeError) as error:  # packages that do not fit together must not end a run of pytest
+        return f"{str(error).splitlines()[0]}. To see which package is wrong, run: pyfrc doctor"
 
     try:
         project = find_project(directory)
@@ -61,3 +125,4 @@ def _register(config: pytest.Config, directory: Path) -> None:
     config.pluginmanager.register(plugin, "pyfrc.robot")
     config.pluginmanager.register(IsolatedTests(plugin), "pyfrc.isolation")
     config.pluginmanager.register(SummaryPlugin(project), "pyfrc.summary")
+    return ""
