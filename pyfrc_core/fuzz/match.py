@@ -27,6 +27,7 @@ from ..runtime.scripts.player import Player
 from ..runtime.scripts.script import InputScript, ScriptError
 from ..runtime.scripts.targets import RESTART
 from ..runtime.seeds import seed_generators
+from ..runtime.turns import take
 from .asked_controls import watch_controls
 from .boots import NextBoot, play_boots
 from .failure import FuzzFailure, failure_of
@@ -143,6 +144,7 @@ def play(project: Project, log: CrashLog, task: Task) -> MatchResult:
 
     :param log: where to write a crash report when the robot's code cannot be stopped
     """
+    take()
     if isinstance(task, ReplayTask):
         if len(boots_of(task.script)) > 1:
             replayed: MatchResult = play_boots(project, partial(_replay, task=task), task.quietly)

@@ -25,6 +25,7 @@ from ..project import Project
 from ..runtime.clock import to_us
 from ..runtime.fork_obstacles import reasons_not_to_fork
 from ..runtime.scripts.script import InputScript
+from ..runtime.turns import taking_turns
 from .boots import MEANWHILE
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .goals import Line
@@ -126,7 +127,7 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[MatchExecutor]:
 
     :raises RobotCodeError: when the robot's code cannot be imported
     """
-    with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary:
+    with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary, taking_turns():
         if not can_fork(project):
             yield SpawnedMatchExecutor(project, jobs, Path(temporary))
             return

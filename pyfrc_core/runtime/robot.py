@@ -60,6 +60,8 @@ class ActiveRun:
 
     def __init__(self) -> None:
         self.run: RobotRun | None = None
+        #: Called when a robot's initialization is over.
+        self.when_started: Callable[[], object] = lambda: None
 
     @contextlib.contextmanager
     def set_to(self, run: RobotRun) -> Iterator[None]:
@@ -242,6 +244,7 @@ class RobotRun:
             else:
                 self.timed_loop.begin(self.robot)
                 self.timed_loop.run_in_place()
+        active_run.when_started()
 
     @contextlib.contextmanager
     def _while_starting(self) -> Iterator[None]:

@@ -30,6 +30,7 @@ from ...project.robot_files import RobotFiles
 from ...runtime.failures import headline_is_the_robots
 from ...runtime.fork_obstacles import reasons_not_to_fork
 from ...runtime.module_files import resolve_module_files
+from ...runtime.turns import taking_turns
 from ..options import Jobs
 from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
@@ -68,7 +69,7 @@ class IsolatedTests:
             problems = session.testsfailed
             raise session.Interrupted(f"{problems} error{'s' if problems != 1 else ''} during collection")
         durations = self._durations = Durations(session.config)
-        with uncaptured_output(session.config) as self._output:
+        with uncaptured_output(session.config) as self._output, taking_turns():
             try:
                 self._run_all(session)
             finally:

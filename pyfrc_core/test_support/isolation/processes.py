@@ -12,6 +12,7 @@ import pytest
 from ...compat.pytest_private import capture_into
 from ...processes.crash_report import CrashLog
 from ...processes.worker import ForkedWorker, Send, SpawnedWorker, Worker
+from ...runtime.turns import take
 from ..pytest_plugin import PyFrcPlugin
 from .messages import ReportSender
 from .uncaptured import UncapturedOutput
@@ -93,6 +94,7 @@ def _run_in_fork(
     log: CrashLog,
 ) -> None:
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    take()
     capture_into(item.config, files)
     if output is not None:
         output.connect_this_process()

@@ -52,8 +52,10 @@ class OnlyOneTest:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        from ...runtime.turns import take
         from .messages import ReportSender
 
+        take()
         self._plugin.crash_log = self._log
         self._log.enable_fault_handler()  # pytest has one of its own
         for item in session.items:

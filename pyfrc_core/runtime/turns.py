@@ -1,0 +1,131 @@
+"""Runs that take turns, because the robot writes files.
+
+Robot code names its files itself: always alike, by the time, or by a random number, and robot time and random numbers
+are the same in every run. Runs at the same time would write, rename and delete each other's files. So until a robot has
+initialized without writing a file, one run of a command waits for the other; likewise from when a run writes one after
+all. Wherever the files are, each run then finds what it would find if it were the only one.
+
+Data logs need no turns: `data_logs` gives them names of their own.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
+from typing import IO, Any
+
+from ..compat.cpython_private import get_frame
+from ..project.robot_files import is_pyfrc
+from .robot import active_run
+
+#: Names the directory by which the processes of a command agree.
+_VARIABLE = "PYFRC_TURNS"
+
+_STANDARD_LIBRARY = str(Path(os.__file__).parent) + os.sep
+_CHANGING_FILES = frozenset(
+    {"os.link", "os.mkdir", "os.remove", "os.rename", "os.rmdir", "os.symlink", "os.truncate", "sqlite3.connect"}
+)
+_WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
+
+
+@contextlib.contextmanager
+def taking_turns() -> Iterator[None]:
+    """Have the runs take turns that processes started meanwhile begin with `take`."""
+    if _VARIABLE in os.environ:  # a part of a command that does so already
+        yield
+        return
+    with tempfile.TemporaryDirectory(prefix="pyfrc-turns-") as directory:
+        os.environ[_VARIABLE] = directory
+        try:
+            yield
+        finally:
+            del os.environ[_VARIABLE]
+
+
+def take() -> None:
+    """Wait until this process may run the robot. It must end after the run."""
+    directory = os.environ.pop(_VARIABLE, None)  # a command that robot code or a test starts does not wait for this one
+    if directory is not None:
+        _Turn(Path(directory))
+
+
+class _Turn:
+    """The turn of one process: that of a run until it is given back, or the process ends."""
+
+    def __init__(self, directory: Path) -> None:
+        #: "together" or "alone", once it is known.
+        self._how = directory / "how"
+        self._wrote = False
+        self._file: IO[bytes] | None = None
+        if self._read_how() != "together":
+            self._file = (directory / "turn").open("ab")
+            _lock(self._file)
+            if self._read_how() == "together":
+                self._give_back()
+        sys.addaudithook(self._on_event)
+        active_run.when_started = self._on_started
+
+    def _read_how(self) -> str:
+        try:
+            return self._how.read_text()
+        except OSError:
+            return ""
+
+    def _on_started(self) -> None:
+        if self._file is not None and not self._wrote and self._read_how() != "alone":
+            self._how.write_text("together")
+            self._give_back()
+
+    def _give_back(self) -> None:
+        assert self._file is not None
+        self._file.close()
+        self._file = None
+
+    def _on_event(self, event: str, args: tuple[Any, ...]) -> None:
+        if self._wrote or not (event in _CHANGING_FILES or (event == "open" and _is_for_writing(*args))):
+            return
+        run = active_run.run
+        if run is not None and run.in_motion and not _is_ours():
+            self._wrote = True
+            with contextlib.suppress(OSError):  # the command is over
+                self._how.write_text("alone")
+
+
+def _is_for_writing(file: object, mode: str | None, flags: int) -> bool:
+    return not isinstance(file, int) and file != os.devnull and bool(flags & _WRITING)
+
+
+def _is_ours() -> bool:
+    """Return whether pyfrc itself, or Python's import, changes the file."""
+    frame: FrameType | None = get_frame(2)
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if file.startswith("<frozen importlib"):
+            return True
+        if not file.startswith((_STANDARD_LIBRARY, "<frozen ")) or "site-packages" in file:
+            return is_pyfrc(file)
+        frame = frame.f_back
+    return True
+
+
+def _lock(file: IO[bytes]) -> None:
+    """Wait until no other process has the lock of this file; it ends when the file is closed."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        while True:
+            try:
+                file.seek(0)
+                return msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+            except OSError:
+                time.sleep(0.05)
+    else:
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX)
