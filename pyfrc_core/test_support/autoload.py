@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import re
-from os.path import exists, isfile  # those of pathlib raise for what may not be read
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -50,7 +49,7 @@ def _start_directories(config: pytest.Config) -> list[Path]:
     """Return the directories of the tests: those named on the command line, or else the current one."""
     here = Path(config.invocation_params.dir)
     named = [here / str(argument).partition("::")[0] for argument in config.args]
-    return [path if path.is_dir() else path.parent for path in named if exists(path)] or [here]
+    return [path if path.is_dir() else path.parent for path in named if _exists(path)] or [here]
 
 
 def _robot_project_of(start: Path) -> Path | None:
@@ -58,26 +57,33 @@ def _robot_project_of(start: Path) -> Path | None:
     for directory in (start, *start.parents):
         if _is_robot_project(directory):
             return directory
-        if any(exists(directory / mark) for mark in _PROJECT_MARKS):
+        if any(_exists(directory / mark) for mark in _PROJECT_MARKS):
             return None
     return None
 
 
 def _is_robot_project(directory: Path) -> bool:
     """Return whether robot.py has a robot class, or the settings are those of a robot project."""
-    main, settings = directory / "robot.py", _text(directory / "pyproject.toml")
-    if not isfile(main):
+    settings = _text(directory / "pyproject.toml")
+    text = _text(directory / "robot.py").replace("\0", "")  # in UTF-16, every second byte is 0
+    if not text:
         return _OWN_MAIN.search(settings) is not None
-    text = _text(main).replace("\0", "")  # in UTF-16, every second byte is 0
     has_class = _ROBOT_LIBRARY.search(text) is not None and _ROBOT_CLASS.search(text) is not None
     return has_class or _SETTINGS.search(settings) is not None
 
 
 def _text(file: Path) -> str:
     try:
-        return file.read_text("utf-8", "replace") if isfile(file) else ""
+        return file.read_text("utf-8", "replace") if file.is_file() else ""
     except OSError:
         return ""
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # it may not be read, or its name is too long
+        return False
 
 
 def _other_owner(directory: Path) -> str:
@@ -85,7 +91,7 @@ def _other_owner(directory: Path) -> str:
     if not hasattr(os, "getuid"):
         return ""
     files = [directory / name for name in ("robot.py", "physics.py", "pyproject.toml")]
-    other = next((file for file in files if exists(file) and file.stat().st_uid != os.getuid()), None)
+    other = next((file for file in files if _exists(file) and file.stat().st_uid != os.getuid()), None)
     return f"{other} belongs to another user. If you trust it, run: pyfrc test" if other else ""
 
 
