@@ -122,7 +122,8 @@ def _lock(file: IO[bytes]) -> None:
         while True:
             try:
                 file.seek(0)
-                return msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+                break
             except OSError:
                 time.sleep(0.05)
     else:
