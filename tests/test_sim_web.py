@@ -308,9 +308,34 @@ def test_a_layout_is_saved_for_the_project(make_project) -> None:
             page.ask(type="layout", layout={"panels": ["field", "plot"]})
         with server.page() as page:
             assert page.hello["layout"] == {"panels": ["field", "plot"]}
-            too_large = page.ask(type="layout", layout="x" * 300_000)
+            too_large = page.ask(type="layout", layout={"x": "x" * 300_000})
             assert too_large["type"] == "error"
     assert json.loads((made.path / ".pyfrc" / "sim-layout.json").read_text()) == {"panels": ["field", "plot"]}
+
+
+def test_of_two_pages_neither_overwrites_what_the_other_has_arranged(make_project) -> None:
+    with served(make_project(FILES)) as server:
+        with server.page() as one, server.page() as other:
+            one.ask(type="layout", layout={"version": 1, "pins": ["a"], "trees": {"driving": 1, "tuning": 1}})
+            other.ask(type="layout", layout={"version": 1, "theme": "dark", "trees": {"tuning": 2}})
+            one.ask(type="layout", layout={"version": 1, "trees": {"driving": None}})
+        with server.page() as page:
+            assert page.hello["layout"] == {"version": 1, "pins": ["a"], "theme": "dark", "trees": {"tuning": 2}}
+
+
+def test_a_recording_that_is_there_is_replaced_only_when_that_is_wanted(make_project) -> None:
+    made = make_project(FILES)
+    with served(made) as server, server.page() as page:
+        page.run_for(0.1)
+        assert page.command("save", file="drive")["file"] == "drive.jsonl"
+        before = (made.path / "drive.jsonl").read_text()
+        page.run_for(0.1)
+        assert page.command("save", file="drive")["exists"] == "drive.jsonl"
+        assert (made.path / "drive.jsonl").read_text() == before
+        assert page.command("save", file="drive", replace=True)["file"] == "drive.jsonl"
+        assert (made.path / "drive.jsonl").read_text() != before
+        (made.path / "other.trace.jsonl").touch()  # a recording has two files
+        assert page.command("save", file="other")["exists"] == "other.trace.jsonl"
 
 
 def test_a_recording_is_saved_in_the_project_and_nowhere_else(make_project) -> None:

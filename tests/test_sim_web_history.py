@@ -11,7 +11,7 @@ import pytest
 from pyfrc_core.sim.engine.changes import Change, RunBegan, frozen
 from pyfrc_core.sim.ui.web import history as history_module
 from pyfrc_core.sim.ui.web.columns import MISSING
-from pyfrc_core.sim.ui.web.console import MOST_LINES, Console
+from pyfrc_core.sim.ui.web.console import MOST_IMPORTANT, MOST_LINES, Console
 from pyfrc_core.sim.ui.web.history import History
 from pyfrc_core.sim.ui.web.json_text import json_text, read_value
 from pyfrc_core.sim.ui.web.marks import Marks
@@ -241,10 +241,24 @@ def test_console_lines_have_levels_places_and_a_limit(tmp_path) -> None:
     assert [line.file for line in found[6:]] == ["", ""]
     for number in range(3):
         console.add(f"{number}\n" * 100_000, 4.0)
-    assert len(console.since(0)) == MOST_LINES
     assert console.count == 300_011
+    assert [line.n for line in console.since(0)] == [2, 3, 4, 5, 6, *range(300_012 - MOST_LINES, 300_012)]
     console.add("x" * 1_000_000 + "\n", 5.0)
     assert len(console.since(console.count - 1)[0].text) < 5000
+
+
+def test_a_flood_evicts_no_warnings_and_warnings_no_errors(tmp_path) -> None:
+    console = Console(tmp_path)
+    console.add("Warning: one\nValueError: two\n", 1.0)
+    for number in range(20):
+        console.add("flood\n" * 20_000 + f"Warning: within {number}\n" + "flood\n" * 20_000, 2.0)
+    important = [line.text for line in console.since(0) if line.level != "info"]
+    assert important == ["Warning: one", "ValueError: two", *(f"Warning: within {number}" for number in range(20))]
+    assert console.count == 2 + 20 * 40_001
+    console.add("Warning: again\n" * 20_000, 3.0)
+    lines = console.since(0)
+    assert [line.text for line in lines if line.level == "error"] == ["ValueError: two"]
+    assert sum(line.level == "warning" for line in lines) == MOST_IMPORTANT
 
 
 def test_marks_forget_what_another_run_leaves_and_keep_the_persons_own() -> None:

@@ -79,7 +79,8 @@ def _make_web(wishes: Wishes) -> FrontEnd:
     from .web.front_end import WebFrontEnd
     from .web.server import WebOptions
 
-    return WebFrontEnd(wishes.say, WebOptions(wishes.share, wishes.port, wishes.allowed_hosts), wishes.quiet)
+    options = WebOptions(wishes.share, wishes.port, wishes.allowed_hosts, watching=wishes.watching)
+    return WebFrontEnd(wishes.say, options, wishes.quiet)
 
 
 def _make_wpilib(wishes: Wishes) -> FrontEnd:

@@ -73,13 +73,19 @@ class WebApp:
     """Serves the pages of one simulation.
 
     :param close: ends the simulation
+    :param watching: whether saved files bring new code
     """
 
     def __init__(
-        self, simulation: Simulation, collector: Collector, close: Callable[[], object], access: Access
+        self,
+        simulation: Simulation,
+        collector: Collector,
+        close: Callable[[], object],
+        access: Access,
+        watching: bool = False,
     ) -> None:
         self._simulation, self._collector, self._access = simulation, collector, access
-        self._close = close
+        self._close, self._watching = close, watching
         self._clients: dict[int, PageClient] = {}
         self._count = 0
         self._executor = ThreadPoolExecutor(1, "pyfrc sim: web commands")
@@ -142,7 +148,7 @@ class WebApp:
             self._collector,
             None if driver is None else Commands(self._simulation, driver, self._collector, self._close),
             UpdateBuilder(self._collector, image),
-            lambda: greeting(self._simulation, number, role == "view"),
+            lambda: greeting(self._simulation, number, role == "view", self._watching),
             lambda: len(self._clients),
             self._executor,
         )

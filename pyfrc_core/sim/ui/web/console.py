@@ -6,20 +6,24 @@ import re
 from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from heapq import merge
+from operator import attrgetter
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 from ..models.wording import plain_output
 
 Level = Literal["info", "warning", "error", "pyfrc"]
 
-#: The number of lines that are kept, and the most characters of a line.
-MOST_LINES, _MOST_LENGTH = 2000, 4000
+#: The number of lines that are kept of plain output and of each other level, and the most characters of a line.
+MOST_LINES, MOST_IMPORTANT, _MOST_LENGTH = 2000, 500, 4000
 #: How much of a flood is shown, in characters at once.
 MOST_AT_ONCE = 60_000
 
 _ERROR = re.compile(r"\s*(error|traceback|fatal|critical|\w+(\.\w+)*(Error|Exception)\b:)", re.IGNORECASE)
 _WARNING = re.compile(r"\s*(warning|warn\b|\S+:\d+: \w*Warning:|watchdog|.*\boverrun)", re.IGNORECASE)
+#: One of these words is in each line that these two match, for a quick look through a flood.
+_PERHAPS = ("error", "exception", "traceback", "fatal", "critical", "warn", "watchdog", "overrun")
 #: Lines inside a traceback.
 _TRACE = re.compile(r'  File "|    |During handling of|The above exception')
 _PLACE = re.compile(r'File "(?P<file>[^"]+\.py)", line (?P<line>\d+)|(?P<short>[\w./\\-]+\.py):(?P<number>\d+)')
@@ -55,7 +59,10 @@ class Console:
 
     def __init__(self, root: Path) -> None:
         self._roots = {root, root.resolve()}
-        self._lines: deque[ConsoleLine] = deque(maxlen=MOST_LINES)
+        # Each level has its own: a flood of prints leaves the warnings, and a flood of warnings the errors.
+        self._lines: dict[Level, deque[ConsoleLine]] = {
+            level: deque(maxlen=MOST_LINES if level == "info" else MOST_IMPORTANT) for level in get_args(Level)
+        }
         self._count = 0
         self._open = ""
         self._in_traceback = False
@@ -67,7 +74,8 @@ class Console:
 
     def since(self, number: int) -> list[ConsoleLine]:
         """Return the kept lines after the one with this number."""
-        return [line for line in tuple(self._lines) if line.n > number]
+        lines = merge(*map(tuple, self._lines.values()), key=attrgetter("n"))
+        return [line for line in lines if line.n > number]
 
     def add(self, text: str, time: float) -> list[ConsoleLine]:
         """Add output, and return its whole lines: a line that is not finished is kept until its end comes."""
@@ -77,7 +85,9 @@ class Console:
             cut = len(text) - MOST_AT_ONCE
             begin = text.find("\n", cut, -1) + 1 or cut
             skipped = text.count("\n", 0, begin)
-            text = text[begin:]
+            important = [line for line in _perhaps_important(text[:begin]) if self._level_of(line) != "info"]
+            skipped -= len(important)
+            text = "\n".join([*important, text[begin:]])
         *whole, self._open = text.split("\n")
         if len(self._open) > _MOST_LENGTH:
             whole, self._open = [*whole, self._open], ""
@@ -93,7 +103,7 @@ class Console:
         file, line = self._place(text)
         shown = text if len(text) <= _MOST_LENGTH else f"{text[:_MOST_LENGTH]}…"
         added = ConsoleLine(self._count, time, level, shown, file, line)
-        self._lines.append(added)
+        self._lines[level].append(added)
         return added
 
     def _level_of(self, line: str) -> Level:
@@ -110,6 +120,27 @@ class Console:
                 if whole.is_relative_to(root) and ".." not in file.parts and whole.is_file():
                     return whole.relative_to(root).as_posix(), int(match["line"] or match["number"])
         return "", 0
+
+
+def _perhaps_important(text: str) -> list[str]:
+    """Return the last lines of a flood that may be warnings or errors."""
+    lower = text.lower()
+    if len(lower) != len(text):  # letters with which places would not agree
+        lower = text
+    starts = set()
+    for word in _PERHAPS:
+        at = len(lower)
+        for _ in range(MOST_IMPORTANT):
+            if (at := lower.rfind(word, 0, at)) < 0:
+                break
+            at = lower.rfind("\n", 0, at) + 1
+            starts.add(at)
+    return [_line_at(text, start) for start in sorted(starts)[-MOST_IMPORTANT:]]
+
+
+def _line_at(text: str, start: int) -> str:
+    end = text.find("\n", start)
+    return text[start : len(text) if end < 0 else end]
 
 
 def _places(text: str) -> Iterator[re.Match[str]]:

@@ -54,7 +54,7 @@ class WebFrontEnd(FrontEnd):
         switch_seconds = sys.getswitchinterval()
         sys.setswitchinterval(_SWITCH_SECONDS)
         try:
-            server.start(WebApp(simulation, collector, self.close, access))
+            server.start(WebApp(simulation, collector, self.close, access, self._options.watching))
             collector.start()
             self._announce(server, access, simulation)
             simulation.start()

@@ -19,11 +19,12 @@ if TYPE_CHECKING:
 PROTOCOL = 1
 
 
-def greeting(simulation: Simulation, client: int, read_only: bool) -> dict[str, Any]:
+def greeting(simulation: Simulation, client: int, read_only: bool, watching: bool = False) -> dict[str, Any]:
     """Return the message without the state.
 
     :param client: the number of the page
     :param read_only: whether the page cannot drive
+    :param watching: whether saved files bring new code
     """
     project = simulation.project
     config = project.sim_config
@@ -40,6 +41,7 @@ def greeting(simulation: Simulation, client: int, read_only: bool) -> dict[str, 
         },
         "options": {
             "recording": simulation.options.recording,
+            "watch": watching,
             "alliances": STATIONS,
             "game_messages": list(project.game_specific_messages),
             "modes": list(get_args(ChosenMode)),

@@ -22,19 +22,31 @@ def load_layout(root: Path) -> Any:
         return None
 
 
-def save_layout(root: Path, layout: Any) -> None:
-    """Save a layout.
+def save_layout(root: Path, changes: Any) -> None:
+    """Save what a page has changed. What other pages have changed stays.
 
-    :raises ValueError: when it is too large
+    :param changes: by name, the new values; of an object, its new values. None removes a value
+    :raises ValueError: when it is no object, or the layout too large
     :raises OSError: when it cannot be written
     """
-    text = json.dumps(layout, indent=1)
+    if not isinstance(changes, dict):
+        raise ValueError("a layout is one object")
+    saved = load_layout(root)
+    layout = dict(saved) if isinstance(saved, dict) else {}
+    for name, value in changes.items():
+        before = layout.get(name)
+        layout[name] = _merged(before if isinstance(before, dict) else {}, value) if isinstance(value, dict) else value
+    text = json.dumps(_merged(layout, {}), indent=1)
     if len(text) > MOST:
         raise ValueError(f"the layout has {len(text)} characters; at most {MOST} are saved")
     file = _file(root)
     file.parent.mkdir(exist_ok=True)
     keep_out_of_version_control(file.parent)
     write_whole(file, [text + "\n"])
+
+
+def _merged(before: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in {**before, **changes}.items() if value is not None}
 
 
 def _file(root: Path) -> Path:

@@ -33,12 +33,14 @@ class WebOptions:
     :param port: the port; 0: any that is free
     :param allowed_hosts: where else browsers find the page, through a forwarded port
     :param opens_browser: whether to open the page in a browser
+    :param watching: whether saved files bring new code
     """
 
     share: Share | None = None
     port: int = 0
     allowed_hosts: tuple[str, ...] = ()
     opens_browser: bool = True
+    watching: bool = False
 
 
 class Server:

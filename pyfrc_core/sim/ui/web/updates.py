@@ -142,7 +142,7 @@ class UpdateBuilder:
         console, marks = self._collector.console, self._collector.marks
         if lines := console.since(self._lines):
             found["console"] = plain_lines(lines)
-            if dropped := lines[0].n - self._lines - 1:
+            if dropped := lines[-1].n - self._lines - len(lines):
                 found["console_dropped"] = dropped
             self._lines = lines[-1].n
         if new := marks.since(self._marks):

@@ -3,7 +3,8 @@
 // `model.values` and its neighbours are the present. `model.shown` is what panels draw: the present, or a moment of
 // the past while `model.past` is set. Changes are announced once per frame of the screen.
 
-const MOST_LINES = 2000;
+const MOST_LINES = 2000; // of plain output
+const MOST_IMPORTANT = 500; // of each other level
 const MOST_MARKS = 2000; // and no limit for the person's own
 
 class Model {
@@ -123,7 +124,7 @@ class Model {
     if (message.types) Object.assign(this.types, message.types);
     if (message.trail) this.trail = this.trail.slice(0, message.trail.from).concat(message.trail.points);
     if (message.former_trail) this.formerTrail = message.former_trail;
-    if (message.console) this.console = this.console.concat(message.console).slice(-MOST_LINES);
+    if (message.console) this.console = lastLines(this.console.concat(message.console));
     if (message.console_dropped) this.dropped += message.console_dropped;
     if (message.marks) this.marks = limited(this.marks.concat(message.marks));
     for (const part of ["panels", "robot", "drawings", "targets", "choosers", "branches", "clients"]) {
@@ -153,6 +154,14 @@ class Model {
     for (const listener of this.#sampleListeners) listener("run", run.t);
     this.announce("marks");
   }
+}
+
+// The lines without the oldest of too many. A flood of prints leaves the warnings.
+function lastLines(lines) {
+  if (lines.length <= MOST_LINES) return lines;
+  const counts = {};
+  const kept = (line) => (counts[line.level] = (counts[line.level] ?? 0) + 1) <= (line.level === "info" ? MOST_LINES : MOST_IMPORTANT);
+  return lines.reverse().filter(kept).reverse();
 }
 
 // The marks without the oldest of too many.

@@ -24,14 +24,16 @@ const DEFAULTS = {
 class Settings {
   values = structuredClone(DEFAULTS);
   #timer = null;
+  #saved = structuredClone(DEFAULTS); // as far as this page knows
 
   // Take over what was saved. What this version does not know, or what is broken, is left at its default.
   load(saved) {
+    this.#take(saved);
+    this.#saved = structuredClone(this.values);
     const unsaved = isRecorded ? null : sessionStorage.getItem(UNSAVED);
-    if (unsaved && !model.readonly) {
-      this.#take(JSON.parse(unsaved));
-      this.save();
-    } else this.#take(saved);
+    if (!unsaved || model.readonly) return;
+    this.#take(JSON.parse(unsaved));
+    this.save();
   }
 
   #take(saved) {
@@ -56,9 +58,16 @@ class Settings {
     this.#timer = setTimeout(() => this.save(), SAVE_AFTER);
   }
 
+  // Only what was changed here: another window may have changed other things meanwhile.
   async save() {
     const timer = this.#timer;
-    await ask("layout", { layout: this.values }).catch((error) => model.set("problem", error.message));
+    const now = structuredClone(this.values);
+    try {
+      await ask("layout", { layout: { version: DEFAULTS.version, ...changes(this.#saved, now, 2) } });
+    } catch (error) {
+      return model.set("problem", error.message);
+    }
+    this.#saved = now;
     if (timer === this.#timer) sessionStorage.removeItem(UNSAVED);
   }
 
@@ -77,6 +86,21 @@ class Settings {
     const { [this.values.layout]: _, ...others } = this.values.trees;
     this.set("trees", others);
   }
+}
+
+// What differs between two objects, this many levels deep; null for what is gone.
+function changes(before, after, levels) {
+  const found = {};
+  for (const name of new Set([...Object.keys(before), ...Object.keys(after)])) {
+    const [old, now] = [before[name], after[name]];
+    if (JSON.stringify(old) === JSON.stringify(now)) continue;
+    found[name] = levels > 1 && isObject(old) && isObject(now) ? changes(old, now, levels - 1) : (now ?? null);
+  }
+  return found;
+}
+
+function isObject(value) {
+  return value !== null && typeof value === "object" && !Array.isArray(value);
 }
 
 export const settings = new Settings();

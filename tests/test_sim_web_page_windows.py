@@ -1,0 +1,72 @@
+"""The page of `pyfrc sim` in a real browser: two windows that arrange it, files that are there already, floods."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from browser_pages import (  # noqa: F401 - `person`, `browser`
+    Seen,
+    missing_browser,
+    person_at_page,
+    shared_browser,
+    shared_server,
+)
+from skips import require
+from web_pages import Served
+
+require("the page of pyfrc sim in a browser", missing_browser())
+
+
+def saved_layout(server: Served) -> Any:
+    file = server.simulation.project.root / ".pyfrc" / "sim-layout.json"
+    return json.loads(file.read_text()) if file.is_file() else {}
+
+
+def test_two_windows_arrange_the_page_together(person: Seen) -> None:
+    with person.page.context.new_page() as second:
+        other = Seen(second, person.server).open()
+        person.page.get_by_label("Dark colours").click()
+        person.until(lambda: saved_layout(person.server).get("theme") == "dark")
+        other.choose("Layout", "Tuning")
+        other.tab("Mechanism").click()
+        person.until(lambda: saved_layout(person.server).get("trees"))
+    found = saved_layout(person.server)
+    assert (found["theme"], found["layout"], list(found["trees"])) == ("dark", "tuning", ["tuning"])
+    person.page.reload()
+    person.page.get_by_label("Light colours").wait_for()
+    person.page.get_by_title("Layout", exact=True).get_by_text("Tuning").wait_for()
+
+
+@pytest.mark.parametrize("replaces", [False, True])
+def test_a_file_that_is_there_is_replaced_after_a_question(replaces: bool, person: Seen) -> None:
+    file = person.simulation.project.root / "drive.jsonl"
+    file.write_text("mine")
+    asked: list[str] = []
+
+    def answer(dialog: Any) -> None:
+        asked.append(dialog.message)
+        dialog.accept() if replaces else dialog.dismiss()
+
+    person.page.on("dialog", answer)
+    person.choose("Restart, save, end", "Save the recording")
+    person.page.locator("dialog input").press("Enter")
+    if replaces:
+        person.page.get_by_text("Saved drive.jsonl").wait_for()
+    else:
+        person.page.locator("dialog").wait_for(state="detached")
+        person.until(lambda: asked)
+    assert asked == ["drive.jsonl exists. Replace it?"]
+    assert (file.read_text() == "mine") is not replaces
+
+
+def test_a_flood_of_prints_leaves_the_warnings(person: Seen) -> None:
+    person.button("Enable").click()
+    person.state("Teleoperated")
+    person.simulation.set_button(0, 9, True)  # three hundred lines in each packet
+    person.tab("Console").first.click()
+    person.page.get_by_text("lines were left out").wait_for()
+    person.simulation.set_button(0, 9, False)
+    person.page.get_by_role("button", name="Output").click()  # without plain output
+    person.page.get_by_text("Warning: this is a warning").first.wait_for()
