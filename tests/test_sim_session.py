@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -675,3 +677,44 @@ def test_a_restart_keeps_what_was_chosen(simulation: Simulation) -> None:
     assert now.values["event.game_specific_message"] == "RLR"
     assert now.choosers[0].active == "Forward"
     assert (now.mode, now.chosen_mode) == ("disabled autonomous", "autonomous")
+
+
+@pytest.mark.parametrize(("start", "station"), [(None, 4), ("left", 4), ("far", 1)])
+def test_the_alliance_is_that_of_the_wall_where_the_robot_starts(make_project, start: str | None, station: int) -> None:
+    positions = """{"pyfrc": {"robot": {"start_positions": [
+        {"name": "left", "x": 2, "y": 3}, {"name": "far", "x": 50, "y": 3, "angle": 180}]}}}"""
+    made = make_project({**FILES, "sim/config.json": positions})
+    options = replace(STILL, start_position=start)
+    with Simulation(Project(made.path / "robot.py"), options) as simulation:
+        run(simulation, 0.1)
+        assert simulation.snapshot.values["alliance_station"] == station
+        simulation.rewind(0.06)
+        settle(simulation)
+        run(simulation, 0.1)
+        steps = simulation.script().steps
+        assert sum("alliance_station" in step.writes for step in steps) == 1
+
+
+FORWARD = {"starting_x": 50, "starting_y": 12, "starting_angle": 0, "w": 2, "l": 3}
+
+
+@pytest.mark.parametrize("walls", [False, True])
+def test_walls_hold_the_robot_or_the_user_is_told(make_project, walls: bool) -> None:
+    config = {"pyfrc": {"robot": FORWARD, "field": {"w": 54, "h": 27, "walls": walls}}}
+    made = make_project({**FILES, "sim/config.json": json.dumps(config)})
+    with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
+        drive_forward(simulation)
+        run(simulation, 4)
+        x = simulation.snapshot.scene.robot.x
+        note = simulation.status.note
+        if walls:
+            assert (x, note) == (pytest.approx(54 - 3 / 2), "")
+        else:
+            assert x > 60
+            assert re.search(
+                r"\d\.\d\d s: The robot has left the field: x = 5[56]\.\d ft of 54\.0, y = 12\.0 ft of 27\.0", note
+            )
+            assert '"walls": true' in note
+        simulation.set_axis(0, 1, 1.0)
+        run(simulation, 1)
+        assert simulation.snapshot.scene.robot.x < x - 2

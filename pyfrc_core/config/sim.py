@@ -134,6 +134,10 @@ class FieldConfig(_Part):
     objects: Annotated[tuple[FieldObject, ...], tables.Array()] = Field(
         default=(), description="What is drawn on the field."
     )
+    walls: Flag = Field(
+        default=False,
+        description="Whether walls around the field stop the robot. Without them, it drives on.",
+    )
     auto_joysticks: Flag = Field(
         default=_FIELD.auto_joysticks,
         description="Whether the robot gets joystick data in autonomous. Default: the season's, else false.",

@@ -18,7 +18,7 @@ from ..errors import RobotCodeError
 from ..hal import HalData
 from .drivetrains import DriveVector
 from .parameters import ParameterError
-from .pose import METRES_PER_FOOT, Pose, along_arc
+from .pose import METRES_PER_FOOT, Pose, along_arc, walls_of
 
 if TYPE_CHECKING:
     from .visionsim import VisionSimTarget
@@ -108,6 +108,7 @@ class PhysicsInterface:
         self._device_gyros: list[str] = []
         self._analog_rate, self._device_rate = _Rate(), _Rate()
         self._height = config.field.h
+        self._walls = walls_of(config) if config.field.walls else None
         start = config.start
         self._place(Pose(start.x, start.y, math.radians(start.angle)))
 
@@ -265,7 +266,8 @@ class PhysicsInterface:
         pose = self._current()
         if not (forward or right or turn):  # at rest, no update for dashboards is needed
             return self._shown
-        return self._place(pose.moved(forward, right, turn))
+        moved = pose.moved(forward, right, turn)
+        return self._place(moved if self._walls is None else self._walls.keep_in(moved))
 
     def _turn_analog_gyros(self, turn: float) -> None:
         if turn and self._hal_data is not None:

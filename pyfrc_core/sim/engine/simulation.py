@@ -9,21 +9,21 @@ from dataclasses import replace
 from pathlib import Path
 from time import monotonic
 from types import TracebackType
-from typing import Any
 
 from ...config.pictures import field_picture
 from ...errors import PyfrcError, UsageError
 from ...processes.crash_report import describe_exit, moment_of
 from ...project import Project
 from ...runtime.robot_time import PACKET_US, to_us
-from ...runtime.scripts.script import InputScript, Step
+from ...runtime.scripts.script import InputScript
 from .change_streams import ChangeStreams
 from .changes import ChangeCursor
 from .commands import Command
 from .controls import Controls
 from .driver import Driver
 from .field import field_of, robot_at, start_named
-from .left_behind import choices_of, ending_released, releases_after
+from .first_script import first_script
+from .left_behind import choices_of, releases_after
 from .messages import Failed, Job, Message, Ready, Replayed, Update
 from .options import SimOptions
 from .output_log import OutputCursor, OutputLog
@@ -231,7 +231,7 @@ class Simulation(Controls):
 
     def reset_position(self, start: str | None = None) -> None:
         """Put the robot where it started, or on one of the field's other `starts`."""
-        self.write(self._at_start(start or self.options.start_position))
+        self.write(robot_at(self.field, start_named(self.field, start or self.options.start_position)))
 
     # -- recording ------------------------------------------------------------------------------------------------
 
@@ -406,11 +406,4 @@ class Simulation(Controls):
             raise UsageError("this simulation is not recorded")
 
     def _first_script(self) -> InputScript:
-        script = self.options.script or InputScript((), 0, robot=self.project.main_file.name)
-        script = ending_released(script)
-        if self.options.start_position is not None:
-            script = replace(script, steps=(Step(0, self._at_start(self.options.start_position)), *script.steps))
-        return script
-
-    def _at_start(self, name: str | None) -> dict[str, Any]:
-        return robot_at(self.field, start_named(self.field, name))
+        return first_script(self.options, self.project.main_file.name, self.field)

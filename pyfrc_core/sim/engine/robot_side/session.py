@@ -11,6 +11,7 @@ from typing import Any
 from ....errors import PyfrcError
 from ....hal import modes
 from ....physics.core import PhysicsInterface
+from ....physics.pose import walls_of
 from ....runtime.clock import INPUT, OBSERVE, PACKET_US
 from ....runtime.exceptions import TestEnded
 from ....runtime.loop_limit import LoopLimit
@@ -71,12 +72,12 @@ class Session:
         self._renderer = UserRenderer(self._robot_pose)
         self._drawings: tuple[Any, ...] = ()
         self._vision: tuple[Target, ...] = ()
-        self._path = DrivenPath()
+        self._path = DrivenPath(walls_of(job.project.sim_config))
         self._mode_packets: Counter[str] = Counter()
         self._notes: list[str] = []
         self._replaying = False
         self._packet_began = wall()
-        self._steps_sent = 0
+        self._steps_sent = self._own_steps_from = 0
         self._sent_at = 0.0
         self._update_seconds = _UPDATE_SECONDS if job.recording else _UNRECORDED_UPDATE_SECONDS
         self._packets_at_once = 1
@@ -111,6 +112,8 @@ class Session:
         self._target_us = max(job.forward_to_us, _INITIALIZED_BY_US)
         try:
             Player(job.script, run).start()
+            if self._recorder is not None and not job.extensions:
+                self._own_steps_from = len(self._recorder.steps_from(0))  # those before are the script's
             self._mark_position()
             if job.reports_replay:
                 self._traces.look(run.clock.now)  # the values that it begins with
@@ -307,7 +310,8 @@ class Session:
         run, pace = self._run, self._pace
         if not self._job.recording and base is None:
             self._traces.look_at_hal(run.clock.now)
-        steps = () if self._recorder is None else self._recorder.steps_from(max(0, self._steps_sent - 2))
+        steps_from = max(self._own_steps_from, self._steps_sent - 2)
+        steps = () if self._recorder is None else self._recorder.steps_from(steps_from)
         overruns, worst_us = run.overruns_until_now()
         drawings, vision = self._renderer.drawings(), self._targets_seen()
         network_base, network_lines = self._traces.take_network(run.clock.now, base is not None)
@@ -333,7 +337,7 @@ class Session:
             trail=tuple(self._path.points),
             distance=self._path.distance,
             mode_seconds={mode: packets * PACKET_US / 1_000_000 for mode, packets in self._mode_packets.items()},
-            steps_from=max(0, self._steps_sent - 2),
+            steps_from=steps_from,
             steps=steps,
             drawings=None if drawings == self._drawings else drawings,
             targets=None if vision == self._vision else vision,
@@ -385,8 +389,8 @@ class Session:
         self._sent_at = wall()
 
     def _mark_position(self) -> None:
-        if (controller := self._controller) is not None:
-            self._path.add(*controller.get_position()[:2])
+        if (pose := self._robot_pose()) is not None and (note := self._path.add(pose)):
+            self._notes.append(f"{self._run.clock.now:.2f} s: {note}")
 
     def _targets_seen(self) -> tuple[Target, ...]:
         controller = self._controller

@@ -13,7 +13,7 @@ _MOST_DEPTH, _MOST_DIGITS = 40, 32
 _MOST_SHOWN = 60
 #: The most paths that a page may ask for at once.
 _MOST_PATHS = 64
-#: The latest moment that a page may name, in seconds: thirty years.
+#: The latest and the earliest moment that a page may name, in seconds: thirty years.
 _LATEST = 1e9
 
 
@@ -64,8 +64,8 @@ class Message:
         return int(value) if value == int(value) else _refuse(key, "a whole number is needed", value)
 
     def time(self, key: str) -> float:
-        """Return a moment, in seconds of robot time."""
-        return float(self.number(key, 0, _LATEST))
+        """Return a moment, in seconds of robot time; plots begin before 0."""
+        return float(self.number(key, -_LATEST, _LATEST))
 
     def branch(self) -> int | None:
         """Return the number of a branch; None: the present run."""

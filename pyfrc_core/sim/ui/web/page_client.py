@@ -24,7 +24,7 @@ _INTERVAL = 0.014
 #: The longest error, in characters: it may quote what the page has sent.
 _MOST_ERROR = 300
 #: The most points of one curve.
-_MOST_POINTS = 20_000
+_MOST_POINTS = 1_000_000
 _READ_ONLY = "This window only shows the simulation; it cannot drive."
 
 
@@ -142,7 +142,7 @@ class PageClient:
             message.paths(),
             message.time("from"),
             message.time("to"),
-            message.integer("points", 1, _MOST_POINTS, 800),
+            int(message.number("points", 1, _MOST_POINTS, 800)),
             message.branch(),
         )
         if found is None:
