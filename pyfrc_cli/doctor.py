@@ -6,6 +6,7 @@ import json
 import sys
 from dataclasses import asdict, replace
 from pathlib import Path
+from textwrap import indent
 
 import click
 
@@ -13,7 +14,8 @@ from .project_options import project_options
 from .robot_options import refuse_option_as_value
 from .verbosity import hint, verbosity
 
-_COLOURS = {"ok": "green", "hint": "cyan", "problem": "red"}
+#: In the order in which they are shown.
+_COLOURS = {"problem": "red", "hint": "cyan", "ok": "green"}
 
 
 @click.command("doctor", context_settings={"help_option_names": ["-h", "--help"]})
@@ -26,6 +28,7 @@ _COLOURS = {"ok": "green", "hint": "cyan", "problem": "red"}
 )
 @click.option("--team", type=click.IntRange(min=1), metavar="N", help="Your team's number.")
 @click.option("--no-robot", is_flag=True, help="Do not check the robot.")
+@click.option("--extras", is_flag=True, help="Also show which optional packages are not installed.")
 @click.option("--json", "as_json", is_flag=True, help="For tools: print all results as one JSON object.")
 def command(
     directory: Path | None,
@@ -34,12 +37,13 @@ def command(
     robot: str | None,
     team: int | None,
     no_robot: bool,
+    extras: bool,
     as_json: bool,
 ) -> None:
     """Check this computer, your project and the robot for problems, and show how to solve them.
 
-    A problem prevents something from working. A hint is optional, or not important yet. Nothing is changed, on
-    this computer or on the robot.
+    A problem prevents something from working, and is shown first. A hint is optional, or not important yet. Nothing is
+    changed, on this computer or on the robot.
 
     \b
     Exit codes: 0 no problems, 1 problems found, 2 wrong usage.
@@ -52,15 +56,16 @@ def command(
     from pyfrc_core.doctor import DoctorOptions, examine
     from pyfrc_core.wording import counted
 
-    findings = []
-    for finding in examine(DoctorOptions(directory, main, robot_class, not no_robot, robot, team)):
-        finding = replace(finding, remedy=finding.remedy and with_robot_option(finding.remedy, robot, team))
-        findings.append(finding)
+    findings = [
+        replace(each, remedy=each.remedy and with_robot_option(each.remedy, robot, team))
+        for each in examine(DoctorOptions(directory, main, robot_class, not no_robot, robot, team, extras or as_json))
+    ]
+    for finding in sorted(findings, key=lambda each: tuple(_COLOURS).index(each.status)):
         if not as_json and (finding.status == "problem" or not verbosity().quiet):
             click.secho(f"{finding.status:<8}", fg=_COLOURS[finding.status], nl=False)
             click.echo(f"{finding.topic}: {finding.text}")
             if finding.remedy:
-                click.echo(f"{'':<8}  {finding.remedy}")
+                click.echo(indent(finding.remedy.replace("\n  ", "\n"), " " * 10))
     problems = sum(finding.status == "problem" for finding in findings)
     if as_json:
         click.echo(json.dumps({"problems": problems, "findings": [asdict(each) for each in findings]}, indent=2))

@@ -261,8 +261,13 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
         ({"sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}'}, "sim/config.json", "robot.w", ""),
         ({"wpilib/__init__.py": ""}, "project", "wpilib/__init__.py hides a library", "another name"),
         ({"random.py": ""}, "project", "random.py hides a library", "another name"),
-        ({"physics.py": "class PhysicsEngine:"}, "physics", "physics.py:1: SyntaxError", "Correct that line"),
-        ({"physics.py": "import phisics"}, "physics", "physics.py:1: ModuleNotFoundError", "Is the name right"),
+        ({"physics.py": "class PhysicsEngine:"}, "physics", "physics.py:1: IndentationError", "Indent the next line"),
+        (
+            {"physics.py": "import phisics"},
+            "physics",
+            "physics.py:1: there is no module phisics",
+            "Did you mean physics?",
+        ),
         ({"physics.py": "class PhysicEngine: pass"}, "physics", "PhysicsEngine", "It must have a class"),
         (
             {"physics.py": "class PhysicsEngine:\n    def update_sim(self): pass\n"},
@@ -348,3 +353,22 @@ def test_a_team_number_that_is_none(make_project) -> None:
 
 def test_only_one_result_about_the_robot(make_project) -> None:
     assert make_project({}).run("doctor", "--no-robot", "--team", "1").code == 2
+
+
+def test_problems_come_first_and_extras_when_asked(make_project) -> None:
+    settings = """
+        [tool.robotpy]
+        requires = ["pyfrc==2026.0.1", "none-such==1.0; platform_machine != 'roborio'"]
+        components = ["command2"]
+    """
+    project = make_project({"robot.py": ROBOT, "pyproject.toml": settings})
+    result = project.run("doctor", "--no-robot")
+    assert result.code == 1
+    order = [line.split()[0] for line in result.stdout.splitlines() if line[:1].isalpha()]
+    assert order == sorted(order, key=["problem", "hint", "ok"].index)
+    assert 'pip install "none-such==1.0"\n' in result.stdout
+    assert "Did you mean 'commands2'?" in result.stdout
+    assert 'pip install "pyfrc' not in result.stdout
+    assert "a robot does not need pyfrc" in result.stdout
+    assert "extras:" not in result.stdout
+    assert "extras:" in project.run("doctor", "--no-robot", "--extras").stdout

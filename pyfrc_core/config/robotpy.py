@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..errors import SettingsError
+from ..errors import SettingsError, nearest
 from .toml_file import TomlFile
 
 if TYPE_CHECKING:
@@ -20,12 +21,8 @@ COMPONENTS: dict[str, tuple[str, ...]] = {
 }
 COMPONENTS["all"] = tuple(package for packages in COMPONENTS.values() for package in packages)
 
-#: The modules of these packages: known also where a package is not installed.
-COMPONENT_MODULES = {
-    "commands2": "robotpy-commands-v2",
-    "cscore": "robotpy-cscore",
-    "robotpy_apriltag": "robotpy-apriltag",
-}
+#: Components that install nothing on a robot.
+_ON_DESKTOPS = ("romi", "sim", "xrp")
 
 
 @dataclass(frozen=True)
@@ -57,8 +54,8 @@ def load_robot_packages(pyproject: Path) -> RobotPackages:
         return RobotPackages(None, (), (), {})
     lines = {key: file.place_of("tool", "robotpy", key) for key in table}
     version = table.get("robotpy_version")
-    requires = [_requirement(each, lines["requires"]) for each in _texts(table.get("requires"))]
-    components = _texts(table.get("components"))
+    requires = [_requirement(each, lines["requires"]) for each in _texts(table, "requires", lines)]
+    components = _texts(table, "components", lines)
     return RobotPackages(version if isinstance(version, str) else None, components, tuple(requires), lines)
 
 
@@ -71,5 +68,18 @@ def _requirement(text: str, where: str) -> Requirement:
         raise SettingsError(f"requires = {text!r}: {str(invalid).splitlines()[0]}", where=where) from None
 
 
-def _texts(value: object) -> tuple[str, ...]:
-    return tuple(each for each in value if isinstance(each, str)) if isinstance(value, list) else ()
+def _texts(table: dict[str, object], key: str, lines: dict[str, str]) -> tuple[str, ...]:
+    value = table.get(key, [])
+    if not isinstance(value, list):
+        shown = str(value) if isinstance(value, str) else "NAME"
+        raise SettingsError(f"{key} must be a list", where=lines[key], remedy=f'Write: {key} = ["{shown}"]')
+    return tuple(each for each in value if isinstance(each, str))
+
+
+def unknown_components(packages: RobotPackages) -> Iterator[tuple[str, str]]:
+    """Yield each component that does not exist, as a sentence, and what was probably meant."""
+    known = [*COMPONENTS, *_ON_DESKTOPS]
+    for component in packages.components:
+        if component not in known:
+            meant = nearest(component, known)
+            yield f"components has {component!r}, which does not exist", f"{meant[:1].upper()}{meant[1:]}"

@@ -17,7 +17,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..config.robotpy import COMPONENT_MODULES, COMPONENTS, RobotPackages
+from ..config.packages import PACKAGES, component_of, quoted_requirement
+from ..config.robotpy import COMPONENTS, RobotPackages, unknown_components
 from ..wording import counted
 from .agent.imports import is_there
 from .local_checks import ask_to_continue
@@ -161,7 +162,7 @@ class ImportSearch:
         if top in sys.stdlib_module_names:
             text = f"Python {facts.python} on the robot has no such module"
             return text, "That Python's library does not have it: use another module."
-        distribution = next(iter(packages_by_module().get(top, ())), COMPONENT_MODULES.get(top))
+        distribution = next(iter(packages_by_module().get(top, ())), PACKAGES.get(top))
         if distribution is None:
             return self._not_ours(module, facts)
         if canonicalize_name(distribution) in facts.packages:
@@ -229,7 +230,7 @@ def _how_to_get(distribution: str, packages: RobotPackages, facts: RobotFacts) -
     if _is_virtual(facts):
         return f"Install it {_install(distribution, facts)}."
     name = canonicalize_name(distribution)
-    component = next((each for each, brought in COMPONENTS.items() if name in brought), None)
+    component = component_of(name)
     if any(canonicalize_name(each.name) == name for each in packages.requires) or any(
         name in COMPONENTS.get(each, ()) for each in packages.components
     ):
@@ -254,7 +255,7 @@ def check_packages(
     :raises RefusedError: if something is missing, and the user does not want to deploy anyway
     """
     found = search.problems(facts, packages)
-    unfit = list(unfit_packages(packages, facts)) if refuse else []
+    unfit = [*_misspelled_components(packages), *unfit_packages(packages, facts)] if refuse else []
     certain = [*(each for each in found if each.certain), *unfit]
     for each in found if dry_run or not refuse else (each for each in found if not each.certain):
         if not each.certain:
@@ -269,6 +270,11 @@ def check_packages(
         if len(certain) > _MAX_NAMED:
             failure += f"; and {len(certain) - _MAX_NAMED} more"
         ask_to_continue(failure, talk.ask, f"{certain[0].remedy} {NO_CHECK}")
+
+
+def _misspelled_components(packages: RobotPackages) -> Iterator[PackageProblem]:
+    for text, remedy in unknown_components(packages):
+        yield PackageProblem(packages.lines["components"], text, remedy)
 
 
 def unfit_packages(packages: RobotPackages, facts: RobotFacts) -> Iterator[PackageProblem]:
@@ -302,7 +308,7 @@ def unfit_packages(packages: RobotPackages, facts: RobotFacts) -> Iterator[Packa
         if version is None or not _fits(version, needed):
             instead = f"{needed.name} {version}" if version else f"no package {needed.name}"
             text = f"requires has {str(needed)!r}, but the robot has {instead}"
-            yield PackageProblem(packages.lines["requires"], text, remedy(f"'{needed}'"))
+            yield PackageProblem(packages.lines["requires"], text, remedy(quoted_requirement(needed)))
 
 
 def _needed_there(needed: Requirement, facts: RobotFacts) -> bool:

@@ -27,6 +27,7 @@ class DoctorOptions:
     :param look_for_robot: whether to check the robot as well
     :param robot:      the robot's address, if the user specifies it
     :param team:       the team number, if the user specifies it
+    :param extras:     whether to report optional packages that are not installed
     """
 
     directory: Path | None = None
@@ -35,6 +36,7 @@ class DoctorOptions:
     look_for_robot: bool = True
     robot: str | None = None
     team: int | None = None
+    extras: bool = False
 
 
 def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
@@ -49,7 +51,8 @@ def examine(wanted: DoctorOptions) -> Iterator[CheckResult]:
     yield from check_imports(installed)
     yield from check_browser()
     yield from check_window()
-    yield from check_extras()
+    if wanted.extras:
+        yield from check_extras()
     if about_project is not None:
         yield about_project
     if project is not None:

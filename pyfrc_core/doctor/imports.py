@@ -8,23 +8,9 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from ..config.packages import PACKAGES
 from .check_result import CheckResult, ok, problem
 from .installed import Installed
-
-#: Packages, and the module to import from each.
-MODULES = {
-    "wpilib": "wpilib",
-    "robotpy-commands-v2": "commands2",
-    "robotpy-wpilib-utilities": "magicbot",
-    "robotpy-apriltag": "robotpy_apriltag",
-    "robotpy-rev": "rev",
-    "phoenix6": "phoenix6",
-    "robotpy-ctre": "phoenix5",
-    "robotpy-navx": "navx",
-    "photonlibpy": "photonlibpy",
-    "robotpy-pathplannerlib": "pathplannerlib",
-    "robotpy-urcl": "urcl",
-}
 
 #: Seconds after which imports count as hanging.
 TIME_LIMIT = 60.0
@@ -47,7 +33,10 @@ def check_imports(installed: Installed, path: list[str] | None = None) -> Iterat
 
     :param path: the module search path; default: `sys.path` without the current directory
     """
-    packages = {module: name for name, module in MODULES.items() if installed.get(name)}
+    of_robots = {package.name for package in installed.of_wpilib()}
+    packages = {module: name for module, name in PACKAGES.items() if name in of_robots}
+    # The others import it.
+    packages = dict(sorted(packages.items(), key=lambda each: each[0] != "wpilib"))
     remaining = list(packages)
     failures = False
     while remaining:

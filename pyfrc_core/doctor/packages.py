@@ -13,6 +13,7 @@ from pathlib import Path
 from packaging.utils import canonicalize_name
 
 from .._version import __version__, requirement
+from ..config.packages import quoted_requirement
 from ..season import CURRENT
 from .check_result import CheckResult, hint, ok, problem
 from .installed import Installed, Package, Unmet
@@ -52,11 +53,11 @@ def check_pyfrc(installed: Installed) -> Iterator[CheckResult]:
     """Check that pyfrc is installed once, with its requirements, and without conflicting names."""
     copies = installed.copies.get("pyfrc", [])
     if not copies:
-        yield hint("pyfrc", f"{__version__} runs from {CODE} without being installed", f"pip install -e {CODE}")
+        yield hint("pyfrc", f"{__version__} runs from {CODE} without being installed", f'pip install -e "{CODE}"')
         return
     problems = list(_mixed_up(copies))
     for unmet in installed.unmet(copies[0]):
-        problems.append(problem("pyfrc", str(unmet), f'pip install "{unmet.needed.name}{unmet.needed.specifier}"'))
+        problems.append(problem("pyfrc", str(unmet), f"pip install {quoted_requirement(unmet.needed)}"))
     yield from problems or [ok("pyfrc", f"{__version__}, {CODE}")]
 
 
@@ -106,10 +107,13 @@ def _unmet(installed: Installed, family: Sequence[Package], wpilib: Package) -> 
     for unmet in every:
         if canonicalize_name(unmet.package.name) in odd:
             continue
-        needed = f'"{unmet.needed.name}{unmet.needed.specifier}"'
         # If the version equals WPILib's, the package with the requirement is outdated.
         stays = unmet.there == wpilib.version
-        remedy = f"pip install --upgrade {unmet.package.name}" if stays else f"pip install {needed}"
+        remedy = (
+            f"pip install --upgrade {unmet.package.name}"
+            if stays
+            else f"pip install {quoted_requirement(unmet.needed)}"
+        )
         by_remedy.setdefault(remedy, []).append(unmet)
     for remedy, (first, *others) in by_remedy.items():
         also = f"; also needed by {', '.join(str(each.package) for each in others)}" if others else ""

@@ -6,14 +6,17 @@ from codecs import BOM_UTF8
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, TypeVar
 
+from .._version import __version__
 from ..compat.real_time_devices import real_time_libraries
-from ..config.robotpy import load_robot_packages
+from ..config.packages import quoted_requirement
+from ..config.robotpy import load_robot_packages, unknown_components
 from ..errors import PyfrcError, SettingsError
 from ..processes.call import run_in_subprocess
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_libraries
+from ..runtime.code_checks import find_code_warnings
+from ..runtime.code_warning import CodeWarning
 from ..runtime.loading import load_robot
-from ..runtime.misspelled_methods import MisspelledMethod, find_misspelled_methods
 from .check_result import CheckResult, hint, ok, problem
 from .installed import Installed, fits
 
@@ -81,6 +84,8 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[CheckResult]:
         where = wanted.lines["robotpy_extras"]
         text = f"{where}: robotpy_extras was renamed in 2026, and robotpy deploy refuses the old name"
         yield hint("project", text, "Rename it to components.")
+    for text, remedy in unknown_components(wanted):
+        yield problem("project", f"{wanted.lines['components']}: {text}", remedy)
     for needed in wanted.requires:
         if needed.marker is not None and not needed.marker.evaluate({"extra": ""}):
             continue
@@ -88,7 +93,11 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[CheckResult]:
         if there is None or not fits(there.version, needed):
             instead = f"{there.version} is installed" if there else "it is not installed"
             text = f"{wanted.lines['requires']}: requires {needed}, but {instead} here"
-            yield problem("project", text, f'pip install "{needed}"')
+            if needed.name == "pyfrc":  # a robot does not need it, and this doctor is not to replace itself
+                remedy = f'Write "pyfrc=={__version__}" there, or remove the line: a robot does not need pyfrc.'
+                yield hint("project", text, remedy)
+                continue
+            yield problem("project", text, f"pip install {quoted_requirement(needed)}")
 
 
 def _robot_class(project: Project) -> Iterator[CheckResult]:
@@ -117,9 +126,9 @@ def _imported(
         return problem(topic, f"{file} cannot be imported: {error}", "Run pyfrc test for details.")
 
 
-def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[MisspelledMethod], tuple[str, ...]]:
+def _look_at_class(project: Project, log: CrashLog) -> tuple[str, list[CodeWarning], tuple[str, ...]]:
     name = load_robot(project).__name__
-    return name, find_misspelled_methods(project), real_time_libraries()
+    return name, find_code_warnings(project), real_time_libraries()
 
 
 def _physics(project: Project, imports: bool) -> Iterator[CheckResult]:

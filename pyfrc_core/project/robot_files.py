@@ -14,11 +14,17 @@ _NOT_OURS = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
 _PYFRC = tuple(
     str(Path(__file__).resolve().parents[2] / package) + os.sep for package in ("pyfrc_core", "pyfrc", "pyfrc_cli")
 )
+_PYTHON = str(Path(os.__file__).parent) + os.sep
 
 
 def is_pyfrc(filename: str) -> bool:
     """Return whether this file is part of pyfrc."""
     return filename.startswith(_PYFRC)
+
+
+def is_library(filename: str) -> bool:
+    """Return whether this file is part of pyfrc, of an installed package, or of Python."""
+    return filename.startswith((*_PYFRC, _PYTHON, "<frozen")) or any(part in filename for part in _NOT_OURS)
 
 
 class RobotFiles:

@@ -8,7 +8,9 @@ import threading
 from types import CodeType, ModuleType
 
 from ..errors import PyfrcError, RobotCodeError, UsageError, text_of
-from ..project.robot_files import RobotFiles, is_pyfrc
+from ..explain import Explanation, explain
+from ..explain.places import line_of_class, users_class
+from ..project.robot_files import RobotFiles, is_library, is_pyfrc
 from .exceptions import TestFroze
 
 _STACK_ENTRY = re.compile(r'  File "([^"]+)", line \d+, in [^\n]*\n(?:    [^\n]*\n)?\n?')
@@ -21,8 +23,20 @@ class NamesItsPlace(Exception):
     """An error whose message begins with the user's file and line."""
 
 
-def leave_out_pyfrc(error: BaseException, files: RobotFiles) -> None:
-    """Take pyfrc's own part out of the traceback of what the user's code raised, or made pyfrc raise."""
+def leave_out_libraries(error: BaseException, files: RobotFiles) -> None:
+    """Remove the calls in libraries, and in pyfrc, from the traceback of an error that has a line of the user's.
+
+    Also from the errors that led to it.
+    """
+    seen: list[BaseException] = []
+    each: BaseException | None = error
+    while each is not None and each not in seen:
+        seen.append(each)
+        _leave_out(each, files)
+        each = each.__cause__ or (None if each.__suppress_context__ else each.__context__)
+
+
+def _leave_out(error: BaseException, files: RobotFiles) -> None:
     entry = error.__traceback__
     if files.innermost_line(entry) is None:
         return
@@ -30,25 +44,29 @@ def leave_out_pyfrc(error: BaseException, files: RobotFiles) -> None:
         # WPILib reports where a device was made before, with the whole stack.
         error.args = (_STACK_ENTRY.sub(lambda found: _ours(found, files), error.args[0]).strip(), *error.args[1:])
     while entry is not None:
-        while entry.tb_next is not None and is_pyfrc(entry.tb_next.tb_frame.f_code.co_filename):
+        while entry.tb_next is not None and is_library(entry.tb_next.tb_frame.f_code.co_filename):
             entry.tb_next = entry.tb_next.tb_next
         entry = entry.tb_next
 
 
 def headline(error: BaseException, files: RobotFiles) -> str | None:
-    """``robot.py:12: ZeroDivisionError: division by zero``, if the user's code took part in it."""
+    """Return ``robot.py:12: ZeroDivisionError: division by zero``, and in further lines what to do.
+
+    None if the user's code took no part in it.
+    """
     if names_its_place(error) or (isinstance(error, TestFroze) and str(error)):
         return str(error)
     method = _method_of(error, files)
     if method is not None and _lacks_self(method, error):
         return f"{_line_of(method, files)}: {_without_self(method)}"
     traceback = error.__traceback__
-    line = (
-        files.innermost_line(traceback, tests=False)
-        or (method and _line_of(method, files))
-        or files.innermost_line(traceback)
-    )
-    return f"{line}: {text_of(error)}" if line else None
+    explained = explain(error, files) or Explanation()
+    line = explained.place or files.innermost_line(traceback, tests=False) or (method and _line_of(method, files))
+    text = explained.text or text_of(error)
+    if not line and (cls := users_class(error, files)) is not None:
+        line, text = line_of_class(cls, files), with_library_calls(text, error, files)
+    line = line or files.innermost_line(traceback)
+    return f"{line}: {text}" + (f"\n  {explained.remedy}" if explained.remedy else "") if line else None
 
 
 def headline_is_the_robots(text: str, files: RobotFiles) -> bool:

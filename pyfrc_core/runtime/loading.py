@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import pkgutil
 import re
 import sys
 from pathlib import Path
@@ -11,18 +10,22 @@ from types import ModuleType
 from typing import Any
 
 from ..encoding import find_wrong_encoding
-from ..errors import ProjectError, RobotCodeError, nearest, text_of
+from ..errors import ProjectError, RobotCodeError, text_of
+from ..explain import Explanation, explain
 from ..hal.timing import standing_at_zero
 from ..processes.crash_report import reported_exit
 from ..project import Project
-from ..project.hidden_libraries import LIBRARIES, find_hidden_by_any_name
+from ..project.hidden_libraries import find_hidden_by_any_name
 from .exceptions import TestFroze
 from .hang_detector import importing
 from .keyboard_input import refuse_keyboard_input
+from .misspelled_methods import refuse_unawaited_methods
 from .robot_class import choose_robot_class
 
 #: Part of Python's messages about a file that it cannot decode.
 _ENCODING_MESSAGE = re.compile(r"null bytes|Non-UTF-8|codec can't decode")
+
+_WHILE_IMPORTED = "This happens while the file is imported."
 
 
 def load_robot(project: Project) -> type[Any]:
@@ -33,7 +36,9 @@ def load_robot(project: Project) -> type[Any]:
     """
     with standing_at_zero():
         module = import_file(project, project.main_file)
-    return choose_robot_class(project, module)
+    robot_class = choose_robot_class(project, module)
+    refuse_unawaited_methods(project)
+    return robot_class
 
 
 def import_file(project: Project, file: Path, name: str | None = None) -> ModuleType:
@@ -60,11 +65,7 @@ def import_file(project: Project, file: Path, name: str | None = None) -> Module
     except (SyntaxError, UnicodeDecodeError, ValueError) as error:
         del sys.modules[name]
         _refuse_wrong_encoding(project, file, error)
-        if not isinstance(error, SyntaxError):
-            raise _import_error(project, file, error) from error
-        place = project.files.relative(error.filename or where) + (f":{error.lineno}" if error.lineno else "")
-        text = f"\n    {error.text.strip()}" if error.text else ""
-        raise RobotCodeError(f"SyntaxError: {error.msg}{text}", where=place) from error
+        raise _import_error(project, file, error) from error
     except RobotCodeError:  # it names its place
         del sys.modules[name]
         raise
@@ -77,33 +78,19 @@ def import_file(project: Project, file: Path, name: str | None = None) -> Module
 def _import_error(project: Project, file: Path, error: BaseException) -> RobotCodeError:
     """Return what the program raised while it was imported as an error with the user's line and what to do."""
     place = project.files.innermost_line(error.__traceback__) or file.name
-    remedy = "This happens while the file is imported."
     if isinstance(error, TestFroze):
-        remedy += " Is it an endless loop? If it only takes long: hang_seconds under [tool.pyfrc.test]."
+        remedy = (
+            f"{_WHILE_IMPORTED} Is it an endless loop? If it only takes long: hang_seconds under [tool.pyfrc.test]."
+        )
         return RobotCodeError(str(error), where=place, remedy=remedy)
+    explained = explain(error, project.files) or Explanation()
+    remedy = explained.remedy or _WHILE_IMPORTED
     if isinstance(error, SystemExit):
         remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
-    elif isinstance(error, ModuleNotFoundError):
-        near = _module_beside(error.name or "")
-        remedy += f" {near}" if near else " Is the name right, and its package installed?"
-        if not near and (project.root / "requirements.txt").is_file():
-            remedy += " Your project's packages: python -m pip install -r requirements.txt"
-    elif isinstance(error, NameError) and error.name in {*LIBRARIES, *sys.stdlib_module_names}:
-        remedy += f" Is this line missing at the top: import {error.name}"
     if isinstance(error, (ImportError, AttributeError)):
         for hidden in find_hidden_by_any_name(project.root, project.main_file):
             remedy += f" {hidden.text}. {hidden.remedy}"
-    return RobotCodeError(text_of(error), where=place, remedy=remedy)
-
-
-def _module_beside(name: str) -> str:
-    """Return the module that was probably meant, if the package of a missing module exists; else an empty text."""
-    package, _, last = name.rpartition(".")
-    directories = getattr(sys.modules.get(package), "__path__", None)
-    if directories is None:
-        return ""
-    known = [each.name for each in pkgutil.iter_modules(directories)]
-    return f"In {package}: {nearest(last, known)}"
+    return RobotCodeError(explained.text or text_of(error), where=explained.place or place, remedy=remedy)
 
 
 def _refuse_wrong_encoding(project: Project, file: Path, error: Exception) -> None:

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from inspect import isasyncgenfunction, iscoroutinefunction, isgeneratorfunction
 from pathlib import Path
 from types import CodeType, FunctionType
 from typing import TYPE_CHECKING
 
+from ..errors import RobotCodeError
 from ..project.loaded_modules import loaded_modules
+from .code_warning import CodeWarning
 
 if TYPE_CHECKING:
     from ..project import Project
@@ -41,27 +43,32 @@ _SYNONYMS = (
 )
 
 
-@dataclass(frozen=True)
-class MisspelledMethod:
-    """A method that WPILib never calls.
-
-    :param where: ``robot.py:12``
-    :param text: the problem in one sentence, without its place
-    :param remedy: the remedy in one sentence
-    """
-
-    where: str
-    text: str
-    remedy: str
-
-    def __str__(self) -> str:
-        return f"{self.where}: {self.text}"
-
-
-def find_misspelled_methods(project: Project) -> list[MisspelledMethod]:
+def find_misspelled_methods(project: Project) -> list[CodeWarning]:
     """Return the misspelled methods in the project's imported modules, sorted by line."""
     found = [each for cls in _classes(project) for each in _in_class(cls, project)]
     return sorted(set(found), key=lambda each: (each.where.rpartition(":")[0], int(each.where.rpartition(":")[2])))
+
+
+def refuse_unawaited_methods(project: Project) -> None:
+    """Check the methods that WPILib calls: one with ``async`` or ``yield`` returns at once, and nothing in it runs.
+
+    :raises RobotCodeError: when there is such a method, with its line
+    """
+    for cls in _classes(project):
+        if not any(base.__module__.partition(".")[0] in _LIBRARIES for base in cls.__mro__):
+            continue
+        for name, method in vars(cls).items():
+            if not isinstance(method, FunctionType) or not (name in _OVERRIDDEN or _MODES.fullmatch(name)):
+                continue
+            is_async = iscoroutinefunction(method) or isasyncgenfunction(method)
+            if is_async or isgeneratorfunction(method):
+                word, instead = ("async", f"def {name}(self):") if is_async else ("yield", "it without yield")
+                raise RobotCodeError(
+                    f"{cls.__name__}.{name} never runs: WPILib calls it, but does not wait for a method with {word}",
+                    where=_place(method.__code__, project),
+                    remedy=f"Write {instead}{' without async and await' if is_async else ''}. Do what takes longer "
+                    "than one loop in small steps, one each time that the method is called.",
+                )
 
 
 def _classes(project: Project) -> Iterator[type]:
@@ -73,7 +80,7 @@ def _classes(project: Project) -> Iterator[type]:
                 yield value
 
 
-def _in_class(cls: type, project: Project) -> Iterator[MisspelledMethod]:
+def _in_class(cls: type, project: Project) -> Iterator[CodeWarning]:
     library = [base for base in cls.__mro__ if base.__module__.partition(".")[0] in _LIBRARIES]
     if not library:
         return
@@ -84,7 +91,7 @@ def _in_class(cls: type, project: Project) -> Iterator[MisspelledMethod]:
         if not isinstance(method, FunctionType) or not project.files.is_robot_code(method.__code__.co_filename):
             continue
         for code in _inside(method, missing):
-            yield MisspelledMethod(
+            yield CodeWarning(
                 _place(code, project),
                 f"WPILib never calls {code.co_name}, which is inside {cls.__name__}.{name}",
                 f"Indent it as much as {name}.",
@@ -94,7 +101,7 @@ def _in_class(cls: type, project: Project) -> Iterator[MisspelledMethod]:
         meant = _nearest(name, missing)
         if meant is not None and not _is_referred_to(name, project):
             season = " (snake_case names are those of WPILib 2027)" if "_" in name.strip("_") else ""
-            yield MisspelledMethod(
+            yield CodeWarning(
                 _place(method.__code__, project),
                 f"WPILib never calls {cls.__name__}.{name}: did you mean {meant}?{season}",
                 f"Rename it to {meant}.",

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..disk_space import check_disk_space
 from ..errors import UsageError
+from ..runtime.scripts.script import trace_beside
 from ..text_files import check_writable
 from .engine.simulation import Simulation
 from .page_file import PageFile
@@ -45,7 +46,9 @@ class OutputFiles:
         snapshot = simulation.snapshot
         if snapshot is None:
             return paged
-        written = [] if self._record is None else simulation.save_all(self._record)
+        scripts = [] if self._record is None else simulation.save_all(self._record)
+        traces = [trace for trace in map(trace_beside, scripts) if trace.is_file()]
+        written = sorted([*scripts, *traces])
         if self._wpilog is not None and _stamp(self._wpilog) != self._former_log:
             if why := check_disk_space(self._wpilog):
                 raise UsageError(f"{self._wpilog} is not complete: {why}", remedy="Make room on the disk.")

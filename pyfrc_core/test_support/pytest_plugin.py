@@ -23,7 +23,7 @@ from ..invariants.load import Invariant, load_invariants
 from ..project import Project
 from ..runtime.crash_moment import CrashMoment
 from ..runtime.data_logs import TEST_LOGS, LogPlace
-from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_pyfrc, names_its_place
+from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_libraries, names_its_place
 from ..runtime.hang_detector import HangDetector
 from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
@@ -259,18 +259,18 @@ class PyFrcPlugin:
         except OSError:
             return set()
 
-    @pytest.hookimpl(wrapper=True)
-    def pytest_make_collect_report(
-        self, collector: pytest.Collector
-    ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-        """Explain a test file in another encoding."""
-        report = yield
-        if report.failed and isinstance(collector, pytest.Module):
-            wrong = find_wrong_encoding(collector.path)
-            if wrong is not None:
-                place = f"{collector.nodeid}:{wrong.line}" if wrong.line else collector.nodeid
-                report.longrepr = f"{place}: {wrong.message}\n  {wrong.remedy}"
-        return report
+    def pytest_exception_interact(
+        self, node: pytest.Item | pytest.Collector, call: pytest.CallInfo[object], report: object
+    ) -> None:
+        """Explain a test file that cannot be imported, as the robot program's own are."""
+        if not isinstance(report, pytest.CollectReport) or not isinstance(node, pytest.Module):
+            return
+        if (wrong := find_wrong_encoding(node.path)) is not None:
+            place = f"{node.nodeid}:{wrong.line}" if wrong.line else node.nodeid
+            report.longrepr = f"{place}: {wrong.message}\n  {wrong.remedy}"
+        elif call.excinfo is not None and not node.config.option.fulltrace:
+            error = call.excinfo.value.__cause__ or call.excinfo.value
+            report.longrepr = headline(error, self.project.files) or report.longrepr
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
@@ -283,20 +283,26 @@ class PyFrcPlugin:
         short = not item.config.option.fulltrace
         # Checked before pyfrc's own frames are removed from the traceback.
         never_run = call.excinfo is not None and call.when == "call" and _never_ran_the_robot(item, call.excinfo)
-        if call.excinfo is not None and short:
-            leave_out_pyfrc(call.excinfo.value, self.project.files)
+        text, only = None, False
+        if call.excinfo is not None:
+            error, files = call.excinfo.value, self.project.files
+            text = headline(error, files)
+            # Without a line of the user's, the traceback has libraries' code only.
+            only = short and (names_its_place(error) or files.innermost_line(error.__traceback__) is None)
+            if isinstance(error, AssertionError) and text is not None and not only:
+                text = text.partition("\n")[0]  # the traceback has the other lines
+            if short:
+                leave_out_libraries(error, files)
         report = yield
         if report.when == "call" and (self.options.record_directory or self.options.trace_directory):
             run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
             if isinstance(run, RobotRun):
                 setattr(report, REAL_TIME, run.hal_data["CAN"].real_time_devices())
         if report.failed and call.excinfo is not None:
-            error, files = call.excinfo.value, self.project.files
-            text = headline(error, files)
             if text is not None:
                 if not never_run and headline_is_the_robots(text, files):
                     setattr(report, BUG, bug_of(text))
-                put_first(report, text, only=short and names_its_place(error))
+                put_first(report, text, only)
             if never_run:
                 report.sections.append(_NEVER_RUN)
             report.sections.append(seed_section(self.options))

@@ -17,8 +17,8 @@ BUG = "pyfrc_bug"
 #: The attribute of a report with the devices of the robot that do not repeat.
 REAL_TIME = "pyfrc_real_time"
 
-#: Numbers in a message, such as times, differ from test to test.
-_NUMBER = re.compile(r"\d+(\.\d+)?(e-?\d+)?")
+#: Numbers in a message, such as times and addresses, differ from test to test.
+_NUMBER = re.compile(r"0x[0-9a-f]+|\d+(\.\d+)?(e-?\d+)?")
 
 
 def put_first(report: pytest.TestReport, text: str, only: bool = False) -> None:

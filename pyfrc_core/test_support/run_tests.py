@@ -18,7 +18,7 @@ from .isolation.loop import IsolatedTests
 from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
 from .remembered_passes import RanPlugin, RememberedPasses
-from .summary import SummaryPlugin, warn_of_misspelled_methods
+from .summary import SummaryPlugin, warn_of_mistakes
 
 
 class NoTestsError(PyfrcError):
@@ -66,12 +66,19 @@ def run_tests(
             plugin.robot_class()  # an import error is reported once, and not by every test
             if preforked is not None and (reasons := reasons_not_to_fork()):
                 status = preforked.take_over("; ".join(reasons))
-                warn_of_misspelled_methods(project)  # the other process has not imported them
+                warn_of_mistakes(project)  # the other process has not imported them
                 return status
             if preforked is not None:
                 preforked.dismiss()  # as long as it lives, what this process writes to is copied
         passes = RememberedPasses(project, options, pytest_args, builtin)
-        plugins = [plugin, IsolatedTests(plugin), SummaryPlugin(project), _NoUnusedHypothesis(), passes, *ran]
+        plugins = [
+            plugin,
+            IsolatedTests(plugin),
+            SummaryPlugin(project, whole=not any(map(_selects, pytest_args))),
+            _NoUnusedHypothesis(),
+            passes,
+            *ran,
+        ]
         return int(pytest.main(args, plugins=plugins))
 
     preforked: PreforkedProcess | None = None
@@ -117,6 +124,11 @@ def _configuration(project: Project) -> list[str]:
         if file.is_file():
             return ["-c", str(file)]
     return []
+
+
+def _selects(arg: str) -> bool:
+    """Return whether an argument of pytest's may choose some of the tests."""
+    return arg not in ("-q", "-v", "-x", "-s")
 
 
 def _names_tests(args: Sequence[str]) -> bool:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import copy
 import sys
 from collections.abc import Generator
+from pathlib import Path
 from typing import Any, TextIO
 
 import pytest
@@ -18,19 +19,32 @@ import pytest
 from ..compat.library_output import LibraryOutput
 from ..compat.real_time_devices import explain_real_time
 from ..project import Project
-from ..runtime.misspelled_methods import find_misspelled_methods
+from ..runtime.code_checks import find_code_warnings
 from .reporting import BUG, REAL_TIME, put_first
+from .uncollected import find_uncollected
+
+#: How many lines of a failed test's output are shown.
+_SHOWN = 12
 
 
 class SummaryPlugin:
     """The plugin that shortens and extends pytest's summary.
 
     :param project: the robot project under test
+    :param whole: whether all of the project's tests are to run
     """
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, project: Project, whole: bool = False) -> None:
         self._project = project
+        self._whole = whole
+        self._collected: set[Path] = set()
+        self._uncollected: list[str] = []
         self._output = LibraryOutput()
+
+    def pytest_configure(self, config: pytest.Config) -> None:
+        """Show the failing lines only, and not the functions around them, unless the user wants more."""
+        if config.option.tbstyle == "auto" and config.option.verbose <= 0:
+            config.option.tbstyle = "short"
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -46,19 +60,35 @@ class SummaryPlugin:
     def pytest_terminal_summary(self, terminalreporter: Any, config: pytest.Config) -> Generator[None, object, object]:
         if not config.option.fulltrace:
             _explain_each_bug_once(terminalreporter.stats)
+            if config.option.verbose <= 0:
+                _shorten_output(terminalreporter.stats)
         _explain_real_time_devices(terminalreporter)
-        result = yield
-        misspelled = find_misspelled_methods(self._project)
-        if misspelled:  # last, since failures may fill the screen
-            terminalreporter.section("misspelled methods", yellow=True, bold=True)
-            for method in misspelled:
-                terminalreporter.write_line(str(method), yellow=True)
-        return result
+        # Before the failures, of which they may be the reason.
+        mistakes = [f"{mistake}\n  {mistake.remedy}" for mistake in find_code_warnings(self._project)]
+        _print_section(terminalreporter, "mistakes without an error", mistakes)
+        _print_section(terminalreporter, "files without tests", self._uncollected)
+        return (yield)
+
+    def pytest_itemcollected(self, item: pytest.Item) -> None:
+        self._collected.add(item.path)
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        directory = self._project.find_tests() if self._whole else None
+        if directory is not None and not session.testsfailed:
+            patterns = session.config.getini("python_files")
+            self._uncollected = list(find_uncollected(directory, self._collected, patterns))
 
 
-def warn_of_misspelled_methods(project: Project, stream: TextIO = sys.stderr) -> None:
+def _print_section(terminalreporter: Any, title: str, lines: list[str]) -> None:
+    if lines:
+        terminalreporter.write_sep("=", title, yellow=True, bold=True)
+        for line in lines:
+            terminalreporter.write_line(line, yellow=True)
+
+
+def warn_of_mistakes(project: Project, stream: TextIO = sys.stderr) -> None:
     """Print the misspelled methods of the modules that this process has imported."""
-    for method in find_misspelled_methods(project):
+    for method in find_code_warnings(project):
         print(f"warning: {method}", file=stream)
 
 
@@ -68,6 +98,22 @@ def _explain_real_time_devices(terminalreporter: Any) -> None:
     devices = sorted({device for report in reports for device in getattr(report, REAL_TIME, ())})
     if devices:
         terminalreporter.write_line(explain_real_time(devices))
+
+
+def _shorten_output(stats: dict[str, list[object]]) -> None:
+    """Show only the end of what a failed test has printed."""
+    for outcome in ("error", "failed"):
+        reports = stats.get(outcome, [])
+        for index, report in enumerate(reports):
+            if isinstance(report, pytest.TestReport) and any(text.count("\n") > _SHOWN for _, text in report.sections):
+                reports[index] = short = copy.copy(report)
+                short.sections = [(name, _end_of(text)) for name, text in report.sections]
+
+
+def _end_of(text: str) -> str:
+    lines = text.splitlines(keepends=True)
+    left_out = len(lines) - _SHOWN
+    return text if left_out <= 0 else f"({left_out} lines before these: pyfrc test -v)\n" + "".join(lines[left_out:])
 
 
 def _explain_each_bug_once(stats: dict[str, list[object]]) -> None:

@@ -21,7 +21,7 @@ from pyfrc_core.project import Project
 from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime import keyboard_input
 from pyfrc_core.runtime.exceptions import TestFroze
-from pyfrc_core.runtime.failures import as_robot_code_error, headline, leave_out_pyfrc
+from pyfrc_core.runtime.failures import as_robot_code_error, headline, leave_out_libraries
 from pyfrc_core.runtime.loading import import_file, load_robot
 
 ROBOT = """
@@ -90,10 +90,10 @@ def test_a_module_of_the_same_name_from_elsewhere_is_not_taken(make_project: Mak
         ("x = 1\ny = 1 / 0\n", "robot.py:2", "ZeroDivisionError: division by zero", "imported."),
         ("x = 1\n\ndef f(:\n", "robot.py:3", "SyntaxError: invalid syntax\n    def f(:", ""),
         ("import sys\nsys.exit(3)\n", "robot.py:2", "exit(3)", "Remove that, or put it under: if __name__"),
-        ("import none_such\n", "robot.py:1", "No module named 'none_such'", "is the name right, and its package"),
+        ("import none_such\n", "robot.py:1", "there is no module none_such", "is the name right"),
         ("x = wpilib.Timer()\n", "robot.py:1", "name 'wpilib' is not defined", "at the top: import wpilib"),
         ("x = math.pi\n", "robot.py:1", "name 'math' is not defined", "at the top: import math"),
-        ("x = mine\n", "robot.py:1", "name 'mine' is not defined", "imported."),
+        ("x = mine\n", "robot.py:1", "name 'mine' is not defined", "did you mean min?"),
         ("import broken\n", "broken.py:2", "KeyError: 'key'", "imported."),
         ("input('name? ')\n", "robot.py:1", "input() waits for a keyboard", "Ask the driver station instead"),
         (b"x = 1\ny = 'caf\xe9'\n", "robot.py:2", "this line is not UTF-8: it has the byte 0xe9", "Save it as UTF-8"),
@@ -119,7 +119,9 @@ def test_a_program_that_cannot_be_imported(
 def test_what_is_missing_may_be_among_the_requirements(make_project: MakeProject) -> None:
     project = make_project("import none_such")
     assert "requirements.txt" not in (refusal(project).remedy or "")
-    (project.root / "requirements.txt").touch()
+    (project.root / "requirements.txt").write_text("pyfrc\n")
+    assert "requirements.txt" not in (refusal(project).remedy or "")
+    (project.root / "requirements.txt").write_text("none_such>=3\n")
     assert (refusal(project).remedy or "").endswith("python -m pip install -r requirements.txt")
 
 
@@ -286,12 +288,12 @@ def test_pyfrcs_own_part_is_left_out_of_a_traceback(make_project: MakeProject, t
     error = raised(lambda: import_file(make_project("1 / 0"), tmp_path / "none.py"))
     depth = _files_of(error)
     assert any("pyfrc_core" in name for name in depth)
-    leave_out_pyfrc(error, files)
+    leave_out_libraries(error, files)
     left = _files_of(error)
     assert not any("pyfrc_core" in name for name in left)
     assert str(tmp_path / "robot.py") in left
     wpilibs = raised(lambda: _raise_with_stack(tmp_path))
-    leave_out_pyfrc(wpilibs, files)
+    leave_out_libraries(wpilibs, files)
     assert wpilibs.args == (f'made before:\n  File "{tmp_path}/robot.py", line 2, in call\n    do()', 7)
 
 

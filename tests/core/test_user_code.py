@@ -19,10 +19,11 @@ from pyfrc_core.errors import RobotCodeError, UsageError
 from pyfrc_core.hal import modes
 from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime.clock import KICKOFF
-from pyfrc_core.runtime.failures import as_robot_code_error, headline, headline_is_the_robots, leave_out_pyfrc
+from pyfrc_core.runtime.failures import as_robot_code_error, headline, headline_is_the_robots, leave_out_libraries
+from pyfrc_core.runtime.foreign_paths import find_foreign_paths
 from pyfrc_core.runtime.loop_limit import LoopLimit, LoopWaitsError
 from pyfrc_core.runtime.match import MatchPeriods
-from pyfrc_core.runtime.misspelled_methods import find_misspelled_methods
+from pyfrc_core.runtime.misspelled_methods import find_misspelled_methods, refuse_unawaited_methods
 from pyfrc_core.runtime.patches import patches
 from pyfrc_core.runtime.robot import RobotRun
 
@@ -77,7 +78,7 @@ def test_an_error_is_told_by_the_users_line(import_text: Import, files: RobotFil
     error = raised_by(lambda: robot.outer(lambda: {}["key"]))
     assert headline(error, files) == "robot.py:2: KeyError: 'key'"
     assert str(as_robot_code_error(error, files)) == "robot.py:2: KeyError: 'key'"
-    leave_out_pyfrc(error, files)
+    leave_out_libraries(error, files)
     elsewhere = raised_by(lambda: {}["key"])
     assert headline(elsewhere, files) is None
     assert str(as_robot_code_error(elsewhere, files)).startswith("KeyError: 'key' (in ")
@@ -148,6 +149,55 @@ def test_methods_whose_names_are_misspelled(import_text: Import, files: RobotFil
         "robot.py:11: WPILib never calls Robot.simulationInnit: did you mean _simulationInit?",
     ]
     assert found[0].remedy == "Rename it to teleopPeriodic."
+
+
+@pytest.mark.parametrize(
+    ("method", "word"),
+    [("async def teleopPeriodic(self): ...", "async"), ("def teleopPeriodic(self): yield", "yield")],
+)
+def test_a_method_that_nothing_waits_for_is_refused(
+    import_text: Import, files: RobotFiles, method: str, word: str
+) -> None:
+    import_text(f"class Robot(wpilib.TimedRobot):\n    async def helper(self): ...\n    {method}\n", wpilib=wpilib)
+    with pytest.raises(RobotCodeError, match=f"robot.py:3: Robot.teleopPeriodic never runs.*{word}") as refused:
+        refuse_unawaited_methods(SimpleNamespace(files=files))  # type: ignore[arg-type]
+    assert "Write " in (refused.value.remedy or "")
+
+
+def test_files_that_only_this_computer_has(import_text: Import, files: RobotFiles, tmp_path: Path) -> None:
+    import_text(
+        """
+        PLACE = "/data/log.txt"
+        class Robot:
+            def write(self):
+                logging.basicConfig(level=3, filename="/logs/robot.log")
+                open(PLACE, "a")
+                Path("/data").mkdir()
+                wpilib.DataLogManager.start("/logs")
+                open("C:\\\\path.json")
+                open("/home/ada/path.json")
+            def fine(self):
+                logging.basicConfig(level=3)
+                open("/home/lvuser/log.txt", "w")
+                open("/tmp/log.txt", "w")
+                open("/etc/hostname")
+                open("log.txt", "w")
+                self.timer.start("/logs")
+                table.putNumber("/logs/number", 1)
+                if wpilib.RobotBase.isSimulation():
+                    open("/home/ada/path.json")
+        """
+    )
+    project = SimpleNamespace(files=files, physics_file=tmp_path / "physics.py")
+    found = [str(each) for each in find_foreign_paths(project)]  # type: ignore[arg-type]
+    assert [each.partition(": on the")[0] for each in found] == [
+        "robot.py:4: the robot program may not write /logs/robot.log",
+        "robot.py:5: the robot program may not write /data/log.txt",
+        "robot.py:6: the robot program may not write /data",
+        "robot.py:7: the robot program may not write /logs",
+        "robot.py:8: C:\\path.json is a path of this computer, which the robot does not have",
+        "robot.py:9: /home/ada/path.json is a path of this computer, which the robot does not have",
+    ]
 
 
 def test_a_method_of_a_mode_inside_another_method(import_text: Import, files: RobotFiles) -> None:

@@ -17,7 +17,7 @@ from ...hal import HalData
 from ...processes.crash_report import CrashLog
 from ...project import Project
 from ...runtime.exceptions import TestEnded, TestRanTooLong
-from ...runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ...runtime.failures import as_robot_code_error, leave_out_libraries
 from ...runtime.hang_detector import HangDetector
 from ...runtime.loading import load_robot
 from ...runtime.patches import patches
@@ -147,7 +147,7 @@ def _close(run: RobotRun) -> None:
 
 
 def _of_robot_code(error: BaseException, project: Project) -> PyfrcError:
-    leave_out_pyfrc(error, project.files)
+    leave_out_libraries(error, project.files)
     if not isinstance(error, TestRanTooLong):
         return as_robot_code_error(error, project.files)
     return RobotCodeError(

@@ -139,6 +139,7 @@ class Headless(FrontEnd):
         self._simulation = simulation
         self._output = simulation.output_cursor()
         end = self._end(simulation)
+        self._announce(simulation, end)
         interrupted = False
         try:
             simulation.start()
@@ -170,6 +171,18 @@ class Headless(FrontEnd):
             self._say("interrupted\n")
             return 2
         return 0 if status.failure is None else status.failure.exit_code
+
+    def _announce(self, simulation: Simulation, end: float | None) -> None:
+        """Print that the robot runs, and how long: without a window, nothing else shows it."""
+        if self._quiet:
+            return
+        what = f"in {self._mode} mode" if self._mode not in (None, "practice") else "through a practice match"
+        if self._mode is None:
+            what = (
+                "by its script" if simulation.options.script is not None else "disabled, until a dashboard enables it"
+            )
+        until = "until you press Ctrl-C" if end is None else f"for {end:g} s of robot time; Ctrl-C ends it earlier"
+        self._say(f"running {simulation.project.main_file.name} {what}, {until}\n")
 
     def saved(self, files: list[str]) -> None:
         """Print that the robot gets new code."""

@@ -23,12 +23,12 @@ from ....processes.crash_report import CrashLog
 from ....processes.exit import before_sudden_exit
 from ....project import Project
 from ....project.robot_files import past_pyfrc
+from ....runtime.code_checks import find_code_warnings
 from ....runtime.crash_moment import CrashMoment
 from ....runtime.data_logs import LogPlace
-from ....runtime.failures import as_robot_code_error, leave_out_pyfrc
+from ....runtime.failures import as_robot_code_error, leave_out_libraries
 from ....runtime.hang_detector import HangDetector
 from ....runtime.loading import load_robot
-from ....runtime.misspelled_methods import find_misspelled_methods
 from ....runtime.patches import patches
 from ....runtime.robot import RobotRun
 from ....runtime.seeds import seed_generators
@@ -88,7 +88,7 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
 
             def ready() -> Ready:
                 tags = tags_of(project.sim_config) if job.tags is None else job.tags
-                notes = tuple(map(str, find_misspelled_methods(project)))
+                notes = tuple(map(str, find_code_warnings(project)))
                 if devices := run.hal_data["CAN"].real_time_devices():
                     notes += (explain_real_time(devices),)
                 return Ready(tags, tuple(_libraries(project)), session.network_address, notes)
@@ -113,8 +113,8 @@ def _failure(error: BaseException, project: Project, now: float) -> Failure:
         return Failure(headline, "startCompetition() returned.", now)
     if isinstance(error, PyfrcError):
         return Failure(str(error), "", now, error.exit_code)
-    leave_out_pyfrc(error, project.files)
     failure = as_robot_code_error(error, project.files)
+    leave_out_libraries(error, project.files)
     text = "".join(traceback.format_exception(type(error), error, past_pyfrc(error.__traceback__)))
     for root in {str(project.root), str(project.root.resolve())}:
         text = text.replace(f'  File "{root}{os.sep}', '  File "')  # windows have little space

@@ -1,0 +1,253 @@
+"""Errors that WPILib, magicbot, commands2 and vendors' libraries raise: one row for each in `ROWS`.
+
+The rows are matched with type and text of the error. Their placeholders are the groups of the pattern, `cls` (the
+user's class that the library was working with) and `since` (where a device was created before, if the error knows).
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from ..errors import text_of
+from ..project.robot_files import RobotFiles
+from .explanation import Explanation
+from .places import class_named, frames_of, line_of_class, users_class
+
+_STACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
+_FILE_AND_LINE = re.compile(r"(?P<file>[^\s()]+\.py):(?P<line>\d+)")
+
+_OWN_CHANNEL = "Each device needs a channel of its own: change one of the two to the number that it is wired to."
+_FIRST_STATE = "Write @state(first=True) above the state with which it begins, and @state above the others."
+
+
+@dataclass(frozen=True)
+class Row:
+    """One error.
+
+    :param pattern: matches the beginning of the error's type and text
+    :param text: what is wrong; empty: as the library says it
+    :param at: the name whose declaration in the user's class is the line to show; a placeholder
+    :param in_robot: whether that class is the robot's, and not the component's
+    """
+
+    pattern: str
+    text: str
+    remedy: str
+    at: str = ""
+    in_robot: bool = False
+
+
+ROWS = (
+    # -- WPILib's devices. In its numbers, DIO channels are 0 to 30, and PWM channels follow from 31 on.
+    Row(
+        r"RuntimeError: PWM or DIO (?:\d|[12]\d|30) previously allocated.*: (?:Channel|Port) (?P<channel>-?\d+)",
+        "DIO channel {channel} is used already{since}",
+        f"{_OWN_CHANNEL} An encoder has two channels.",
+    ),
+    Row(
+        r"RuntimeError: PWM or DIO \d+ previously allocated.*: (?:Channel|Port) (?P<channel>-?\d+)",
+        "PWM channel {channel} is used already{since}",
+        _OWN_CHANNEL,
+    ),
+    Row(
+        r"RuntimeError: (?P<kind>Analog Input|Analog Output|Relay) (?P<channel>\d+) previously allocated",
+        "{kind} {channel} is used already{since}",
+        _OWN_CHANNEL,
+    ),
+    Row(
+        r"RuntimeError: Attempted to reuse an allocated resource: Channel (?P<channel>\d+)",
+        "channel {channel} of this pneumatics module has a solenoid already",
+        f"{_OWN_CHANNEL} A DoubleSolenoid has two channels.",
+    ),
+    Row(
+        r"RuntimeError: Attempted to reuse an allocated resource: (?P<module>\d+)$",
+        "the pneumatics module {module} has a Compressor object already",
+        "Create it once, and pass it to the code that needs it.",
+    ),
+    Row(
+        r"RuntimeError: Allocating channel that is out of range: \w+ (?P<channel>-?\d+)",
+        "there is no channel {channel} for such a device",
+        "The roboRIO has PWM 0 to 9, DIO 0 to 9, analog inputs 0 to 3, and relays 0 to 3. Its expansion port (MXP) has "
+        "PWM 10 to 19, DIO 10 to 25, and analog inputs 4 to 7. Solenoids: 0 to 7 (CTRE), 0 to 15 (REV).",
+    ),
+    Row(
+        r"RuntimeError: Invalid Index for (?P<kind>[\w ]+?)\s*Status.*Minimum: (?P<low>\d+) Maximum: (?P<end>\d+) "
+        r"Requested: (?P<channel>-?\d+)",
+        "there is no channel {channel} for {kind}: it must be {low} or more, and less than {end}",
+        "Change it to the number of the channel that it is wired to.",
+    ),
+    Row(
+        r"RuntimeError: HAL: No available resources to allocate: (?P<what>\S+)",
+        "the roboRIO has no more devices of this kind ({what})",
+        "It has 8 encoders, 8 counters, 8 interrupts and 1 AddressableLED: create each once, and not in a method that "
+        "is called again.",
+    ),
+    Row(
+        r"RuntimeError: A (?P<kind>\w+) instance has already been created with this device ID: (?P<id>\d+)",
+        "CAN ID {id} is used already, by another {kind}",
+        "Each motor controller needs a CAN ID of its own, set with REV Hardware Client; create one object for each.",
+    ),
+    # -- magicbot
+    Row(
+        r"ValueError: Component (?P<name>\w+) \(.*\) must have a method named 'execute'",
+        "class {cls} has no execute()",
+        "magicbot calls it in each loop: add def execute(self): to the class, with pass if there is nothing to do.",
+    ),
+    Row(
+        r"MagicInjectError: (?P<kind>Component|Autonomous mode) (?P<component>.+?) has variable (?P<name>\w+) "
+        r"\(type <class '(?P<type>[^']+)'>\), which is absent",
+        "class {cls} asks for {name}, which the robot does not have",
+        "Is the name right? If it is, create self.{name} or self.{component}_{name} in createObjects() of the robot.",
+        at="{name}",
+    ),
+    Row(
+        r"MagicInjectError: Component .+? variable (?P<name>\w+) does not match type in robot! \(Got <class 'type'>",
+        "{name} is the class itself, and no component: it was written with = instead of :",
+        "Declare a component with a colon: {name}: {expected}",
+        at="{name}",
+        in_robot=True,
+    ),
+    Row(
+        r"MagicInjectError: Component .+? variable (?P<name>\w+) does not match type in robot! "
+        r"\(Got <class '(?P<got>[^']+)'>, expected <class '(?P<type>[^']+)'>\)",
+        "class {cls} asks for {name} as {type}, but the robot has {got} under this name",
+        "Change the type here, or what createObjects() of the robot creates.",
+        at="{name}",
+    ),
+    Row(
+        r"TypeError: (?P<robot>\w+) has a non-type annotation on (?P<name>\w+) \((?P<value>.*?)\)",
+        "{name}: {value} declares a value as a type",
+        "Write {name} = {value} for a value, or {name}: SomeClass for a component.",
+        at="{name}",
+        in_robot=True,
+    ),
+    Row(r"NoFirstStateError", "class {cls} has no first state", _FIRST_STATE),
+    Row(r"ValueError: Starting state not defined", "class {cls} has no first state", _FIRST_STATE),
+    Row(
+        r"(MultipleFirstStatesError|ValueError: Multiple states were specified)",
+        "class {cls} has more than one first state",
+        "Write first=True for one of its states only.",
+    ),
+    Row(
+        r"MultipleDefaultStatesError",
+        "class {cls} has more than one default state",
+        "Write @default_state above one of its methods only.",
+    ),
+    Row(
+        r"IllegalCallError",
+        "a state is called like a method",
+        'Write self.next_state("NAME") inside the state machine, and engage() outside of it.',
+    ),
+    Row(
+        r"InvalidStateName: cannot have a state named '(?P<name>\w+)'",
+        "a state cannot be called {name}: StateMachine has a method of that name",
+        "Give the state another name.",
+    ),
+    Row(
+        r"ValueError: Invalid parameter names in (?P<name>\w+): (?P<wrong>.+)",
+        "the state {name} has a parameter that magicbot does not know: {wrong}",
+        "A state may have the parameters self, tm, state_tm and initial_call.",
+    ),
+    Row(
+        r"ValueError: timed_state functions must specify a duration",
+        "a timed_state without a duration",
+        "Write @timed_state(duration=2), in seconds.",
+    ),
+    Row(
+        r"ValueError: super\(\).__init__\(components\) was never called",
+        "class {cls} does not call super().__init__(components)",
+        "Make that the first line of its __init__.",
+    ),
+    Row(
+        r"ValueError: Must define MODE_NAME",
+        "class {cls} has no MODE_NAME",
+        'Write MODE_NAME = "Two balls" in the class.',
+    ),
+    # -- commands2
+    Row(
+        r"IllegalCommandUse: Multiple commands in a parallel composition cannot require.*\(common=\{<(?P<type>[\w.]+)",
+        "two commands that run at the same time both need {type}",
+        "A subsystem does one command at a time. Run them one after the other, with one.andThen(other) or "
+        "commands2.cmd.sequence(one, other), or remove one.",
+    ),
+    Row(
+        r"IllegalCommandUse: Default commands must require their subsystem.*subsystem=<(?P<type>[\w.]+)",
+        "the default command of {type} does not require it",
+        "Pass the subsystem to the command, as in commands2.RunCommand(function, subsystem); or write "
+        "self.addRequirements(subsystem) in the command's __init__.",
+    ),
+    Row(
+        r"IllegalCommandUse: Commands that have been composed may not be.*originally composed at (?P<place>.+?)\)",
+        "this command is already part of another one, composed at {place}",
+        "Use a command object once: create a second one for the second use, for example with a function that returns "
+        "a new command each time.",
+    ),
+    Row(
+        r"IllegalCommandUse: Cannot compose a command twice",
+        "the same command object is twice in this composition",
+        "Create a command object for each use, for example with a function that returns a new one.",
+    ),
+    Row(
+        r"IllegalCommandUse: Commands that have been scheduled individually",
+        "this command is running by itself, and cannot become part of another one",
+        "Create another command object for the composition.",
+    ),
+    Row(
+        r"IllegalCommandUse: Commands cannot be added to a composition while it is running",
+        "",
+        "Add all commands when you create the composition.",
+    ),
+    Row(
+        r"IllegalCommandUse: The deadline command cannot also be",
+        "the deadline is also among the other commands",
+        "Name it once: deadline.deadlineFor(other, another).",
+    ),
+    Row(
+        r"TypeError: [\w.]+__init__\(\) must be called when overriding __init__",
+        "class {cls} does not call super().__init__()",
+        "Make that the first line of its __init__.",
+    ),
+    # -- Python
+    Row(
+        r"(TypeError|AttributeError): .*'NoneType'",
+        "",
+        "A value is None: a function without return gives None, and so does a name that is set later.",
+    ),
+    Row(r"RecursionError", "a function calls itself without end", "Did you mean super()., or another method?"),
+)
+
+
+def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
+    text = text_of(error)
+    for row in ROWS:
+        found = re.match(row.pattern, text, re.DOTALL)
+        if found is not None:
+            return _explained(row, found, error, files)
+    return None
+
+
+def _explained(row: Row, found: re.Match[str], error: BaseException, files: RobotFiles) -> Explanation:
+    words = {name: value or "" for name, value in found.groupdict().items()}
+    named = re.search(r"<([\w.]+) object at ", found[0])
+    cls = class_named(named[1], files) if named else None
+    if row.in_robot:
+        owners = (type(frame.f_locals.get("self")) for frame in reversed(frames_of(error)))
+        cls = next((each for each in owners if line_of_class(each, files)), None)
+        words["expected"] = getattr(vars(cls).get(words["name"]), "__name__", "TheClass") if cls else "TheClass"
+    cls = cls or users_class(error, files)
+    words["cls"] = cls.__name__ if cls is not None else words.get("name", "")
+    words["since"] = _since(str(error), files)
+    for name in ("type", "got"):
+        words[name] = words.get(name, "").replace("._wpilib.", ".").rpartition(".")[2]
+    if place := _FILE_AND_LINE.fullmatch(words.get("place", "")):
+        words["place"] = f"{files.relative(place['file'])}:{place['line']}"
+    in_traceback = files.innermost_line(error.__traceback__, tests=False) is not None
+    line = line_of_class(cls, files, row.at.format_map(words)) if cls is not None and not in_traceback else ""
+    return Explanation(row.text.format_map(words), row.remedy.format_map(words), line)
+
+
+def _since(text: str, files: RobotFiles) -> str:
+    """Return where a device was created before, from the stack that WPILib adds to its message."""
+    ours = [(file, line) for file, line in _STACK_LINE.findall(text) if files.is_project_file(file)]
+    return f", since {files.relative(ours[-1][0])}:{ours[-1][1]}" if ours else ""

@@ -1,0 +1,118 @@
+"""Where in the user's code an error belongs, if the traceback has no line of it: the class that a library has used."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from types import FrameType, TracebackType
+from typing import Any
+
+from ..project.robot_files import RobotFiles, is_pyfrc
+
+
+def frames_of(error: BaseException) -> list[FrameType]:
+    """Return the frames of an error's traceback, outermost first, without pyfrc's own."""
+    return [frame for frame in _all_frames(error) if not is_pyfrc(frame.f_code.co_filename)]
+
+
+def _all_frames(error: BaseException) -> list[FrameType]:
+    found = []
+    entry: TracebackType | None = error.__traceback__
+    while entry is not None:
+        found.append(entry.tb_frame)
+        entry = entry.tb_next
+    return found
+
+
+def _called_by_pyfrc(error: BaseException) -> list[FrameType]:
+    """Return the frames of what pyfrc has called last: the robot's and its libraries', and none of the test's."""
+    frames = _all_frames(error)
+    ours = [at for at, frame in enumerate(frames) if is_pyfrc(frame.f_code.co_filename)]
+    return frames[ours[-1] + 1 :] if ours else []
+
+
+def users_class(error: BaseException, files: RobotFiles) -> type[Any] | None:
+    """Return the class of the user's that a library was working with, from the variables of the library's functions.
+
+    The innermost function's come first; `self` comes last in each, since it is often the robot.
+    """
+    for frame in reversed(_called_by_pyfrc(error)):
+        variables = dict(frame.f_locals)
+        own = variables.pop("self", None)
+        for value in (*variables.values(), own):
+            cls = value if isinstance(value, type) else type(value)
+            if file_of(cls, files) is not None:
+                return cls
+    return None
+
+
+def class_named(name: str, files: RobotFiles) -> type[Any] | None:
+    """Return a class of the user's by its full name, such as ``components.drivetrain.Drivetrain``."""
+    module, _, last = name.rpartition(".")
+    cls = getattr(sys.modules.get(module), last, None)
+    return cls if isinstance(cls, type) and file_of(cls, files) is not None else None
+
+
+def file_of(cls: type[Any], files: RobotFiles) -> str | None:
+    """Return the file of a class, if it is one of the robot's."""
+    file = getattr(sys.modules.get(cls.__module__), "__file__", None)
+    return file if file is not None and files.is_robot_code(file) else None
+
+
+def line_of_class(cls: type[Any], files: RobotFiles, name: str = "") -> str:
+    """Return the place of a class, such as ``arm.py:4``, or that of a name that its body declares or assigns."""
+    file = file_of(cls, files)
+    if file is None:
+        return ""
+    for node in ast.walk(_parsed(file)):
+        if isinstance(node, ast.ClassDef) and node.name == cls.__name__:
+            line = next(_lines_of_name(node, name), node.lineno) if name else node.lineno
+            return f"{files.relative(file)}:{line}"
+    return files.relative(file)
+
+
+def users_frame(error: BaseException, files: RobotFiles) -> tuple[FrameType, int] | None:
+    """Return the frame of the robot's code, or else of a test, nearest to where an error was raised, and its line."""
+    found: dict[bool, tuple[FrameType, int]] = {}
+    entry = error.__traceback__
+    while entry is not None:
+        name = entry.tb_frame.f_code.co_filename
+        if files.is_project_file(name):
+            found[files.is_robot_code(name)] = entry.tb_frame, entry.tb_lineno
+        entry = entry.tb_next
+    return found.get(True) or found.get(False)
+
+
+def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
+    """Return the calls of a function or class, by its last name, in the statement at a line of a file."""
+    calls = [node for node in ast.walk(_parsed(frame.f_code.co_filename)) if isinstance(node, ast.Call)]
+    return [
+        call for call in calls if call.lineno <= line <= (call.end_lineno or 0) and name in ("", last_name(call.func))
+    ]
+
+
+def last_name(expression: ast.expr) -> str:
+    """Return ``set`` of ``self.motor.set``; empty for other expressions."""
+    if isinstance(expression, ast.Attribute):
+        return expression.attr
+    return expression.id if isinstance(expression, ast.Name) else ""
+
+
+def _lines_of_name(node: ast.ClassDef, name: str) -> Iterator[int]:
+    for each in ast.walk(node):
+        if isinstance(each, ast.Assign):
+            names = [last_name(target) for target in each.targets]
+        else:
+            names = [last_name(each.target)] if isinstance(each, ast.AnnAssign) else []
+            names += [each.arg] if isinstance(each, ast.arg) else []
+        if name in names and isinstance(each, (ast.stmt, ast.arg)):
+            yield each.lineno
+
+
+def _parsed(file: str) -> ast.Module:
+    try:
+        with open(file, "rb") as source:  # noqa: PTH123
+            return ast.parse(source.read())
+    except (OSError, SyntaxError, ValueError):  # has changed since
+        return ast.Module([], [])

@@ -1,0 +1,83 @@
+"""Files that Python cannot read: what the mistake is in its line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from ..project.robot_files import RobotFiles
+from .explanation import Explanation
+
+#: Characters of word processors and chat programs, and what to write instead.
+_LOOK_ALIKES = {
+    **dict.fromkeys("\u201c\u201d\u201e\u201f\u00ab\u00bb\u2033", ('"', "quotation mark")),
+    **dict.fromkeys("\u2018\u2019\u201a\u201b\u2032\u00b4", ("'", "quotation mark")),
+    **dict.fromkeys("\u2013\u2014\u2212\u2010\u2011", ("-", "dash")),
+    **dict.fromkeys("\u00d7", ("*", "multiplication sign")),
+    **dict.fromkeys("\u00a0\u2003\u2009\u200b\ufeff", (" ", "special space")),
+    **dict.fromkeys("\uff08", ("(", "bracket")),
+    **dict.fromkeys("\uff09", (")", "bracket")),
+    **dict.fromkeys("\uff1a", (":", "colon")),
+    **dict.fromkeys("\uff0c", (",", "comma")),
+}
+
+_CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?:\s|$)")
+
+
+def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
+    if not isinstance(error, SyntaxError) or error.filename is None or not files.is_project_file(error.filename):
+        return None
+    name = files.relative(error.filename)
+    lines = _lines_of(error.filename)
+    if marks := list(_conflict_marks(lines)):
+        return Explanation(
+            f"a merge conflict of git is not resolved: its marks are in {_listed(marks)}",
+            "Keep one of the two versions, or what is right of both, and delete the lines with marks.",
+            f"{name}:{marks[0]}",
+        )
+    place = f"{name}:{error.lineno}" if error.lineno else name
+    wrong = re.match(r"invalid (?:non-printable )?character (?:'(.)' )?\(?U\+(\w+)", error.msg or "")
+    if wrong is not None:
+        character = wrong[1] or chr(int(wrong[2], 16))
+        if character in _LOOK_ALIKES:
+            right, kind = _LOOK_ALIKES[character]
+            shown = f"the character {character} is" if character.isprintable() else f"U+{wrong[2]} is"
+            meant = "an ordinary space" if right == " " else f"{right} with your keyboard"
+            text = f"{shown} a {kind} of a word processor, which Python does not read{_shown_line(error)}"
+            return Explanation(text, f"Write {meant}; search the whole file for it.", place)
+    remedy = ""
+    if isinstance(error, TabError):
+        remedy = "Indent with spaces only (VS Code: Convert Indentation to Spaces)."
+    elif error.msg and "expected an indented block" in error.msg:
+        remedy = "Indent the next line by four spaces; write pass if there is nothing to do."
+    elif error.msg and re.search(r"unexpected indent|unindent does not match", error.msg):
+        remedy = "Indent this line exactly as the line above it that belongs to the same block."
+    elif error.msg == "expected ':'":
+        remedy = "Write a colon at the end of this line."
+    elif error.msg and "was never closed" in error.msg:
+        remedy = "Close the bracket, on this line or on one of those that follow."
+    return Explanation(f"{type(error).__name__}: {error.msg}{_shown_line(error)}", remedy, place)
+
+
+def _shown_line(error: SyntaxError) -> str:
+    return f"\n    {error.text.strip()}" if error.text and error.text.strip() else ""
+
+
+def _lines_of(file: str) -> list[str]:
+    try:
+        return Path(file).read_text("utf-8", "replace").splitlines()
+    except OSError:
+        return []
+
+
+def _conflict_marks(lines: list[str]) -> Iterator[int]:
+    found = [(number, line) for number, line in enumerate(lines, 1) if _CONFLICT.match(line)]
+    # A line of equals signs alone may be a heading in a docstring.
+    if any(line.startswith(("<<<<<<<", ">>>>>>>")) for _, line in found):
+        yield from (number for number, _ in found)
+
+
+def _listed(numbers: list[int]) -> str:
+    shown = ", ".join(map(str, numbers[:6]))
+    return f"line{'s' * (len(numbers) > 1)} {shown}{' and more' if len(numbers) > 6 else ''}"

@@ -1,0 +1,298 @@
+"""What an error means: the sentence, the line and the remedy that a student gets, for errors that libraries raise."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from textwrap import dedent
+from types import ModuleType
+
+import commands2
+import pytest
+import wpilib
+import wpilib.drive
+
+from pyfrc_core.config.packages import PACKAGES, SUCCESSORS, install_line, robot_line
+from pyfrc_core.config.robotpy import load_robot_packages, unknown_components
+from pyfrc_core.errors import SettingsError
+from pyfrc_core.explain import explain
+from pyfrc_core.explain.names import GONE
+from pyfrc_core.project.robot_files import RobotFiles
+from pyfrc_core.runtime.failures import headline
+
+rev = pytest.importorskip("rev")
+
+Raise = Callable[[str], str]
+
+
+@pytest.fixture
+def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
+    """Runs the body of a function in a file of the project, and returns the headline of its error."""
+
+    def headline_of(text: str) -> str:
+        file = tmp_path / "robot.py"
+        file.write_text("def run(self):\n" + "".join(f"    {line}\n" for line in dedent(text).strip().splitlines()))
+        module = ModuleType("robot")
+        vars(module).update(wpilib=wpilib, commands2=commands2, rev=rev)
+        exec(compile(file.read_text(), str(file), "exec"), vars(module))
+        try:
+            module.run(module)
+        except Exception as error:
+            found = headline(error, RobotFiles(tmp_path))
+            assert found is not None
+            return found
+        raise AssertionError("it raises nothing")
+
+    yield headline_of  # type: ignore[misc]
+    wpilib.simulation.DriverStationSim.resetData()
+    commands2.CommandScheduler.resetInstance()
+
+
+@pytest.mark.parametrize(
+    ("code", "message", "remedy"),
+    [
+        # Devices: the channel is the user's, and not the HAL's number.
+        (
+            "a = wpilib.PWMSparkMax(0)\nb = wpilib.PWMSparkMax(0)",
+            "PWM channel 0 is used already, since robot.py:2",
+            "own",
+        ),
+        ("a = wpilib.PWMSparkMax(8)\nb = wpilib.Servo(8)", "PWM channel 8 is used already, since robot.py:2", "own"),
+        ("a = wpilib.PWMSparkMax(3)\nb = wpilib.AddressableLED(3)", "PWM channel 3 is used already", "own"),
+        (
+            "a = wpilib.DigitalInput(1)\nb = wpilib.Encoder(0, 1)",
+            "DIO channel 1 is used already, since",
+            "two channels",
+        ),
+        ("a = wpilib.Ultrasonic(1, 2)\nb = wpilib.DigitalOutput(2)", "DIO channel 2 is used already", "own"),
+        (
+            "a = wpilib.AnalogInput(1)\nb = wpilib.AnalogPotentiometer(1)",
+            "Analog Input 1 is used already, since",
+            "own",
+        ),
+        ("a = wpilib.AnalogOutput(0)\nb = wpilib.AnalogOutput(0)", "Analog Output 0 is used already, since", "own"),
+        ("a = wpilib.Relay(2)\nb = wpilib.Relay(2)", "Relay 2 is used already, since robot.py:2", "own"),
+        (
+            "m = wpilib.PneumaticsModuleType.REVPH\na = wpilib.Solenoid(m, 4)\nb = wpilib.DoubleSolenoid(m, 3, 4)",
+            "channel 4 of this pneumatics module has a solenoid already",
+            "A DoubleSolenoid has two channels",
+        ),
+        (
+            "m = wpilib.PneumaticsModuleType.CTREPCM\na = wpilib.Compressor(m)\nb = wpilib.Compressor(m)",
+            "the pneumatics module 0 has a Compressor object already",
+            "Create it once",
+        ),
+        ("wpilib.PWMSparkMax(42)", "there is no channel 42 for such a device", "PWM 0 to 9, DIO 0 to 9"),
+        ("wpilib.AnalogGyro(5)", "there is no channel 5 for Analog Gyro", "Change it"),
+        (
+            "a = wpilib.AddressableLED(3)\nb = wpilib.AddressableLED(4)",
+            "no more devices of this kind",
+            "1 AddressableLED",
+        ),
+        ("a = [wpilib.Encoder(2 * i, 2 * i + 1) for i in range(9)]", "no more devices of this kind", "8 encoders"),
+        (
+            "t = rev.SparkMax.MotorType.kBrushed\na = rev.SparkMax(25, t)\nb = rev.SparkMax(25, t)",
+            "CAN ID 25 is used already, by another SparkMax",
+            "REV Hardware Client",
+        ),
+        # Arguments
+        (
+            "wpilib.PWMSparkMax(1).set(speed())",
+            "NameError: name 'speed' is not defined",
+            "Nothing has given speed a value",
+        ),
+        (
+            "def speed(): pass\nwpilib.PWMSparkMax(1).set(speed())",
+            "set() got None, from speed()",
+            "Does speed() return something?\n  It takes: set(value: number)",
+        ),
+        ("self.v = None\nwpilib.PWMSparkMax(1).set(self.v)", "set() got None, from self.v", "Has anything set self.v"),
+        (
+            "wpilib.SmartDashboard.putNumber('a', None)",
+            "putNumber() got None",
+            "It takes: putNumber(keyName: str, value: ",
+        ),
+        ("wpilib.PWMSparkMax(1).set('0.5')", "set() does not take '0.5' ('0.5' is a text)", "set(value: number)"),
+        ("wpilib.PWMSparkMax(1).set(0.5, 1)", "set() was called with 2 values, but takes 1", "set(value: number)"),
+        ("wpilib.PWMSparkMax()", "PWMSparkMax() was called with 0 values, but takes 1", "PWMSparkMax(channel: number)"),
+        (
+            "x = wpilib.XboxController(0)\nwpilib.PWMSparkMax(1).set(x.getLeftY)",
+            "set() got the function x.getLeftY, and not its value",
+            "Write x.getLeftY()",
+        ),
+        (
+            "commands2.RunCommand(print())",
+            "toRun must be a function, but is None, from print()",
+            "lambda: print()",
+        ),
+        ("x = None\nx * 2", "TypeError: unsupported operand type(s) for *: 'NoneType' and 'int'", "A value is None"),
+        # commands2
+        (
+            "c = commands2.PrintCommand('a')\nc.withTimeout(1)\nc.withTimeout(2)",
+            "this command is already part of another one, composed at robot.py:3",
+            "create a second one",
+        ),
+        (
+            "d = commands2.Subsystem()\nc = commands2.RunCommand\nc(print, d).alongWith(c(print, d))",
+            "two commands that run at the same time both need Subsystem",
+            "one.andThen(other)",
+        ),
+        (
+            "d = commands2.Subsystem()\nd.setDefaultCommand(commands2.RunCommand(print))",
+            "the default command of Subsystem does not require it",
+            "self.addRequirements",
+        ),
+        ("c = commands2.PrintCommand('a')\nc.andThen(c)", "the same command object is twice", "for each use"),
+        # Names
+        (
+            "wpilib.XBoxController(0)",
+            "AttributeError: module 'wpilib' has no attribute 'XBoxController'",
+            "XboxController?",
+        ),
+        ("wpilib.IterativeRobot", "wpilib has no IterativeRobot any more", "Instead: wpilib.TimedRobot."),
+        ("wpilib.Timer().hasPeriodPassed(1)", "Timer has no hasPeriodPassed any more", "Instead: hasElapsed(seconds)"),
+        ("commands2.button.Trigger().whenHeld(1)", "Trigger has no whenHeld any more", "Instead: whileTrue."),
+        ("commands2.CommandBase", "commands2 has no CommandBase any more", "Instead: commands2.Command."),
+        ("rev.CANSparkMax", "rev has no CANSparkMax any more", "Instead: rev.SparkMax."),
+        ("from wpilib import XBoxController", "wpilib has no XBoxController", "Did you mean XboxController?"),
+        ("from wpilib import SpeedControllerGroup", "no SpeedControllerGroup any more", "wpilib.MotorControllerGroup"),
+        # Modules
+        ("import networktables", "there is no module networktables", "Use ntcore instead."),
+        ("import wpilib.geometry", "there is no module wpilib.geometry", "Use wpimath.geometry instead."),
+        ("import wpilb", "there is no module wpilb", "Did you mean wpilib?"),
+        (
+            "import choreo",
+            "there is no module choreo",
+            "python -m pip install sleipnirgroup-choreolib\n  For the robot, write",
+        ),
+    ],
+)
+def test_an_error_of_a_library_in_words(headline_of: Raise, code: str, message: str, remedy: str) -> None:
+    text = headline_of(code)
+    first, _, rest = text.partition("\n")
+    assert re.match(r"robot\.py:\d+: ", first)
+    assert message in first
+    assert remedy in rest
+    assert "0x" not in text
+
+
+def test_an_unknown_error_is_shown_as_it_is(headline_of: Raise) -> None:
+    assert headline_of("{}['key']") == "robot.py:2: KeyError: 'key'"
+
+
+def test_an_object_whose_methods_raise_does_not_hide_the_error(tmp_path: Path) -> None:
+    class Broken:
+        def __dir__(self) -> list[str]:
+            raise ValueError
+
+    assert explain(AttributeError("no x", name="x", obj=Broken()), RobotFiles(tmp_path)) is None
+
+
+@pytest.mark.parametrize("successor", [*GONE.values(), *SUCCESSORS.values()])
+def test_successors_exist(successor: str) -> None:
+    """Dotted names of modules in the tables can be imported, and have the attribute."""
+    for dotted in re.findall(r"\b(?:wpilib|wpimath|commands2|rev|phoenix6|ntcore|navx)\.[\w.]*\w", successor):
+        parts = dotted.split(".")
+        found: object = None
+        for length in range(len(parts), 0, -1):
+            try:
+                found = importlib.import_module(".".join(parts[:length]))
+            except ImportError:
+                continue
+            for name in parts[length:]:
+                found = getattr(found, name)
+            break
+        assert found is not None, dotted
+
+
+def test_modules_belong_to_the_packages_in_the_table() -> None:
+    from importlib.metadata import packages_distributions
+
+    for module, distributions in packages_distributions().items():
+        if module in PACKAGES and module in sys.modules:
+            names = {each.lower().replace("_", "-") for each in distributions}
+            assert PACKAGES[module].lower() in names
+
+
+def test_the_line_for_the_robot(tmp_path: Path) -> None:
+    file = tmp_path / "pyproject.toml"
+    assert robot_line("robotpy-rev", file) == (
+        'for the robot, write requires = ["robotpy-rev"] under [tool.robotpy] in pyproject.toml'
+    )
+    file.write_text('[tool.robotpy]\nrequires = ["phoenix6"]\n')
+    assert robot_line("robotpy-rev", file) == 'for the robot, add "robotpy-rev" to requires in pyproject.toml:2'
+    assert robot_line("phoenix6", file) == ""
+    assert robot_line("opencv-python", file).endswith('components = ["cscore"] under [tool.robotpy] in pyproject.toml')
+    assert robot_line("robotpy-commands-v2", file).endswith('["commands2"] under [tool.robotpy] in pyproject.toml')
+    assert robot_line("pyntcore", file) == ""
+    assert install_line("robotpy-rev") == "python -m pip install robotpy-rev"
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "remedy"),
+    [
+        (
+            "x = 1\n<<<<<<< HEAD\nx = 2\n=======\nx = 3\n>>>>>>> arm\n",
+            "robot.py:2: a merge conflict of git",
+            "Keep one",
+        ),
+        ("print(\u201chello\u201d)\n", "robot.py:1: the character \u201c is a quotation mark", 'Write " with'),
+        ("x = 3 \u2013 1\n", "robot.py:1: the character \u2013 is a dash", "Write - with"),
+        ("x =\u00a03\n", "robot.py:1: U+00A0 is a special space", "an ordinary space"),
+        ("def f()\n    pass\n", "robot.py:1: SyntaxError: expected ':'", "Write a colon"),
+        ("if True:\nx = 1\n", "IndentationError", "Indent the next line"),
+        ("if True:\n    x = 1\n   y = 2\n", "IndentationError", "Indent this line exactly"),
+        ("if True:\n\tx = 1\n        y = 2\n", "robot.py:3: TabError", "spaces only"),
+        ("x = (1\ny = 2\n", "'(' was never closed", "Close the bracket"),
+    ],
+)
+def test_a_file_that_python_cannot_read(tmp_path: Path, text: str, message: str, remedy: str) -> None:
+    file = tmp_path / "robot.py"
+    file.write_text(text, "utf-8")
+    with pytest.raises(SyntaxError) as caught:
+        compile(text, str(file), "exec")
+    explained = explain(caught.value, RobotFiles(tmp_path))
+    assert explained is not None
+    assert message in f"{explained.place}: {explained.text}"
+    assert remedy in explained.remedy
+
+
+def test_imports_of_the_projects_own_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "subsystems").mkdir()
+    (tmp_path / "subsystems" / "arm.py").write_text("from one import Two\n")
+    (tmp_path / "one.py").write_text("import subsystems.arm\nclass Two: pass\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    files = RobotFiles(tmp_path)
+
+    def explained(text: str) -> str:
+        try:
+            exec(text)
+        except ImportError as error:
+            found = explain(error, files)
+            assert found is not None
+            return f"{found.text}. {found.remedy}"
+        finally:
+            for name in ("one", "subsystems", "subsystems.arm"):
+                sys.modules.pop(name, None)
+        raise AssertionError("it raises nothing")
+
+    assert "write subsystems, as the file or folder is called" in explained("import Subsystems.arm")
+    assert "write subsystems.arm, as" in explained("import subsystems.Arm")
+    assert "Did you mean one?" in explained("import onee")
+    circle = explained("import one")
+    assert "subsystems/arm.py imports one.py, which is importing subsystems/arm.py and does not have Two yet" in circle
+    assert "if TYPE_CHECKING:" in circle
+
+
+def test_components_that_do_not_exist(tmp_path: Path) -> None:
+    file = tmp_path / "pyproject.toml"
+    file.write_text('[tool.robotpy]\ncomponents = ["command2", "cscore", "sim"]\n')
+    assert list(unknown_components(load_robot_packages(file))) == [
+        ("components has 'command2', which does not exist", "Did you mean 'commands2'?")
+    ]
+    file.write_text('[tool.robotpy]\ncomponents = "commands2"\n')
+    with pytest.raises(SettingsError, match=r"pyproject.toml:2: components must be a list\n  .*\[.commands2.\]"):
+        load_robot_packages(file)

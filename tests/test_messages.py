@@ -1,0 +1,158 @@
+"""Students' mistakes as the terminal shows them: one short block for each, with the user's line and a remedy."""
+
+from __future__ import annotations
+
+from conftest import MakeProject, Result
+
+ROBOT = """
+    import wpilib
+
+
+    class MyRobot(wpilib.TimedRobot):
+        pass
+"""
+
+MAGIC = """
+    import magicbot
+    import wpilib
+
+    from components.arm import Arm
+
+
+    class MyRobot(magicbot.MagicRobot):
+        arm: Arm
+
+        def createObjects(self):
+            self.motor = wpilib.PWMSparkMax(0)
+"""
+
+COMMANDS = """
+    import commands2
+    import wpilib
+
+
+    class Arm(commands2.Subsystem):
+        def up(self):
+            return self.run(print)
+
+
+    class MyRobot(commands2.TimedCommandRobot):
+        def robotInit(self):
+            self.arm = Arm()
+            self.both = commands2.cmd.parallel(self.arm.up(), self.arm.up())
+"""
+
+READY_MADE = "from pyfrc.tests import *\n"
+
+
+def blocks_of(result: Result) -> list[list[str]]:
+    assert result.code == 1, result.output
+    return [block.splitlines() for block in result.blocks().values()]
+
+
+def test_an_error_inside_magicbot_is_one_block_with_the_users_class(make_project: MakeProject) -> None:
+    project = make_project(
+        {
+            "robot.py": MAGIC,
+            "components/arm.py": "class Arm:\n    speed = 0\n\n    def excute(self):\n        pass\n",
+            "tests/pyfrc_test.py": READY_MADE,
+        }
+    )
+    first, *others = blocks_of(project.run("test"))
+    assert first[0] == "components/arm.py:1: class Arm has no execute()"
+    assert "def execute(self):" in first[1]
+    assert len(first) < 10
+    assert {block[0].partition(", ")[0] for block in others} == {
+        "components/arm.py:1: the same as in test_autonomous[]"
+    }
+
+
+ARM = "class Arm:\n    motr: object\n\n    def execute(self):\n        pass\n"
+CLAW = "class Claw:\n    arm: Arm\n\n    def execute(self):\n        pass\n"
+
+
+def test_a_component_that_asks_for_what_is_not_there(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": MAGIC, "components/arm.py": ARM, "tests/pyfrc_test.py": READY_MADE})
+    first = blocks_of(project.run("test", "--", "-k", "autonomous"))[0]
+    assert first[0] == "components/arm.py:2: class Arm asks for motr, which the robot does not have"
+    assert "self.arm_motr" in first[1]
+
+
+def test_a_component_that_is_assigned_instead_of_declared(make_project: MakeProject) -> None:
+    components = ARM.replace("    motr: object\n", "") + CLAW
+    robot = MAGIC.replace("arm: Arm\n", "claw: Claw\n        arm = Arm\n").replace("import Arm", "import Arm, Claw")
+    project = make_project({"robot.py": robot, "components/arm.py": components, "tests/pyfrc_test.py": READY_MADE})
+    first = blocks_of(project.run("test", "--", "-k", "autonomous"))[0]
+    assert first[0].startswith(f"{project.place('robot.py', 'arm = Arm')}: arm is the class itself")
+    assert first[1].strip() == "Declare a component with a colon: arm: Arm"
+
+
+def test_an_error_inside_commands2_shows_the_users_lines_only(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": COMMANDS, "tests/pyfrc_test.py": READY_MADE})
+    first, *others = blocks_of(project.run("test"))
+    place = project.place("robot.py", "parallel")
+    assert first[0] == f"{place}: two commands that run at the same time both need Arm"
+    assert "andThen" in first[1]
+    assert len(first) <= 25
+    assert not any("site-packages" in line for line in first)
+    assert all(block[0].startswith(f"{place}: the same as in ") for block in others)
+
+
+def test_a_test_file_with_a_mistake_gets_the_lines_that_the_robot_gets(make_project: MakeProject) -> None:
+    tests = {
+        "tests/test_colon.py": "def test_it(control)\n    pass\n",
+        "tests/test_import.py": "from robot import MyRobt\n",
+    }
+    result = make_project({"robot.py": ROBOT, **tests}).run("test")
+    assert result.code == 2
+    assert (
+        "tests/test_colon.py:1: SyntaxError: expected ':'\n    def test_it(control)\n  Write a colon" in result.stdout
+    )
+    assert "tests/test_import.py:1: robot has no MyRobt\n  Did you mean MyRobot?" in result.stdout
+    assert "_pytest" not in result.stdout
+
+
+def test_test_files_that_are_never_run_are_named(make_project: MakeProject) -> None:
+    tests = {
+        "tests/drive_tests.py": "def test_it():\n    assert False\n",
+        "tests/pyfrc_test.py": "x = 1\n# from pyfrc.tests import *\n",
+        "tests/test_arm.py": "def check_test(robot):\n    pass\n",
+        "tests/test_fine.py": "def test_fine():\n    pass\n",
+        "tests/helpers.py": "x = 1\n",
+    }
+    project = make_project({"robot.py": ROBOT, **tests})
+    result = project.run("test")
+    assert result.code == 0
+    assert "tests/drive_tests.py: its tests are not run" in result.stdout
+    assert "Rename it to test_drive.py." in result.stdout
+    assert "tests/pyfrc_test.py: no test was found in it. Remove the # in line 2" in result.stdout
+    assert (
+        "tests/test_arm.py: no test was found in it. The name of a test begins with test_: rename check_"
+        in result.stdout
+    )
+    assert "helpers.py" not in result.stdout
+    assert "test_fine.py:" not in result.stdout
+    assert "files without tests" not in project.run("test", "--", "-k", "fine").stdout
+
+
+def test_mistakes_stand_before_their_consequences(make_project: MakeProject) -> None:
+    robot = ROBOT.replace("pass", "def teleopPeriodc(self):\n            self.moved = True")
+    test = """
+        def test_it(control, robot):
+            control.set_operator_control()
+            control.run_test(lambda tm: tm < 1)
+            robot.moved
+    """
+    result = make_project({"robot.py": robot, "tests/test_it.py": test}).run("test")
+    assert result.code == 1
+    assert result.stdout.index("did you mean teleopPeriodic?") < result.stdout.index("FAILURES")
+
+
+def test_long_output_of_a_failed_test_is_cut(make_project: MakeProject) -> None:
+    test = "def test_it():\n    for n in range(100):\n        print('line', n)\n    assert False\n"
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": test})
+    (block,) = blocks_of(project.run("test"))
+    assert len(block) <= 25
+    assert "line 99" in block
+    assert "(88 lines before these: pyfrc test -v)" in block
+    assert "line 0" in project.run("test", "-v").stdout
