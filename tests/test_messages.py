@@ -156,3 +156,28 @@ def test_long_output_of_a_failed_test_is_cut(make_project: MakeProject) -> None:
     assert "line 99" in block
     assert "(88 lines before these: pyfrc test -v)" in block
     assert "line 0" in project.run("test", "-v").stdout
+
+
+def test_nan_and_a_can_id_used_twice_are_named(make_project: MakeProject) -> None:
+    robot = """
+        import wpilib
+
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.motor = wpilib.PWMSparkMax(0)
+                self.arm = wpilib.CAN(5)
+                self.claw = wpilib.CAN(5)
+                self.camera = wpilib.CAN(5, 8, 10)
+                self.others = [wpilib.CAN(number) for number in (6, 7)]
+
+            def disabledPeriodic(self):
+                self.motor.set(float("nan"))
+    """
+    project = make_project({"robot.py": robot, "tests/pyfrc_test.py": READY_MADE})
+    result = project.run("test", "--", "-k", "disabled")
+    assert result.code == 0, result.output
+    arm, claw = project.place("robot.py", "self.arm"), project.place("robot.py", "self.claw")
+    assert f"{claw}: CAN ID 5 is used already, since {arm}, by a device of the same kind." in result.stdout
+    assert f"{project.place('robot.py', 'nan')}: set() gets NaN" in result.stdout
+    assert result.stdout.count("UserWarning") == 2

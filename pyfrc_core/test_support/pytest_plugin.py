@@ -36,6 +36,7 @@ from ..runtime.seeds import seed_generators
 from ..runtime.threads import RobotThread
 from . import controller
 from .controller import TestController
+from .device_misuse import warning_of_misuse
 from .fake_time import FakeTime
 from .options import READY_MADE_TESTS, TestOptions
 from .reporting import BUG, REAL_TIME, bug_of, put_first
@@ -185,6 +186,7 @@ class PyFrcPlugin:
             if self.crash_log is None:
                 closing.callback(_forget, run, request.node)
             closing.enter_context(self._recorded(run, request.node))
+            closing.enter_context(warning_of_misuse(self.project.files))
             yield run
             run.end()
             if getattr(request.function, "__module__", "").startswith(READY_MADE_TESTS):

@@ -1,0 +1,78 @@
+"""Warn of what devices get from robot code that raises no error here: NaN as a speed, one CAN ID for two devices."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import wpilib
+
+from ..compat.cpython_private import get_frame
+from ..fuzz.motor_calls import watch_motor_calls
+from ..project.robot_files import RobotFiles
+from ..runtime.patch_table import Patch, patched
+
+
+@contextmanager
+def warning_of_misuse(files: RobotFiles) -> Iterator[None]:
+    """Warn, with the robot's line, until the context ends. The robot's modules must be imported."""
+    misuse = _Misuse(files)
+    with patched(misuse.patches()), watch_motor_calls() as calls:
+        calls.listener = misuse.on_motor_call
+        yield
+
+
+class _Misuse:
+    def __init__(self, files: RobotFiles) -> None:
+        self._files = files
+        self._warned: set[str] = set()
+        #: The line that has created the device with an ID, by kind, bus and ID.
+        self._created: dict[tuple[object, ...], str] = {}
+
+    def on_motor_call(self, motor: object, name: str, numbers: tuple[float, ...], is_power: bool) -> None:
+        if any(number != number for number in numbers):
+            what = "which is no number: a motor stops then. Is something divided by 0, or a sensor without a value?"
+            self._warn(f"{name}() gets NaN, {what}")
+
+    def patches(self) -> Iterator[Patch]:
+        """Yield the patches of the constructors of CAN devices that allow an ID twice."""
+        yield Patch(wpilib.CAN, "__init__", self._counted(wpilib.CAN.__init__, lambda id, *kind: (id, "", kind)))
+        phoenix = sys.modules.get("phoenix6.hardware")
+        if phoenix is not None:
+            device = phoenix.ParentDevice
+            # Talons of all models are of one kind on the bus.
+            key = lambda id, model, bus: (id, bus.name, "talon" if "talon" in model.lower() else model)  # noqa: E731
+            yield Patch(device, "__init__", self._counted(device.__init__, key))
+
+    def _counted(self, real: Callable[..., None], key_of: Callable[..., tuple[Any, ...]]) -> Callable[..., None]:
+        def __init__(device: object, *args: Any, **kwargs: Any) -> None:
+            __tracebackhide__ = True
+            real(device, *args, **kwargs)
+            self._on_creation(key_of(*args, *kwargs.values()))
+
+        return __init__
+
+    def _on_creation(self, key: tuple[Any, ...]) -> None:
+        line = self._line()
+        before = self._created.setdefault(key, line)
+        if before != line:
+            remedy = "Each needs an ID of its own, and one object in the program."
+            self._warn(f"CAN ID {key[0]} is used already, since {before}, by a device of the same kind. {remedy}")
+
+    def _line(self) -> str:
+        frame = get_frame(1)
+        while frame is not None:
+            if (line := self._files.line_of_frame(frame)) is not None:
+                return line
+            frame = frame.f_back  # type: ignore[assignment]
+        return ""
+
+    def _warn(self, text: str) -> None:
+        line = self._line()
+        if line and line not in self._warned:
+            self._warned.add(line)
+            file, _, number = line.rpartition(":")
+            warnings.warn_explicit(f"{line}: {text}", UserWarning, self._files.root + file, int(number))
