@@ -181,3 +181,9 @@ def test_nan_and_a_can_id_used_twice_are_named(make_project: MakeProject) -> Non
     assert f"{claw}: CAN ID 5 is used already, since {arm}, by a device of the same kind." in result.stdout
     assert f"{project.place('robot.py', 'nan')}: set() gets NaN" in result.stdout
     assert result.stdout.count("UserWarning") == 2
+
+
+def test_a_fixture_that_does_not_exist(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": "def test_it(contrl):\n    pass\n"})
+    (block,) = blocks_of(project.run("test"))
+    assert block[:2] == ["tests/test_it.py:1: there is no fixture 'contrl'", "  did you mean 'control'?"]

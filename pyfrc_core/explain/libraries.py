@@ -78,8 +78,8 @@ ROWS = (
         "Change it to the number of the channel that it is wired to.",
     ),
     Row(
-        r"RuntimeError: HAL: No available resources to allocate: (?P<what>\S+)",
-        "the roboRIO has no more devices of this kind ({what})",
+        r"RuntimeError: HAL: No available resources to allocate",
+        "the roboRIO has no more devices of this kind",
         "It has 8 encoders, 8 counters, 8 interrupts and 1 AddressableLED: create each once, and not in a method that "
         "is called again.",
     ),
@@ -208,7 +208,17 @@ ROWS = (
         "class {cls} does not call super().__init__()",
         "Make that the first line of its __init__.",
     ),
+    Row(
+        r"TypeError: \w+\.end\(\) takes 1 positional argument but 2 were given",
+        "",
+        "Write def end(self, interrupted): - the scheduler says whether the command was interrupted.",
+    ),
     # -- Python
+    Row(
+        r"TypeError: '(?P<type>\w+)' object is not callable",
+        "",
+        "The name before () is a {type}, and no function. Was it to be passed as a function: lambda: ...?",
+    ),
     Row(
         r"(TypeError|AttributeError): .*'NoneType'",
         "",

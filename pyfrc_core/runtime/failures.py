@@ -102,7 +102,10 @@ def library_calls(error: BaseException, files: RobotFiles) -> str:
     entry = error.__traceback__
     while entry is not None:
         frame, entry = entry.tb_frame, entry.tb_next
-        if is_pyfrc(frame.f_code.co_filename) or frame.f_code.co_filename == threading.__file__:
+        if is_pyfrc(frame.f_code.co_filename):
+            names = []  # what came before has called pyfrc, and is the test's
+            continue
+        if frame.f_code.co_filename == threading.__file__:
             continue
         owner = frame.f_locals.get("self")
         of = frame.f_globals.get("__name__", "") if owner is None else type(owner).__name__

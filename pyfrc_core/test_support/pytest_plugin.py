@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ..encoding import find_wrong_encoding
-from ..errors import ProjectError, PyfrcError
+from ..errors import ProjectError, PyfrcError, nearest
 from ..hal import HalData
 from ..invariants.load import Invariant, load_invariants
 from ..project import Project
@@ -305,6 +305,10 @@ class PyFrcPlugin:
                 if not never_run and headline_is_the_robots(text, files):
                     setattr(report, BUG, bug_of(text))
                 put_first(report, text, only)
+            elif isinstance(error, pytest.FixtureLookupError) and short and error.argname is not None:
+                file, line, _ = item.location
+                known = nearest(error.argname, sorted(ROBOT_FIXTURES))
+                report.longrepr = f"{file}:{(line or 0) + 1}: there is no fixture {error.argname!r}\n  {known}"
             if never_run:
                 report.sections.append(_NEVER_RUN)
             report.sections.append(seed_section(self.options))
