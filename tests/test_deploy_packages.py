@@ -206,7 +206,7 @@ def test_a_virtual_robot_gets_what_the_project_asks_for_from_pip(facts: RobotFac
     virtual = dataclasses.replace(facts, image=VIRTUAL_IMAGE, wpilib=OURS, packages={})
     remedies = [each.remedy for each in unfit_packages(packages, virtual)]
     installed = [each.partition("python -m pip install ")[2] for each in remedies]
-    assert installed == ["wpilib==2026.9.9.", "robotpy-cscore.", "'numpy>=1'."]
+    assert installed == ["wpilib==2026.9.9.", "robotpy-cscore.", '"numpy>=1".']
 
 
 @pytest.mark.parametrize("module", ["commands2", "cscore", "robotpy_apriltag"])
@@ -251,7 +251,6 @@ def test_a_file_that_is_left_out_of_the_upload(facts: RobotFacts, tmp_path: Path
         ("requires = ['colorama; sys_platform == \"win32\"']", {}, None),
         ("requires = ['numpy; platform_machine != \"roborio\"']", {}, None),
         ("requires = ['numpy; python_version >= \"3.14\"']", {}, ":2: requires has "),
-        ("requires = 'numpy'", {}, None),
     ],
 )  # fmt: skip
 def test_packages_that_do_not_fit(
@@ -270,6 +269,14 @@ def test_a_requirement_that_cannot_be_read_is_named_with_its_line(tmp_path: Path
     with pytest.raises(SettingsError, match="requires = 'phoenix6 >> 1'") as caught:
         load_robot_packages(tmp_path / "pyproject.toml")
     assert caught.value.where == "pyproject.toml:3"
+
+
+def test_a_list_that_is_none_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text("[tool.robotpy]\nrequires = 'numpy'\n")
+    with pytest.raises(
+        SettingsError, match=r"pyproject.toml:2: requires must be a list\n  Write: requires = ..numpy.."
+    ):
+        load_robot_packages(tmp_path / "pyproject.toml")
 
 
 def test_no_table_asks_for_nothing(tmp_path: Path) -> None:
