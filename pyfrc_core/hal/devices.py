@@ -12,6 +12,7 @@ from wpilib import simulation as sim
 from ..compat import hal_callbacks, wpilib_private
 from .containers import NOT_SET, Raw
 from .counters import COUNTERS, CounterSim
+from .digital import DigitalSim
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind
 from .kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, whole
 
@@ -83,7 +84,7 @@ KINDS = (
     DeviceKind(
         "dio",
         26,
-        sim.DIOSim,
+        DigitalSim,
         (
             INITIALIZED,
             HAS_SOURCE,

@@ -37,7 +37,7 @@ class PhysicsInitException(RobotCodeError):
 class PhysicsEngine:
     """The class that your ``physics.py`` must contain, with this name and these methods.
 
-    You may inherit from this class. The engine is created before the robot, so that `initialize` can set the robot's
+    You may inherit from this class; then `update_sim` may be absent, too. The engine is created before the robot, so that `initialize` can set the robot's
     inputs. If its constructor also takes the robot, or its `update_sim` takes ``(now, tm_diff)`` as in current pyfrc,
     it is created after the robot's `robotInit`.
 
@@ -50,7 +50,7 @@ class PhysicsEngine:
     def initialize(self, hal_data: HalData) -> None:
         """Called before the robot starts; optional.
 
-        A device that the robot creates afterwards may have its own initial values: a digital input reads True.
+        Inputs keep what is set here when the robot creates their devices; a gyro starts at 0.
 
         :param hal_data: the robot's inputs and outputs
         """
@@ -64,7 +64,6 @@ class PhysicsEngine:
         :param now: the robot time, in seconds
         :param tm_diff: the time since the last call, in seconds
         """
-        raise NotImplementedError("your PhysicsEngine has no update_sim")
 
 
 class PhysicsField(wpilib.Field2d):
@@ -129,11 +128,11 @@ class PhysicsInterface:
         rotation_speed: float | None = None,
         tm_diff: float | None = None,
     ) -> Pose2d:
-        """Move the robot with constant velocities. This also works while it is disabled, since a robot keeps rolling.
+        """Turn the robot, then move it forward. This also works while it is disabled, since a robot keeps rolling.
 
-        There are two more forms: ``drive(vector, tm_diff)`` with the result of the drivetrain functions for mecanum and
-        swerve; and ``drive(ChassisSpeeds, tm_diff)``, as since 2020, in metres and counter-clockwise, which does not
-        turn gyros.
+        There are two more forms, which move the robot along the arc of constant velocities: ``drive(vector, tm_diff)``
+        with the result of the drivetrain functions for mecanum and swerve; and ``drive(ChassisSpeeds, tm_diff)``, as
+        since 2020, in metres and counter-clockwise, which does not turn gyros.
 
         :param speed: the robot's speed forward, in ft/s
         :param rotation_speed: clockwise, in radians/s
@@ -145,7 +144,10 @@ class PhysicsInterface:
             if time is None or (rotation_speed is not None and tm_diff is not None):
                 raise TypeError(f"drive({type(speed).__name__}, tm_diff) takes a time, in seconds, and nothing else")
             if isinstance(speed, DriveVector):
-                return self._drive(speed[1], speed[0], speed[2], time)
+                right, forward, clockwise = speed
+                pose = self._move_along(forward * time, right * time, clockwise * time)
+                self._turn_analog_gyros(clockwise * time)
+                return pose
             turn = -speed.omega * time
             forward, right = speed.vx / METRES_PER_FOOT * time, -speed.vy / METRES_PER_FOOT * time
             return self._move_along(forward, right, turn)
@@ -154,20 +156,20 @@ class PhysicsInterface:
                 "drive(speed, rotation_speed, tm_diff) takes three numbers, and drive(speeds, tm_diff) ChassisSpeeds "
                 f"and a time, not a {type(speed).__name__}"
             )
-        return self._drive(speed, 0.0, rotation_speed, tm_diff)
+        return self._drive(speed * tm_diff, 0.0, rotation_speed * tm_diff)
 
     def vector_drive(self, vx: float, vy: float, vw: float, tm_diff: float) -> None:
-        """Move the robot with a constant velocity relative to itself.
+        """Turn the robot, then move it with a constant velocity relative to itself.
 
         :param vx: speed to the robot's right, in ft/s
         :param vy: speed forward, in ft/s
         :param vw: clockwise, in radians/s
         :param tm_diff: the duration, in seconds
         """
-        self._drive(vy, vx, vw, tm_diff)
+        self._drive(vy * tm_diff, vx * tm_diff, vw * tm_diff)
 
     def distance_drive(self, x: float, y: float, angle: float) -> None:
-        """Move the robot by a distance relative to its pose, then turn it.
+        """Turn the robot, then move it by a distance relative to itself.
 
         As with `move_robot`, moves of less than a nanometre and a billionth of a radian are ignored.
 
@@ -176,10 +178,8 @@ class PhysicsInterface:
         :param angle: radians, clockwise
         """
         _check(x, y, angle)
-        if max(abs(x) * METRES_PER_FOOT, abs(y) * METRES_PER_FOOT, abs(angle)) < _LEAST_MOVE:
-            return
-        self._move(x, y, angle)
-        self._turn_analog_gyros(angle)
+        if max(abs(x) * METRES_PER_FOOT, abs(y) * METRES_PER_FOOT, abs(angle)) >= _LEAST_MOVE:
+            self._turn_and_move(x, y, angle)
 
     def get_position(self) -> tuple[float, float, float]:
         """Return the robot's position (x, y, angle) in feet and radians; the angle is not limited to one turn."""
@@ -187,14 +187,14 @@ class PhysicsInterface:
         return pose.x, pose.y, pose.angle
 
     def get_offset(self, x: float, y: float) -> tuple[float, float]:
-        """Return the distance to a position in feet, and its direction.
+        """Return the distance to a position in feet, and the direction from there to the robot.
 
-        :returns: the distance, and degrees clockwise from the direction that the robot faces, from -180 to 180
+        :returns: the distance, and degrees on the field, 0 = east, clockwise, from -180 to 180: the same whichever way
+            the robot faces
         """
         pose = self._current()
-        dx, dy = x - pose.x, y - pose.y
-        angle = math.remainder(math.atan2(dy, dx) - pose.angle, math.tau)
-        return math.hypot(dx, dy), math.degrees(angle)
+        dx, dy = pose.x - x, pose.y - y
+        return math.hypot(dx, dy), math.degrees(math.atan2(dy, dx))
 
     # -- gyros ---------------------------------------------------------------------------------------------------
 
@@ -244,9 +244,15 @@ class PhysicsInterface:
 
     # -- the pose ------------------------------------------------------------------------------------------------
 
-    def _drive(self, forward: float, right: float, turning: float, time: float) -> Pose2d:
-        turn = turning * time
-        pose = self._move_along(forward * time, right * time, turn)
+    def _drive(self, forward: float, right: float, turn: float) -> Pose2d:
+        """Turn, then move, as pyfrc did in 2019: forward by the turn once more, and to the side as before the turn."""
+        _check(forward, right, turn)
+        cos, sin = math.cos(turn), math.sin(turn)
+        return self._turn_and_move(forward * cos + right * sin, forward * sin + right * cos, turn)
+
+    def _turn_and_move(self, forward: float, right: float, turn: float) -> Pose2d:
+        cos, sin = math.cos(turn), math.sin(turn)
+        pose = self._move(forward * cos - right * sin, forward * sin + right * cos, turn)
         self._turn_analog_gyros(turn)
         return pose
 

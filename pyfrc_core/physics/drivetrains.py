@@ -7,7 +7,6 @@ Two generations of callers use the same classes: `get_vector` uses feet and cloc
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from wpimath.geometry import Translation2d
@@ -68,14 +67,15 @@ class _TankDrivetrain:
         :param deadzone: a motor's output as a function of its input, such as the result of :func:`linear_deadzone`
         :raises ParameterError: for a length or speed that is not above zero, or a deadzone that is not a function
         """
-        self._x_wheelbase = _feet(x_wheelbase, "x_wheelbase")
-        self._speed = _feet_per_second(speed)
+        #: In feet and ft/s; both may be changed.
+        self.x_wheelbase = _feet(x_wheelbase, "x_wheelbase")
+        self.speed = _feet_per_second(speed)
         self.deadzone = deadzone_function(deadzone)
 
-    @cached_property
+    @property
     def kinematics(self) -> DifferentialDriveKinematics:
         """WPILib's kinematics for a robot of this width."""
-        return DifferentialDriveKinematics(self._x_wheelbase * METRES_PER_FOOT)
+        return DifferentialDriveKinematics(self.x_wheelbase * METRES_PER_FOOT)
 
     @property
     def wheelSpeeds(self) -> DifferentialDriveWheelSpeeds:
@@ -88,9 +88,9 @@ class _TankDrivetrain:
         :param left: the left side's share of full speed, forward positive
         :param right: the right side's share of full speed, forward positive
         """
-        self.l_speed = left = left * self._speed
-        self.r_speed = right = right * self._speed
-        return (left + right) * 0.5, (left - right) / self._x_wheelbase
+        self.l_speed = left = left * self.speed
+        self.r_speed = right = right * self.speed
+        return (left + right) * 0.5, (left - right) / self.x_wheelbase
 
     def _chassis(self, left: float, right: float) -> ChassisSpeeds:
         forward, clockwise = self._vector(left, right)
@@ -185,12 +185,11 @@ class MecanumDrivetrain:
         :param deadzone: a motor's output as a function of its input, such as the result of :func:`linear_deadzone`
         :raises ParameterError: for a length or speed that is not above zero, or a deadzone that is not a function
         """
-        self._x_wheelbase = _feet(x_wheelbase, "x_wheelbase")
-        self._y_wheelbase = _feet(y_wheelbase, "y_wheelbase")
-        self._speed = _feet_per_second(speed)
+        #: In feet and ft/s; all three may be changed.
+        self.x_wheelbase = _feet(x_wheelbase, "x_wheelbase")
+        self.y_wheelbase = _feet(y_wheelbase, "y_wheelbase")
+        self.speed = _feet_per_second(speed)
         self.deadzone = deadzone_function(deadzone)
-        self._linear = self._speed / 4
-        self._angular = self._speed / (2 * (self._x_wheelbase + self._y_wheelbase))
         # The motors' last outputs: left front, left rear, right front, right rear; and the sign of forward on the
         # right.
         self._last_outputs = (0.0, 0.0, 0.0, 0.0)
@@ -207,9 +206,9 @@ class MecanumDrivetrain:
         """
         lf, lr, rf, rr = self._last_outputs = self._outputs(lf_motor, lr_motor, rf_motor, rr_motor)
         self._right_forward = 1.0
-        linear = self._linear
+        linear = self.speed / 4
         right, forward = (lf - lr - rf + rr) * linear, (lf + lr + rf + rr) * linear
-        return DriveVector(right, forward, (lf + lr - rf - rr) * self._angular)
+        return DriveVector(right, forward, (lf + lr - rf - rr) * self._angular())
 
     def calculate(self, lf_motor: float, lr_motor: float, rf_motor: float, rr_motor: float) -> ChassisSpeeds:
         """
@@ -224,9 +223,12 @@ class MecanumDrivetrain:
         self._right_forward = -1.0
         rising = lf - rr
         falling = lr - rf
-        linear = self._linear
+        linear = self.speed / 4
         left, forward = (falling - rising) * linear, (rising + falling) * linear
-        return _chassis_speeds(forward, left, (0.0 - lf - lr - rf - rr) * self._angular)
+        return _chassis_speeds(forward, left, (0.0 - lf - lr - rf - rr) * self._angular())
+
+    def _angular(self) -> float:
+        return self.speed / (2 * (self.x_wheelbase + self.y_wheelbase))
 
     def _outputs(self, lf: float, lr: float, rf: float, rr: float) -> tuple[float, float, float, float]:
         # Compared here, since four function calls would cost as much as all the rest.
@@ -241,7 +243,7 @@ class MecanumDrivetrain:
     @property
     def lf_speed(self) -> float:
         """Speed of the left front wheel in ft/s after the last calculation, forward positive, for encoders."""
-        return self._last_outputs[0] * self._speed
+        return self._last_outputs[0] * self.speed
 
     @lf_speed.setter
     def lf_speed(self, speed: float) -> None:
@@ -250,7 +252,7 @@ class MecanumDrivetrain:
     @property
     def lr_speed(self) -> float:
         """Speed of the left rear wheel, like `lf_speed`."""
-        return self._last_outputs[1] * self._speed
+        return self._last_outputs[1] * self.speed
 
     @lr_speed.setter
     def lr_speed(self, speed: float) -> None:
@@ -259,7 +261,7 @@ class MecanumDrivetrain:
     @property
     def rf_speed(self) -> float:
         """Speed of the right front wheel, like `lf_speed`."""
-        return self._last_outputs[2] * self._speed * self._right_forward
+        return self._last_outputs[2] * self.speed * self._right_forward
 
     @rf_speed.setter
     def rf_speed(self, speed: float) -> None:
@@ -268,7 +270,7 @@ class MecanumDrivetrain:
     @property
     def rr_speed(self) -> float:
         """Speed of the right rear wheel, like `lf_speed`."""
-        return self._last_outputs[3] * self._speed * self._right_forward
+        return self._last_outputs[3] * self.speed * self._right_forward
 
     @rr_speed.setter
     def rr_speed(self, speed: float) -> None:
@@ -276,7 +278,7 @@ class MecanumDrivetrain:
 
     def _set_speed(self, wheel: int, speed: float) -> None:
         given = list(self._last_outputs)
-        given[wheel] = finite(speed, "speed") / self._speed
+        given[wheel] = finite(speed, "speed") / self.speed
         self._last_outputs = given[0], given[1], given[2], given[3]
 
     @property
@@ -284,11 +286,11 @@ class MecanumDrivetrain:
         """Speed of each wheel in m/s after the last calculation, forward positive."""
         return MecanumDriveWheelSpeeds.fromFeet(self.lf_speed, self.rf_speed, self.lr_speed, self.rr_speed)
 
-    @cached_property
+    @property
     def kinematics(self) -> MecanumDriveKinematics:
         """WPILib's kinematics for a robot of these dimensions."""
-        x = self._y_wheelbase / 2 * METRES_PER_FOOT
-        y = self._x_wheelbase / 2 * METRES_PER_FOOT
+        x = self.y_wheelbase / 2 * METRES_PER_FOOT
+        y = self.x_wheelbase / 2 * METRES_PER_FOOT
         return MecanumDriveKinematics(
             Translation2d(x, y), Translation2d(x, -y), Translation2d(-x, y), Translation2d(-x, -y)
         )

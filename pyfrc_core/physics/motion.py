@@ -33,12 +33,12 @@ class LinearMotion:
         :param min_position: the lower limit, in feet; None for no limit
         :raises ParameterError: when a value is not a number, or the limits are in the wrong order
         """
-        self._name = name
-        self._speed = finite(motor_ft_per_sec, "motor_ft_per_sec")
-        self._ticks_per_feet = finite(ticks_per_feet, "ticks_per_feet")
-        self._max = float("inf") if max_position is None else finite(max_position, "max_position")
-        self._min = float("-inf") if min_position is None else finite(min_position, "min_position")
-        if self._min > self._max:
+        self.name = name
+        self.motor_ft_per_sec = finite(motor_ft_per_sec, "motor_ft_per_sec")
+        self.ticks_per_feet = finite(ticks_per_feet, "ticks_per_feet")
+        self.max_position = None if max_position is None else finite(max_position, "max_position")
+        self.min_position = None if min_position is None else finite(min_position, "min_position")
+        if self.min_position is not None and self.max_position is not None and self.min_position > self.max_position:
             raise ParameterError(
                 f"min_position = {min_position!r} is above max_position = {max_position!r}",
                 remedy="min_position is 0 unless given; None for no limit",
@@ -56,14 +56,19 @@ class LinearMotion:
         """
         motor_val = within_full_power(motor_val, "motor_val")
         tm_diff = self._time_since_last_call() if tm_diff is None else not_negative(tm_diff, "tm_diff")
-        self._move(self._speed * motor_val * tm_diff)
+        self._move(self.motor_ft_per_sec * motor_val * tm_diff)
         return self.position_ticks
 
     def _move(self, feet: float) -> None:
-        self.position_ft = min(max(self.position_ft + feet, self._min), self._max)
+        position = self.position_ft + feet
+        if self.min_position is not None:
+            position = max(position, self.min_position)
+        if self.max_position is not None:
+            position = min(position, self.max_position)
+        self.position_ft = position
         # Rounded before it is truncated: many small steps add up to slightly less than the whole.
-        self.position_ticks = int(round(self.position_ft * self._ticks_per_feet, 6))
-        _show_label(self._name, f"{round(self.position_ft, 2) + 0.0:.2f}")
+        self.position_ticks = int(round(position * self.ticks_per_feet, 6))
+        _show_label(self.name, f"{round(self.position_ft, 2) + 0.0:.2f}")
 
     def _time_since_last_call(self) -> float:
         import wpilib

@@ -8,8 +8,8 @@ import numbers
 from ..errors import PyfrcError
 
 
-class ParameterError(PyfrcError, ValueError):
-    """A parameter of a physics helper has an impossible value."""
+class ParameterError(PyfrcError, ValueError, AssertionError):
+    """A parameter of a physics helper has an impossible value; an `AssertionError` as in 2019."""
 
 
 def finite(value: object, parameter: str) -> float:

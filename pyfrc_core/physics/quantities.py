@@ -66,10 +66,12 @@ def magnitude(value: float | Quantity | object, unit: str, parameter: str, *, pl
 
 
 def _wrong(given: str, unit: str, parameter: str) -> WrongDimension:
+    from .dimensionality import WrongUnit
+
     dimensionality = units.parse_units(unit).dimensionality
     examples = (text for _, each, text in KINDS if units.parse_units(each).dimensionality == dimensionality)
     expected = f"{_kind(dimensionality)} was expected, such as {next(examples, f'2 {unit}')}"
-    return WrongDimension(f"{given}, {expected}", where=parameter)
+    return WrongUnit(given, unit, f"{given}, {expected}", where=parameter)
 
 
 def _kind(dimensionality: object) -> str:

@@ -49,6 +49,7 @@ with _collector_paused(), _without_dask():
 DEFINITIONS = [
     # pint's own rpm includes an angle, which makes it 2 pi times as large.
     "counts_per_minute = count / minute = cpm",
+    "@alias ampere = amps",  # otherwise attometres per second
     "N_m = newton * meter",
     # The voltage per speed and per acceleration, in the units of the drivetrain characterization paper.
     "tm_kv = volt / (foot / second)",

@@ -17,9 +17,6 @@ from .parameters import ParameterError, finite, not_negative, positive
 #: targets (0, capture time, inf, 0).
 Sighting = tuple[int, float, float, float]
 
-# Robot time is counted in microseconds: an event within this many seconds is due.
-_TICK = 1e-6
-
 
 class VisionSimTarget:
     """A target on the field that a camera can see from one side.
@@ -38,14 +35,20 @@ class VisionSimTarget:
         """
         self.x = finite(x, "x")
         self.y = finite(y, "y")
-        self.view_angle_start = finite(view_angle_start, "view_angle_start")
-        self.view_angle_end = finite(view_angle_end, "view_angle_end")
+        #: In radians, as `view_angle_end`.
+        self.view_angle_start = math.radians(finite(view_angle_start, "view_angle_start"))
+        self.view_angle_end = math.radians(finite(view_angle_end, "view_angle_end"))
+        #: The camera, set by `VisionSim`: the distances at which it sees the target, in feet, and half of its field of
+        #: view, in radians.
+        self.view_dst_start, self.view_dst_end = 0.0, math.inf
+        self.fov2 = math.pi
 
     def __repr__(self) -> str:
-        return f"VisionSimTarget({self.x}, {self.y}, {self.view_angle_start}, {self.view_angle_end})"
+        angles = f"{math.degrees(self.view_angle_start):g}, {math.degrees(self.view_angle_end):g}"
+        return f"VisionSimTarget({self.x}, {self.y}, {angles})"
 
     def compute(self, now: float, x: float, y: float, angle: float) -> Sighting | None:
-        """Return what a camera with unlimited view on the robot sees of this target.
+        """Return what the camera on the robot sees of this target.
 
         `VisionSim` calls this for each of its targets: a subclass may move a target, or hide it.
 
@@ -56,18 +59,19 @@ class VisionSimTarget:
         :returns: (1, `now`, offset in degrees, distance in feet), with offsets to the right positive; None where the
             target cannot be seen
         """
-        if not self.faces(x, y):
-            return None
         dx, dy = self.x - x, self.y - y
-        offset = math.degrees(math.remainder(math.atan2(dy, dx) - angle, math.tau))
-        return 1, now, offset, math.hypot(dx, dy)
+        distance = math.hypot(dx, dy)
+        if not self.view_dst_start <= distance <= self.view_dst_end or not self.faces(x, y):
+            return None
+        offset = math.remainder(math.atan2(dy, dx) - angle, math.tau)
+        return (1, now, math.degrees(offset), distance) if abs(offset) <= self.fov2 else None
 
     def faces(self, x: float, y: float) -> bool:
         """Return whether the target can be seen from (x, y), at any distance."""
         span = self.view_angle_end - self.view_angle_start
-        span = 360 if abs(span) >= 360 else span % 360
-        bearing = math.degrees(math.atan2(y - self.y, x - self.x))
-        return (bearing - self.view_angle_start) % 360 <= span
+        span = math.tau if abs(span) >= math.tau else span % math.tau
+        bearing = math.atan2(y - self.y, x - self.x)
+        return (bearing - self.view_angle_start) % math.tau <= span
 
 
 class DrawsVisionTargets(Protocol):
@@ -80,9 +84,9 @@ class DrawsVisionTargets(Protocol):
 class VisionSim:
     """A camera in the robot's centre, looking forward, with its image processing.
 
-    It takes frames at a constant frequency, starting with the first call of :meth:`compute`. Each frame shows what is
-    in view at the first call after it is due. Its data are returned by the first call after `data_lag` has passed. If
-    several frames have arrived by then, the newest is returned, as from a table with the latest value.
+    The first call of :meth:`compute` takes a frame, as does each call at which more than `update_period` seconds have
+    passed since the last frame: with 15 frames per second and a call every 20 ms, every 80 ms. Its data are returned by
+    the first call at which more than `data_lag` seconds have passed.
     """
 
     Target = VisionSimTarget
@@ -108,24 +112,24 @@ class VisionSim:
         :raises ParameterError: for impossible values
         """
         self._targets = tuple(targets)
+        half_fov = math.radians(positive(camera_fov, "camera_fov") / 2)
+        nearest, farthest = not_negative(view_dst_start, "view_dst_start"), finite(view_dst_end, "view_dst_end")
+        if farthest < nearest:
+            raise ParameterError(f"view_dst_end = {view_dst_end!r} is below view_dst_start = {view_dst_start!r}")
         for target in self._targets:
             if not isinstance(target, VisionSimTarget):
                 raise ParameterError(
                     f"targets: {target!r} is not a target", remedy="make each with VisionSim.Target(...)"
                 )
-        self._half_fov = positive(camera_fov, "camera_fov") / 2
-        self._nearest = not_negative(view_dst_start, "view_dst_start")
-        self._farthest = finite(view_dst_end, "view_dst_end")
-        if self._farthest < self._nearest:
-            raise ParameterError(f"view_dst_end = {view_dst_end!r} is below view_dst_start = {view_dst_start!r}")
-        self._period = 1 / positive(data_frequency, "data_frequency")
-        self._lag = not_negative(data_lag, "data_lag")
+            target.fov2, target.view_dst_start, target.view_dst_end = half_fov, nearest, farthest
+        #: Seconds between two frames, and from a frame to its arrival at the robot; both may be changed.
+        self.update_period = 1 / positive(data_frequency, "data_frequency")
+        self.data_lag = not_negative(data_lag, "data_lag")
         self._controller = physics_controller
 
-        self._first_frame: float | None = None
-        self._next_frame = 0
+        self._last_frame = -math.inf
         self._in_flight: deque[list[Sighting]] = deque()
-        self._immediate_distance: float | None = None
+        self._immediate_distance: float | None = 0
         self._seen: tuple[VisionSimTarget, ...] | None = None
         self._show(())
 
@@ -143,54 +147,31 @@ class VisionSim:
         """
         if not math.isfinite(x + y + angle):
             raise ParameterError(f"x, y, angle = {x!r}, {y!r}, {angle!r}: must be finite numbers")
-        in_view = self._in_view(now, x, y, angle)
-        self._show(tuple(target for _, target in in_view))
-        in_view.sort(key=lambda sight: abs(sight[0][2]))
-        self._immediate_distance = in_view[0][0][3] if in_view else None
-        if self._first_frame is not None and now < self._first_frame:
-            self.dont_compute()  # a new run has started
-        if self._frame_is_due(now):
-            frame = [sighting for sighting, _ in in_view]
-            self._in_flight.append(frame or [(0, now, math.inf, 0)])
-        arrived = None
-        while self._in_flight and self._in_flight[0][0][1] + self._lag <= now + _TICK:
-            arrived = self._in_flight.popleft()
-        return arrived
+        sights = [(sighting, each) for each in self._targets if (sighting := each.compute(now, x, y, angle))]
+        self._show(tuple(target for _, target in sights))
+        in_view = sorted((sighting for sighting, _ in sights), key=lambda sighting: abs(sighting[2]))
+        self._immediate_distance = in_view[0][3] if in_view else None
+        if now < self._last_frame:  # a new run has started
+            self.dont_compute()
+            self._last_frame = -math.inf
+        if now - self._last_frame > self.update_period:
+            self._last_frame = now
+            self._in_flight.append(in_view or [(0, now, math.inf, 0)])
+        if self._in_flight and now - self._in_flight[0][0][1] > self.data_lag:
+            return self._in_flight.popleft()
+        return None
 
     def dont_compute(self) -> None:
         """Call this instead while vision processing is disabled: frames that have not arrived are lost."""
         self._in_flight.clear()
-        self._first_frame = None
         self._show(())
 
     def get_immediate_distance(self) -> float | None:
         """Return the distance of the most central target at the last :meth:`compute`, in feet, without lag.
 
-        For sensors such as an ultrasonic one. None if no target was in view.
+        For sensors such as an ultrasonic one. 0 before the first :meth:`compute`; None if no target was in view.
         """
         return self._immediate_distance
-
-    def _in_view(self, now: float, x: float, y: float, angle: float) -> list[tuple[Sighting, VisionSimTarget]]:
-        """Return the targets in view, each with its sighting."""
-        in_view = []
-        for target in self._targets:
-            sighting = target.compute(now, x, y, angle)
-            if sighting is None:
-                continue
-            _, _, offset, distance = sighting
-            if self._nearest <= distance <= self._farthest and abs(offset) <= self._half_fov:
-                in_view.append((sighting, target))
-        return in_view
-
-    def _frame_is_due(self, now: float) -> bool:
-        if self._first_frame is None:
-            self._first_frame, self._next_frame = now, 0
-        elapsed = now - self._first_frame + _TICK
-        if elapsed < self._next_frame * self._period:
-            return False
-        # On the camera's schedule; one period from now would make the frequency depend on the calls.
-        self._next_frame = math.floor(elapsed / self._period) + 1
-        return True
 
     def _show(self, seen: tuple[VisionSimTarget, ...]) -> None:
         if seen != self._seen and self._controller is not None:

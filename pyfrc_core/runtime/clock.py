@@ -21,6 +21,8 @@ from .robot_time import PACKET_US as PACKET_US
 from .robot_time import to_us as to_us
 
 DEFAULT_TIME_LIMIT = 500.0
+#: A time limit that no run reaches.
+NO_LIMIT_US = 1 << 62
 
 #: The time of day in robot code at robot time 0, in seconds since 1970: the season's kickoff.
 KICKOFF = int(CURRENT.kickoff.timestamp())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -26,6 +27,14 @@ if TYPE_CHECKING:
 
 OnStep: TypeAlias = Callable[[float], object]
 Instance = TypeVar("Instance")
+
+
+class CalledTooLate(RuntimeError, AssertionError):
+    """The robot has run already in this test; an `AssertionError` as in 2019."""
+
+
+class WrongController(TypeError, RuntimeError, ValueError):
+    """`run_test` got nothing that it can call; a `ValueError` as in 2019."""
 
 
 class HasOnStep(Protocol):
@@ -90,10 +99,10 @@ class TestController:
     def set_practice_match(self) -> None:
         """Run a practice match. Call it before `run_test`.
 
-        :raises RuntimeError: when the robot runs already
+        :raises CalledTooLate: when the robot runs already
         """
         if self._run.started:
-            raise RuntimeError("set_practice_match() must be called before run_test()")
+            raise CalledTooLate("set_practice_match() must be called before run_test()")
         self._practice_match = _PracticeMatch(self, self.project.settings.match if self.project else MatchSettings())
 
     # -- running with a function ------------------------------------------------------------------------------
@@ -110,10 +119,12 @@ class TestController:
 
         :param controller: a function that takes the robot time in seconds, or a class or an object with such a method
             ``on_step``; a class is instantiated. It is called before every driver-station packet, and the robot
-            receives with that packet what it sets. The robot runs for as long as it returns a true value. In a practice
-            match it may return None: the match decides when the run ends.
+            receives with that packet what it sets. The robot runs for as long as it returns a true value; None ends the
+            run, too. In a practice match it may return None: the match decides when the run ends.
         :returns: the instance, if `controller` is a class
-        :raises RuntimeError: when called twice, in a thread, or without a controller and without `set_practice_match`
+        :raises CalledTooLate: when called twice
+        :raises WrongController: for something that cannot be called, or nothing without `set_practice_match`
+        :raises RuntimeError: when called in a thread, or when the robot program ends by itself
         """
         __tracebackhide__ = True
         self._begin("run_test")
@@ -162,12 +173,12 @@ class TestController:
             target = controller if instance is None else instance
             on_step = getattr(target, "on_step", target)
             if not callable(on_step):
-                raise TypeError(
+                raise WrongController(
                     f"run_test(controller): {controller!r} is neither a function nor a class with an on_step method"
                 )
             steps.append(_check_result(on_step) if self._practice_match is None else _until_false(on_step))
         if not steps:
-            raise RuntimeError("run_test() needs a function to call on each step, or set_practice_match() before it")
+            raise WrongController("run_test() needs a function to call on each step, or set_practice_match() before it")
         return instance, steps
 
     # -- running a script -----------------------------------------------------------------------------------
@@ -258,7 +269,7 @@ class TestController:
         __tracebackhide__ = True
         self._run.check_drives_clock(f"call {how}()")
         if self._run.started:
-            raise RuntimeError(
+            raise CalledTooLate(
                 f"{how}(): the robot has run already in this test. It can only run once; "
                 "write a second test, or do everything in one run."
             )
@@ -278,7 +289,7 @@ def _until_false(on_step: OnStep) -> OnStep:
 
 
 def _check_result(on_step: OnStep) -> OnStep:
-    """Wrap `on_step`: explain the mistake when it returns None on its first call."""
+    """Wrap `on_step`: warn when it returns None on its first call, which ends the run."""
     first = True
 
     def step(now: float) -> object:
@@ -286,9 +297,10 @@ def _check_result(on_step: OnStep) -> OnStep:
         nonlocal first
         result = on_step(now)
         if result is None and first:
-            raise TypeError(
-                f"{getattr(on_step, '__qualname__', on_step)}() returned None: "
-                "return True for the robot to go on, False to end the test"
+            warnings.warn(
+                f"{getattr(on_step, '__qualname__', on_step)}() returned None, which ends the run at {now:.2f} s: "
+                "return True for the robot to go on",
+                stacklevel=1,
             )
         first = False
         return result

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..runtime.clock import DEFAULT_TIME_LIMIT, to_us
+from ..runtime.clock import DEFAULT_TIME_LIMIT, NO_LIMIT_US, to_us
 from ..runtime.exceptions import TestEnded, TestFroze, TestRanTooLong
 from ..runtime.robot import RobotRun
 
@@ -32,15 +32,13 @@ class FakeTime:
         self.run.next_packet()
 
     def increment_time_by(self, time: float) -> None:
-        """Increment time by this many seconds; a running robot runs during that time.
+        """Increment time by this many seconds; a running robot runs during that time. Time never goes back.
 
         :raises TestRanTooLong: when time passes the time limit
-        :raises ValueError: when `time` is negative
         """
         __tracebackhide__ = True
-        if time < 0:
-            raise ValueError(f"time cannot go back: increment_time_by({time!r})")
-        self.run.run_until(self.run.clock.now_us + to_us(time))
+        if time >= 0:
+            self.run.run_until(self.run.clock.now_us + to_us(time))
 
     def initialize(self) -> None:
         """Initialize fake time: set the clock to 0, to advance only when it is incremented.
@@ -58,9 +56,19 @@ class FakeTime:
         self.initialize()
         self.set_time_limit(DEFAULT_TIME_LIMIT)
 
-    def set_time_limit(self, time_limit: float) -> None:
-        """Set how long a robot may run, in seconds; 500 by default.
+    def set_time_limit(self, time_limit: float | None) -> None:
+        """Set how long a robot may run, in seconds; 500 by default, None for no limit.
 
         When time passes the limit, `TestRanTooLong` is raised.
         """
-        self.run.clock.limit_us = to_us(time_limit)
+        self.time_limit = time_limit
+
+    @property
+    def time_limit(self) -> float | None:
+        """How long a robot may run, in seconds; None for no limit."""
+        limit_us = self.run.clock.limit_us
+        return None if limit_us == NO_LIMIT_US else limit_us / 1_000_000
+
+    @time_limit.setter
+    def time_limit(self, seconds: float | None) -> None:
+        self.run.clock.limit_us = NO_LIMIT_US if seconds is None else to_us(seconds)

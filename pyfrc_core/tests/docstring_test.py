@@ -33,12 +33,12 @@ def ignore_object(o: Any, robot_path: str) -> bool:
 
 
 def test_docstrings(robot: Any, robot_path: str) -> None:
-    """Check that all of your robot code has docstrings."""
+    """Check that all of your robot code has docstrings; ``physics.py`` does not run on the robot."""
     __tracebackhide__ = True
     missing = [
         place
         for module in list(sys.modules.values())
-        if isinstance(module, ModuleType) and not ignore_object(module, robot_path)
+        if isinstance(module, ModuleType) and module.__name__ != "physics" and not ignore_object(module, robot_path)
         for place in _without_docstring(module, robot_path)
     ]
     missing.sort(key=_file_and_line)

@@ -12,7 +12,7 @@ from ....errors import PyfrcError
 from ....hal import modes
 from ....physics.core import PhysicsInterface
 from ....physics.pose import walls_of
-from ....runtime.clock import INPUT, OBSERVE, PACKET_US
+from ....runtime.clock import INPUT, NO_LIMIT_US, OBSERVE, PACKET_US
 from ....runtime.exceptions import TestEnded
 from ....runtime.loop_limit import LoopLimit
 from ....runtime.refresh import RefreshCheck
@@ -89,7 +89,7 @@ class Session:
         self._beyond_us = 0  # 1 in the microsecond after the target, where the robot waits beyond it
         run.threads.before_driver_waits.append(self._on_wait)
         run.renderer = self._renderer
-        run.clock.limit_us = 1 << 62
+        run.clock.limit_us = NO_LIMIT_US
         project = job.project
         self._station = Station(run, project.settings.match, project.sim_config.field, self._write, job.station)
 
