@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from hal import simulation as hs
-from hypothesis import assume, example, given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from wpimath.geometry import Pose2d, Rotation2d, Transform2d
 from wpimath.kinematics import ChassisSpeeds

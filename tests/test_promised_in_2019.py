@@ -406,8 +406,8 @@ ROBOT = """
             self.power = wpilib.PowerDistribution(0, wpilib.PowerDistribution.ModuleType.kCTRE)
             self.devices = [wpilib.Encoder(0, 1), wpilib.AnalogInput(3), wpilib.DigitalInput(9), wpilib.AnalogGyro(1)]
             self.gyro = wpilib.ADXRS450_Gyro()
-            self.switch, self.limit, self.distance = wpilib.DigitalInput(6), wpilib.DigitalInput(7), wpilib.AnalogInput(2)
-            self.first = self.switch.get(), self.limit.get(), self.distance.getVoltage()
+            self.switch, self.distance = wpilib.DigitalInput(6), wpilib.AnalogInput(2)
+            self.first = self.switch.get(), wpilib.DigitalInput(7).get(), self.distance.getVoltage()
             self.messages = set()
             if self.work is not None:
                 threading.Thread(target=self.work, daemon=True).start()

@@ -37,9 +37,9 @@ class PhysicsInitException(RobotCodeError):
 class PhysicsEngine:
     """The class that your ``physics.py`` must contain, with this name and these methods.
 
-    You may inherit from this class; then `update_sim` may be absent, too. The engine is created before the robot, so that `initialize` can set the robot's
-    inputs. If its constructor also takes the robot, or its `update_sim` takes ``(now, tm_diff)`` as in current pyfrc,
-    it is created after the robot's `robotInit`.
+    You may inherit from this class; then `update_sim` may be absent, too. The engine is created before the robot, so
+    that `initialize` can set the robot's inputs. If its constructor also takes the robot, or its `update_sim` takes
+    ``(now, tm_diff)`` as in current pyfrc, it is created after the robot's `robotInit`.
 
     :param physics_controller: moves the robot on the field
     """
