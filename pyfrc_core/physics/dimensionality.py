@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pint
 
-from .quantities import WrongDimension
+from .parameters import WrongDimension
 
 
 class WrongUnit(WrongDimension, pint.DimensionalityError):

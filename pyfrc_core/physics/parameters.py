@@ -12,6 +12,10 @@ class ParameterError(PyfrcError, ValueError, AssertionError):
     """A parameter of a physics helper has an impossible value; an `AssertionError` as in 2019."""
 
 
+class WrongDimension(PyfrcError, ValueError):
+    """A parameter has a unit of another dimension, such as a mass in feet, or lacks a required unit."""
+
+
 def finite(value: object, parameter: str) -> float:
     """Return `value` as a float if it is a finite number.
 

@@ -10,7 +10,7 @@ import numbers
 import sys
 from typing import TYPE_CHECKING
 
-from ..errors import PyfrcError
+from .parameters import WrongDimension as WrongDimension
 from .parameters import finite
 from .units import units
 
@@ -33,10 +33,6 @@ KINDS = (
     ("a voltage for an acceleration", "volt * second ** 2 / foot", "0.22 * units.tm_ka"),
     ("a number without a dimension", "dimensionless", "0.5"),
 )
-
-
-class WrongDimension(PyfrcError, ValueError):
-    """A parameter has a unit of another dimension, such as a mass in feet, or lacks a required unit."""
 
 
 def magnitude(value: float | Quantity | object, unit: str, parameter: str, *, plain: bool = False) -> float:
