@@ -15,6 +15,7 @@ from .errors import PyfrcError, RobotCodeError
 from .invariants.load import load_invariants
 from .invariants.watch import watch_invariants
 from .physics.construct import construct
+from .processes.lent_streams import lent_streams
 from .project import Project
 from .runtime.clock import to_us
 from .runtime.data_logs import LogPlace
@@ -56,6 +57,7 @@ class ReplayResult:
     starts: int = 1
 
 
+@lent_streams()
 def replay(project: Project, file: Path, *, until: float | None = None, trace: Path | None = None) -> ReplayResult:
     """Run the robot with the inputs of the script in `file`.
 

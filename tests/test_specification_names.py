@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import io
 import re
 from typing import Any
 
@@ -225,3 +226,73 @@ def test_it_is_the_same_object_as_in_the_core(module: str, name: str) -> None:
     if not defined_in.startswith("pyfrc_core."):  # no class or function of ours
         defined_in = module.replace("pyfrc.", "pyfrc_core.", 1)
     assert find(defined_in, name.rpartition(".")[2]) is found
+
+
+#: What the pyfrc of 2020 to 2026 has besides: each name that is not a part of its own commands.
+SINCE_2020 = {
+    "pyfrc": "version __version__",
+    "pyfrc.version": "version version_tuple __version__",
+    "pyfrc.util": "yesno print_err",
+    "pyfrc.physics.core": "PhysicsEngine PhysicsInitException PhysicsInterface.drive PhysicsInterface.move_robot "
+    "PhysicsInterface.get_pose",
+    "pyfrc.physics.drivetrains": "linear_deadzone DeadzoneCallable TwoMotorDrivetrain.calculate "
+    "FourMotorDrivetrain.calculate MecanumDrivetrain.calculate four_motor_swerve_drivetrain",
+    "pyfrc.physics.motion": "LinearMotion.position_ft LinearMotion.position_ticks LinearMotion.compute",
+    "pyfrc.physics.motor_cfgs": "MotorModelConfig NOMINAL_VOLTAGE",
+    "pyfrc.physics.tankmodel": "MotorModel.compute TankModel.theory TankModel.calculate TankModel.inertia "
+    "TankModel.l_velocity TankModel.r_velocity TankModel.l_position TankModel.r_position",
+    "pyfrc.physics.units": "units Helpers.ensure_mass Helpers.ensure_length Helpers.ensure_acceleration "
+    "Helpers.ensure_time Helpers.ensure_velocity",
+    "pyfrc.physics.visionsim": "VisionSimTarget.compute VisionSim.Target VisionSim.dont_compute VisionSim.compute "
+    "VisionSim.get_immediate_distance",
+    "pyfrc.test_support.controller": "TestController.run_robot TestController.robot_is_alive "
+    "TestController.step_timing",
+    "pyfrc.test_support.pytest_plugin": "PyFrcPlugin.control PyFrcPlugin.robot PyFrcPlugin.robot_file "
+    "PyFrcPlugin.robot_path",
+    "pyfrc.tests.basic": "test_autonomous test_disabled test_operator_control test_practice",
+    "pyfrc.tests.docstring_test": "ignore_object test_docstrings",
+}
+
+
+@pytest.mark.parametrize(
+    ("module", "name"), [(module, name) for module in SINCE_2020 for name in SINCE_2020[module].split()]
+)
+def test_name_since_2020(module: str, name: str) -> None:
+    assert find(module, name) is not None
+
+
+def test_the_version_is_in_each_of_its_places() -> None:
+    import pyfrc
+    import pyfrc.version
+
+    assert pyfrc.version.version == pyfrc.__version__
+    assert pyfrc.version.version_tuple[:2] == (2026, 1)
+
+
+def test_yes_or_no(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    from pyfrc.util import print_err, yesno
+
+    for typed, answer in (("y", True), ("n", False), ("maybe\n\nY", True)):
+        monkeypatch.setattr("sys.stdin", io.StringIO(f"{typed}\n"))
+        assert yesno("Go on?") is answer
+    assert capsys.readouterr().out == "Go on? [y/n]" * 5
+    with pytest.raises(EOFError):
+        yesno("Go on?")
+    print_err("no", 1)
+    assert capsys.readouterr().err == "no 1\n"
+
+
+def test_checks_of_dimensions() -> None:
+    from pint import DimensionalityError
+
+    from pyfrc.physics.units import Helpers, units
+
+    length, time = 2 * units.feet, 3 * units.second
+    right = {"length": length, "time": time, "mass": 4 * units.kg, "velocity": length / time}
+    right["acceleration"] = right["velocity"] / time
+    for dimension, quantity in right.items():
+        ensure = getattr(Helpers, f"ensure_{dimension}")
+        assert ensure(quantity) is quantity
+        for wrong in [5, *(other for other in right.values() if other is not quantity)]:
+            with pytest.raises(DimensionalityError):
+                ensure(wrong)

@@ -1,5 +1,5 @@
 """The units of physical quantities: ``5 * units.feet``."""
 
-from pyfrc_core.physics.units import units
+from pyfrc_core.physics.units import Helpers, units
 
-__all__ = ["units"]
+__all__ = ["Helpers", "units"]

@@ -7,7 +7,7 @@ import os
 import re
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import IO
 
 from ..processes.memory_file import memory_file
@@ -76,11 +76,12 @@ def hal_reports() -> Iterator[HalReports]:
     with memory_file() as file:
         real = os.dup(2)
         os.dup2(file.fileno(), 2)
-        sys.stderr = open(file.fileno(), "w", encoding="utf-8", errors="replace", buffering=1, closefd=False)  # noqa: SIM115
+        sys.stderr = captured = open(file.fileno(), "w", encoding="utf-8", errors="replace", buffering=1, closefd=False)  # noqa: SIM115
         try:
             yield HalReports(file)
         finally:
-            sys.stderr.flush()
+            with suppress(ValueError):  # robot code has closed it
+                captured.flush()
             sys.stderr = stderr
             os.dup2(real, 2)
             os.close(real)

@@ -60,3 +60,39 @@ class _RegistryWhenUsed:
 #: registry of pint; see https://pint.readthedocs.io. It is not set as the application registry, since there can be only
 #: one, and the user may choose it: ``pint.set_application_registry(units)``.
 units = cast("UnitRegistry", _RegistryWhenUsed())
+
+
+class Helpers:
+    """Checks of a quantity's dimension.
+
+    Each returns the quantity, and raises pint's `DimensionalityError` for another dimension or a plain number.
+    """
+
+    @staticmethod
+    def ensure_mass(u: Quantity) -> Quantity:
+        return _ensure("[mass]", u)
+
+    @staticmethod
+    def ensure_length(u: Quantity) -> Quantity:
+        return _ensure("[length]", u)
+
+    @staticmethod
+    def ensure_acceleration(u: Quantity) -> Quantity:
+        return _ensure("[acceleration]", u)
+
+    @staticmethod
+    def ensure_time(u: Quantity) -> Quantity:
+        return _ensure("[time]", u)
+
+    @staticmethod
+    def ensure_velocity(u: Quantity) -> Quantity:
+        return _ensure("[velocity]", u)
+
+
+def _ensure(dimension: str, u: Quantity) -> Quantity:
+    import pint
+
+    quantity: Quantity = units.Quantity(u)
+    if not quantity.check(dimension):
+        raise pint.DimensionalityError(u, "a quantity of", str(quantity.dimensionality), dimension)
+    return u

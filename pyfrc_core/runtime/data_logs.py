@@ -9,7 +9,6 @@ process that a signal ends loses those.
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -26,6 +25,7 @@ from wpiutil.log import DataLog, IntegerLogEntry, StringLogEntry
 
 from ..disk_space import check_disk_space
 from ..processes.exit import before_sudden_exit
+from ..processes.lent_streams import print_error
 from ..text_files import keep_out_of_version_control
 from ..wording import from_here
 from .clock import KICKOFF, OBSERVE, PACKET_US, Clock, to_us
@@ -227,7 +227,7 @@ class DataLogs:
             return
         if why := check_disk_space(log.file):
             # WPILib would end the process when it closes the file.
-            print(f"data log: {log.file} is not complete: {why}", file=sys.stderr)
+            print_error(f"data log: {log.file} is not complete: {why}")
             return
         log.writer.stop()
         if log.renamed:
@@ -246,11 +246,11 @@ class DataLogs:
         try:
             writer = _RealWriter(str(file), header)
         except RuntimeError as error:
-            print(f"data log: {from_here(file)} cannot be written: {error}. It is not kept.", file=sys.stderr)
+            print_error(f"data log: {from_here(file)} cannot be written: {error}. It is not kept.")
             writer = _RealWriter(os.devnull, header)
         else:
             if file != Path(os.devnull):
-                print(f"data log: {from_here(file)}", file=sys.stderr)
+                print_error(f"data log: {from_here(file)}")
         return writer
 
     def _file(self, directory: str, filename: str) -> Path:

@@ -14,6 +14,7 @@ from ..errors import ProjectError, RobotCodeError, text_of
 from ..explain import Explanation, explain
 from ..hal.timing import standing_at_zero
 from ..processes.crash_report import reported_exit
+from ..processes.lent_streams import lent_streams
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_by_any_name
 from .exceptions import TestFroze
@@ -60,7 +61,7 @@ def import_file(project: Project, file: Path, name: str | None = None) -> Module
     sys.modules[name] = module
     refuse_keyboard_input(project.files)
     try:
-        with importing(project.files, project.settings.test.hang_seconds), reported_exit(project.files):
+        with lent_streams(), importing(project.files, project.settings.test.hang_seconds), reported_exit(project.files):
             specification.loader.exec_module(module)
     except (SyntaxError, UnicodeDecodeError, ValueError) as error:
         del sys.modules[name]

@@ -20,6 +20,7 @@ from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, PyfrcError, nearest
 from ..hal import HalData
 from ..invariants.load import Invariant, load_invariants
+from ..processes.lent_streams import lent_streams
 from ..project import Project
 from ..runtime.crash_moment import CrashMoment
 from ..runtime.data_logs import TEST_LOGS, LogPlace
@@ -183,6 +184,7 @@ class PyFrcPlugin:
                 CrashMoment(self.crash_log, run)
             LoopLimit(run, self.project.files, self.project.settings)
             RealTimePace(run, self.project.settings)
+            closing.enter_context(lent_streams())
             if self.crash_log is None:
                 closing.callback(_forget, run, request.node)
             closing.enter_context(self._recorded(run, request.node))
@@ -277,6 +279,11 @@ class PyFrcPlugin:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> None:
         seed_generators(self.options.seed)
+
+    @pytest.hookimpl(wrapper=True, trylast=True)
+    def pytest_runtest_call(self) -> Generator[None, None, None]:
+        with lent_streams():  # pytest has put its own in place again after the setup
+            return (yield)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(

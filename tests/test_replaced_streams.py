@@ -1,0 +1,101 @@
+"""Robot code that replaces or closes the standard streams: commands print to those that they were started with."""
+
+from __future__ import annotations
+
+import pytest
+from conftest import SHORT_MATCH, MakeProject, RobotProject
+
+#: Recorders of the console, as robots have them: some in place of the stream only, and with other attributes.
+ROBOT = """
+    import logging
+    import sys
+
+    import wpilib
+
+
+    class Recorder:
+        def __init__(self, orig):
+            self.orig = orig
+            self.buffer = ""
+
+        def write(self, text):
+            self.orig.write(text)
+            self.buffer = text
+
+        def flush(self):
+            self.orig.flush()
+
+
+    def replace():
+        {what}
+
+    {at_import}
+
+    class Robot(wpilib.TimedRobot):
+        def robotInit(self):
+            print("printed before")
+            {in_init}
+            self.motor = wpilib.Spark(0)
+
+        def teleopPeriodic(self):
+            self.motor.set(0.1)
+"""
+
+REPLACES = {
+    "a recorder": "sys.stdout, sys.stderr = Recorder(sys.stdout), Recorder(sys.stderr)",
+    "both names": "sys.stdout = sys.__stdout__ = sys.stderr = sys.__stderr__ = Recorder(sys.stdout)",
+    "none": "sys.stdout = sys.stderr = None",
+    "closed": "sys.stdout.close(); sys.stderr.close()",
+    "a handler": "logging.basicConfig(stream=sys.stdout); sys.stdout = Recorder(sys.stdout); logging.error('logged')",
+}
+
+
+def make(make_project: MakeProject, what: str, at_import: bool = False) -> RobotProject:
+    text = ROBOT.replace("{what}", REPLACES[what])
+    text = text.replace("{at_import}", "replace()" if at_import else "").replace(
+        "{in_init}", "" if at_import else "replace()"
+    )
+    return make_project({"robot.py": text, "pyproject.toml": SHORT_MATCH})
+
+
+@pytest.mark.parametrize("at_import", [False, True])
+@pytest.mark.parametrize("what", REPLACES)
+def test_tests_and_replays(make_project: MakeProject, what: str, at_import: bool) -> None:
+    project = make(make_project, what, at_import)
+    if at_import and what in ("none", "closed"):
+        pytest.skip("print in robotInit fails, as on the robot")
+    tested = project.run("test", "--builtin", "--record", "scripts")
+    assert tested.code == 0, tested.output
+    assert "4 passed" in tested.stdout
+    replayed = project.run("replay", "scripts/pyfrc.tests.test_practice.jsonl")
+    assert replayed.code == 0, replayed.output
+    assert "printed before\n" in replayed.stdout
+    assert replayed.stdout.endswith("The trace equals the recorded one.\n")
+    if what == "a handler":
+        assert "ERROR:root:logged\n" in replayed.stdout
+
+
+@pytest.mark.parametrize("what", REPLACES)
+@pytest.mark.parametrize("options", [["--no-isolation"], ["--no-isolation", "--", "-s"], ["--", "-s"]])
+def test_other_ways_to_run_tests(make_project: MakeProject, what: str, options: list[str]) -> None:
+    result = make(make_project, what).run("test", "--builtin", *options)
+    assert result.code == 0, result.output
+    assert "4 passed" in result.stdout
+
+
+@pytest.mark.parametrize("what", REPLACES)
+@pytest.mark.parametrize(
+    ("command", "last"),
+    [
+        (["fuzz", "--runs", "2"], "Nothing was found.\n"),
+        (["create-physics"], ""),
+        (["sim", "--ui", "none", "--mode", "practice", "--seconds", "3"], ""),
+        (["coverage", "test", "--builtin"], ""),
+        (["profile", "test", "--builtin"], ""),
+    ],
+)
+def test_other_commands(make_project: MakeProject, what: str, command: list[str], last: str) -> None:
+    result = make(make_project, what).run(*command)
+    assert result.code == 0, result.output
+    assert "Traceback" not in result.output
+    assert result.stdout.endswith(last)
