@@ -6,8 +6,8 @@ import errno
 import io
 import json
 import os
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from collections.abc import Iterator
+from contextlib import closing
 from importlib.metadata import version
 from pathlib import Path
 
@@ -31,19 +31,13 @@ from pyfrc_core.deploy.session import DeployOptions
 from pyfrc_core.deploy.target_connection import RobotChoice
 from pyfrc_core.project import find_project
 
-#: Each start prints its number.
 LATE = """
 import time
-from pathlib import Path
 
 import wpilib
 
 class MyRobot(wpilib.TimedRobot):
     def robotInit(self):
-        starts = Path.home() / "starts of NUMBER"
-        with starts.open("a") as file:
-            file.write(".")
-        print("release NUMBER, start", starts.stat().st_size, flush=True)
         self.began = time.monotonic()
 
     def disabledPeriodic(self):
@@ -67,54 +61,51 @@ class LoggedLike(wpilib.RobotBase):
 class MyRobot(LoggedLike):
     pass
 """
-Said = Callable[[str], object]
-Robot = tuple[str, Said]
 
 
-@contextmanager
-def look_alike() -> Iterator[Robot]:
-    require_roborio()
-    with Roborio(wpilib=version("wpilib")) as robot:
-        yield robot.where, robot.said
+@pytest.fixture
+def project(make_project) -> RobotProject:
+    return make_project({"robot.py": GOOD})
 
 
 @pytest.fixture(params=["virtual robot", "look-alike"])
-def a_robot(request: pytest.FixtureRequest, make_project, tmp_path: Path) -> Iterator[tuple[RobotProject, Robot]]:
-    """A project, and a robot: its address, and what waits for its program's output."""
-    project = make_project({"robot.py": GOOD})
+def address(request: pytest.FixtureRequest, project: RobotProject, tmp_path: Path) -> Iterator[str]:
+    """The address of a robot."""
     if request.param == "look-alike":
-        with look_alike() as robot:
-            yield project, robot
+        require_roborio()
+        with Roborio(wpilib=version("wpilib")) as robot:
+            yield robot.where
     else:
         with started(project, tmp_path / "robot") as virtual:
-            yield project, (virtual.address, virtual.said)
+            yield virtual.address
 
 
 def test_after_three_late_crashers_a_rollback_goes_to_the_program_that_runs(
-    a_robot: tuple[RobotProject, Robot],
+    project: RobotProject, address: str
 ) -> None:
-    project, (address, said) = a_robot
-
     def run(*command: str) -> str:
         result = project.run(*command, "--robot", address)
         assert result.code == 0, result.output
         return result.output
 
+    def ended() -> dict[int, bool]:
+        releases = json.loads(run("deploy-info", "--json").splitlines()[-1])["releases"]
+        return {each["number"]: each["ended"] for each in releases}
+
     run("deploy", "--skip-tests")
     for number in (2, 3, 4):
-        project.write({"robot.py": LATE.replace("NUMBER", str(number))})
+        project.write({"robot.py": f"{LATE}# {number}\n"})
         output = run("deploy", "--skip-tests")
         assert "the program runs" in output
         assert (f"release {number - 1} ended after its last start" in output) == (number > 2)
-        said(f"release {number}, start 2")
-    releases = {each["number"]: each for each in json.loads(run("deploy-info", "--json").splitlines()[-1])["releases"]}
-    assert {number: each["ended"] for number, each in releases.items()} == {1: False, 3: True, 4: True}
+        while not ended()[number]:  # until it has crashed
+            pass
+    assert ended() == {1: False, 3: True, 4: True}
     assert "program    release 4, ended after its last start; " in run("deploy-info")
     assert "The robot runs release 1 again." in run("deploy", "--rollback")
 
 
-def test_a_program_with_its_own_loop_runs(a_robot: tuple[RobotProject, Robot], monkeypatch: pytest.MonkeyPatch) -> None:
-    project, (address, _) = a_robot
+def test_a_program_with_its_own_loop_runs(project: RobotProject, address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     project.write({"robot.py": OWN_LOOP})
     monkeypatch.setattr(starting, "UNHEARD_SECONDS", 5.0)
     shown = io.StringIO()

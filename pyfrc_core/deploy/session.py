@@ -149,7 +149,8 @@ def _note_unfit_releases(facts: RobotFacts, progress: DeployProgress) -> None:
         if each.damaged:
             progress.note(f"  the record of release {each.number} on the robot is damaged: it cannot be started again")
         elif each.number == facts.current and each.ran and each.ended:
-            progress.note(f"  release {each.number} ended after its last start: only --rollback {each.number} selects it")
+            back = f"only --rollback {each.number} selects it"
+            progress.note(f"  release {each.number} ended after its last start: {back}")
 
 
 def _replace_bad_kill_script(robot: AgentClient, connection: Connection, progress: DeployProgress) -> None:
