@@ -224,6 +224,7 @@ ROWS = (
         "",
         "A value is None: a function without return gives None, and so does a name that is set later.",
     ),
+    Row(r"exit\(", "", "A robot program must not end by itself: remove that line."),
     Row(r"RecursionError", "a function calls itself without end", "Did you mean super()., or another method?"),
 )
 

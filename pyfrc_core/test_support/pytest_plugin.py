@@ -292,9 +292,10 @@ class PyFrcPlugin:
         short = not item.config.option.fulltrace
         # Checked before pyfrc's own frames are removed from the traceback.
         never_run = call.excinfo is not None and call.when == "call" and _never_ran_the_robot(item, call.excinfo)
-        text, only = None, False
+        files = self.project.files
+        text, only, explained = None, False, call.excinfo is not None
         if call.excinfo is not None:
-            error, files = call.excinfo.value, self.project.files
+            error = call.excinfo.value
             text = headline(error, files)
             # Without a line of the user's, the traceback has libraries' code only.
             only = short and (names_its_place(error) or files.innermost_line(error.__traceback__) is None)
@@ -308,6 +309,9 @@ class PyFrcPlugin:
             if isinstance(run, RobotRun):
                 setattr(report, REAL_TIME, run.hal_data["CAN"].real_time_devices())
         if report.failed and call.excinfo is not None:
+            error = call.excinfo.value
+            if not explained:  # that of a unittest.TestCase, which pytest has only now
+                text = headline(error, files)
             if text is not None:
                 if not never_run and headline_is_the_robots(text, files):
                     setattr(report, BUG, bug_of(text))

@@ -24,7 +24,7 @@ from .reporting import BUG, REAL_TIME, put_first
 from .uncollected import find_uncollected
 
 #: How many lines of a failed test's output are shown.
-_SHOWN = 12
+_SHOWN = 10
 
 
 class SummaryPlugin:
