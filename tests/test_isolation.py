@@ -882,3 +882,18 @@ def test_the_longest_test_starts_first_the_next_time_and_reports_stay_in_order(m
     # No test may run after one that failed.
     assert project.run("test", "-j", "2", "--", "-x").code == 0
     assert int((project.path / "1.started").read_text()) <= int((project.path / "400.started").read_text())
+
+
+def test_plugins_of_libraries_that_pyfrc_depends_on_are_not_loaded(make_project: MakeProject) -> None:
+    test = """
+        import sys
+
+
+        def test_plugins(request):
+            for name in ("anyio", "platformdirs"):
+                assert request.config.pluginmanager.hasplugin(name) is (name in sys.argv)
+    """
+    project = make_project({"robot.py": ROBOT, "tests/test_a.py": test})
+    assert project.run("test").code == 0
+    asked_for = project.run("test", "--", "-p", "anyio")
+    assert asked_for.code == 0, asked_for.output
