@@ -84,7 +84,7 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
         failures: list[PyfrcError] = []
         settings = project.settings
         hang_seconds = settings.fuzz.hang_seconds if script.story else settings.test.hang_seconds
-        with HangDetector(run, project.files, hang_seconds).watching():
+        with HangDetector(project.files, hang_seconds, meanwhile="the replay").watching():
             run.open()
             LoopLimit(run, project.files, settings)
             RealTimePace(run, settings)

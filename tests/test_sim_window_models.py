@@ -18,6 +18,7 @@ if missing_tkinter():  # some imports below need it
 
 from pyfrc_core.config.sim import SimConfig
 from pyfrc_core.physics.pose import Pose
+from pyfrc_core.processes.standstill import Standstill
 from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
 from pyfrc_core.sim.ui.models.devices import SETTABLE, DeviceRows, Row, RowKind, panels_of
@@ -553,6 +554,11 @@ def test_the_speed_slider_has_real_time_and_no_limit() -> None:
         (snapshot("test", emergency_stopped=True), Status("running"), ("Emergency stopped", "error")),
         (snapshot("teleop"), Status("failed", failure=Failure("x", "", 1)), ("No robot code", "error")),
         (snapshot("teleop"), Status("running", responding=False), ("Not responding", "error")),
+        (
+            snapshot("teleop"),
+            Status("running", responding=False, standstill=Standstill(3.0, "robot.py:7", 1.5)),
+            ("Not responding: robot.py:7", "error"),
+        ),
     ],
 )
 def test_what_the_robot_is_doing(shown: Snapshot | None, status: Status, words: tuple[str, str]) -> None:

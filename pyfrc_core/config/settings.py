@@ -70,7 +70,8 @@ class TestSettings:
     jobs: Annotated[int, _Positive] | Literal["auto"] = "auto"
     #: What each test that uses the robot runs in: a forked process, a new one, or this one.
     isolation: Literal["auto", "fork", "spawn", "none"] = "auto"
-    #: Processor seconds without progress in robot time, after which robot code counts as hanging.
+    #: Seconds of computing without progress in robot time after which robot code counts as hanging. For code that
+    #: waits, it is at least 10 s.
     hang_seconds: Seconds = 10.0
     #: How long a periodic function may wait, in robot time, until it counts as one that never returns. What begins in
     #: autonomous or test mode has the length of the autonomous period, where that is longer.

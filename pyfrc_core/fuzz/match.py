@@ -332,7 +332,7 @@ def _robot(
     # Imports the robot before robot time begins.
     run = RobotRun(has_devices=imported_devices(project), start_us=boot.at_us, tree=next_tree())
     settings = project.settings.fuzz
-    hang_detector = HangDetector(run, project.files, hang_seconds or settings.hang_seconds, log)
+    hang_detector = HangDetector(project.files, hang_seconds or settings.hang_seconds, log)
     with hang_detector.watching():
         run.open()
         CrashMoment(log, run)

@@ -250,7 +250,7 @@ class ForkedMatchExecutor(MatchExecutor):
 
     def _begin(self, task: Task) -> ForkedCall[MatchResult]:
         self._preparation.prepare_for(task)
-        work = ForkedCall(lambda log: play(self.project, log, task))
+        work = ForkedCall(lambda log: play(self.project, log, task), files=self.project.files)
         self._running.append(work)
         return work
 
@@ -263,7 +263,7 @@ class ForkedMatchExecutor(MatchExecutor):
                 return self._died(task, str(ended))
 
     def _do(self, what: Callable[[], Answer]) -> Answer:
-        work = ForkedCall(lambda log: what())
+        work = ForkedCall(lambda log: what(), files=self.project.files)
         with closing(work):
             work.wait()
             return work.result(self.project.files, "while it was imported")

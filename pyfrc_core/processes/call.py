@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import sys
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -15,6 +16,7 @@ from ..errors import PyfrcError, RobotCodeError, text_of
 from .crash_report import CrashLog
 from .exit import flush_output
 from .fork import FORK_IS_SAFE, wait_for_any
+from .standstill import StandstillNotice
 from .worker import ForkedWorker, Send, SpawnedWorker, Worker
 
 if TYPE_CHECKING:
@@ -55,8 +57,9 @@ def run_in_subprocess(
     output = subprocess.DEVNULL if quietly else None
     flush_output()
     worker = SpawnedWorker(call, stdout=output, stderr=output, environment=ENVIRONMENT)
+    notice = StandstillNotice()
     try:
-        worker.wait()
+        worker.wait(lambda: print_standstill(worker, notice, project.files))
         result: Answer = _result_of(worker, project.files, meanwhile)
         return result
     finally:
@@ -68,9 +71,13 @@ class ForkedCall(Generic[Answer]):
 
     :param call: its result can be pickled
     :param quietly: whether nothing that is printed there is shown
+    :param files: of the project whose line is printed while its code makes no progress there
     """
 
-    def __init__(self, call: Callable[[CrashLog], Answer], quietly: bool = True) -> None:
+    def __init__(
+        self, call: Callable[[CrashLog], Answer], quietly: bool = True, files: RobotFiles | None = None
+    ) -> None:
+        self._files, self._notice = files, StandstillNotice()
         self._worker = ForkedWorker(partial(_call_apart, call, (0, 1, 2) if quietly else (0,)))
 
     @property
@@ -83,8 +90,10 @@ class ForkedCall(Generic[Answer]):
         return number
 
     def poll(self) -> None:
-        """See whether it has finished."""
+        """See whether it has finished; print where it makes no progress."""
         self._worker.poll()
+        if self._files is not None:
+            print_standstill(self._worker, self._notice, self._files)
 
     def wait(self) -> None:
         """Wait until it has finished."""
@@ -103,6 +112,12 @@ class ForkedCall(Generic[Answer]):
         """
         result: Answer = _result_of(self._worker, files, meanwhile)
         return result
+
+
+def print_standstill(worker: Worker, notice: StandstillNotice, files: RobotFiles) -> None:
+    """Print where the code of a process makes no progress, once it is time for that."""
+    if not worker.finished and (text := notice.look(worker.standstill(files))) is not None:
+        print(text, file=sys.stderr, flush=True)
 
 
 def _result_of(worker: Worker, files: RobotFiles, meanwhile: str) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import faulthandler
+import math
 import mmap
 import os
 import re
@@ -18,15 +19,24 @@ from itertools import takewhile
 from ..compat.cpython_private import get_frame
 from ..project.robot_files import RobotFiles, is_pyfrc
 from .exit import EXIT_HANGS, exit_now, prepare_sudden_exit
+from .standstill import Standstill
 
 _FAULT_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 
-#: What a crash log begins with: this, then the robot time in microseconds, then the name of the mode.
+#: What a crash log begins with: this, then the robot time in microseconds, then the name of the mode; then where code
+#: makes no progress: for how many seconds, at what robot time, and the place.
 #: A process that is killed has no time to write; what it has written to memory that is mapped to a file stays.
 _MAGIC = b"\0moment\n"
 _MOMENT = struct.Struct("=8sq32s")
+_STANDSTILL = struct.Struct("=dd208s")
+_HEADER_SIZE = _MOMENT.size + _STANDSTILL.size
 _MODE_OFFSET = 16
 _NOT_STARTED = -1
+
+#: What each stack begins with that C code writes while no Python code can run. After some of them, the process is not
+#: only on a busy machine, or was suspended: each has taken its time.
+_NO_PYTHON = "Timeout ("
+_HOPELESS_STACKS = 3
 
 _os_exit = os._exit
 
@@ -58,6 +68,7 @@ class CrashLog:
         #: files cannot be mapped.
         self.time_us: memoryview | None = None
         self._mode: memoryview | None = None
+        self._standstill: memoryview | None = None
 
     def write(self, text: str) -> None:
         write_all(self.descriptor, text.encode())
@@ -67,16 +78,33 @@ class CrashLog:
         if self._mode is not None:
             self._mode[:] = name.encode()[: len(self._mode)].ljust(len(self._mode), b"\0")
 
+    def set_standstill(self, standstill: Standstill | None) -> None:
+        """Note where code of this process makes no progress; None: nowhere."""
+        if self._standstill is None:
+            return
+        if standstill is None:
+            _STANDSTILL.pack_into(self._standstill, 0, 0.0, 0.0, b"")
+        else:
+            robot_time = math.nan if standstill.robot_time is None else standstill.robot_time
+            _STANDSTILL.pack_into(self._standstill, 0, standstill.seconds, robot_time, standstill.place.encode())
+
+    def forget_stacks(self) -> None:
+        """Remove the stacks that C code has written while no Python code could run: it runs again."""
+        if self.time_us is not None and os.fstat(self.descriptor).st_size > _HEADER_SIZE:
+            os.ftruncate(self.descriptor, _HEADER_SIZE)
+            os.lseek(self.descriptor, 0, os.SEEK_END)
+
     def enable_fault_handler(self) -> None:
         """Have a fault in C code write its stack here, and nowhere else."""
         faulthandler.enable(self.descriptor, all_threads=False)
 
     def enable(self) -> None:
         """From now on, write where a fault in C code, or `os._exit`, has ended this process."""
-        write_all(self.descriptor, _MOMENT.pack(_MAGIC, _NOT_STARTED, b""))
+        write_all(self.descriptor, _MOMENT.pack(_MAGIC, _NOT_STARTED, b"") + bytes(_STANDSTILL.size))
         with suppress(OSError, ValueError):
-            mapped = memoryview(mmap.mmap(self.descriptor, _MOMENT.size))
-            self.time_us, self._mode = mapped[len(_MAGIC) : _MODE_OFFSET].cast("q"), mapped[_MODE_OFFSET:]
+            mapped = memoryview(mmap.mmap(self.descriptor, _HEADER_SIZE))
+            self.time_us = mapped[len(_MAGIC) : _MODE_OFFSET].cast("q")
+            self._mode, self._standstill = mapped[_MODE_OFFSET : _MOMENT.size], mapped[_MOMENT.size :]
         self.enable_fault_handler()
         here = os.getpid()
 
@@ -136,10 +164,11 @@ def describe_exit(report: bytes, status: int, files: RobotFiles, meanwhile: str)
     :param meanwhile: when that was, such as "in the middle of the test"
     """
     moment = moment_of(report)
-    text = report[_MOMENT.size if report.startswith(_MAGIC) else 0 :].decode(errors="replace").strip()
+    text = _text_of(report)
     if status == EXIT_HANGS and text:
         return text
-    if text.startswith("Timeout"):
+    if text.startswith(_NO_PYTHON):
+        text = text[text.rindex(_NO_PYTHON) :]
         what = "the robot code hangs here, in a call that lets nothing else of Python run"
     elif status < 0:
         what = f"the robot's process was ended by signal {-status} ({_signal_name(-status)})"
@@ -159,6 +188,28 @@ def moment_of(report: bytes) -> Moment | None:
         return None
     _, time_us, mode = _MOMENT.unpack_from(report)
     return None if time_us == _NOT_STARTED else Moment(time_us / 1_000_000, mode.rstrip(b"\0").decode())
+
+
+def standstill_of(report: bytes, files: RobotFiles) -> Standstill | None:
+    """Return where the code of a process with this crash log makes no progress; None when it does."""
+    if not report.startswith(_MAGIC) or len(report) < _HEADER_SIZE:
+        return None
+    if stacks := _text_of(report).split(_NO_PYTHON)[1:]:
+        # Each of them begins with the time after which it was written: 0:00:03
+        times = [re.match(r"(\d+):(\d+):(\d+)", stack) for stack in stacks]
+        seconds = sum(int(time[1]) * 3600 + int(time[2]) * 60 + int(time[3]) for time in times if time)
+        moment = moment_of(report)
+        place = _line_of_crash(stacks[-1], files) or "a call that lets nothing else of Python run"
+        return Standstill(seconds, place, None if moment is None else moment.seconds, len(stacks) >= _HOPELESS_STACKS)
+    seconds, robot_time, place = _STANDSTILL.unpack_from(report, _MOMENT.size)
+    if not seconds:
+        return None
+    known = place.rstrip(b"\0").decode(errors="replace")
+    return Standstill(seconds, known, None if math.isnan(robot_time) else robot_time)
+
+
+def _text_of(report: bytes) -> str:
+    return report[_HEADER_SIZE if report.startswith(_MAGIC) else 0 :].decode(errors="replace").strip()
 
 
 def write_all(descriptor: int, data: bytes) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import tempfile
 import traceback
@@ -13,10 +14,14 @@ from typing import IO, Any, NoReturn
 
 from ..project.robot_files import RobotFiles
 from . import fork, spawn
-from .crash_report import CrashLog, describe_exit
+from .crash_report import CrashLog, describe_exit, standstill_of
 from .exit import end_child_processes, exit_now, flush_output
 from .frames import decode, encode
 from .memory_file import memory_file
+from .standstill import Standstill
+
+#: Seconds between two looks at a process that is waited for. Decides nothing else.
+_LOOK_SECONDS = 0.25
 
 #: Sends an object to the process that has started this one.
 Send = Callable[[object], object]
@@ -64,6 +69,13 @@ class Worker(ABC):
         """
         return describe_exit(self._crash_report(), self.status, files, meanwhile)
 
+    def standstill(self, files: RobotFiles) -> Standstill | None:
+        """Return where its code makes no progress; None when it does. End a process in which no Python code can run."""
+        standstill = standstill_of(self._crash_report(), files)
+        if standstill is not None and standstill.hopeless:
+            self.kill()
+        return standstill
+
     @abstractmethod
     def _crash_report(self) -> bytes:
         """Return what is in its crash log."""
@@ -97,8 +109,8 @@ class ForkedWorker(Worker):
         self.finished, self.status, self._received = self._fork.finished, self._fork.status, self._fork.message
 
     def _crash_report(self) -> bytes:
-        self._crash_log.seek(0)
-        return self._crash_log.read()
+        # Its offset is that of the other process, too.
+        return os.pread(descriptor := self._crash_log.fileno(), os.fstat(descriptor).st_size, 0)
 
 
 class SpawnedWorker(Worker):
@@ -124,10 +136,17 @@ class SpawnedWorker(Worker):
         if not self.finished and (status := self._process.poll()) is not None:
             self._end(status)
 
-    def wait(self) -> None:
-        """Wait until it has ended; when that is interrupted, end it."""
+    def wait(self, look: Callable[[], object] = lambda: None) -> None:
+        """Wait until it has ended; when that is interrupted, end it.
+
+        :param look: called from time to time
+        """
         try:
-            self._end(self._process.wait())
+            while not self.finished:
+                try:
+                    self._end(self._process.wait(_LOOK_SECONDS))
+                except subprocess.TimeoutExpired:
+                    look()
         except BaseException:
             self.kill()
             raise

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 import wpilib
 
+from ..compat.cpython_private import get_frame
 from ..compat.wpilib_private import end_competition
 from ..errors import RobotCodeError
+from ..project.robot_files import RobotFiles
 from .patch_table import Patch, patched
 
 
@@ -29,6 +32,35 @@ def without_first_alarm() -> Iterator[None]:
         end_competition(self)
 
     with patched([Patch(wpilib.TimedRobot, "__init__", __init__)]):
+        yield
+
+
+@contextmanager
+def refused(files: RobotFiles) -> Iterator[None]:
+    """Refuse robots that are made while the program is imported: WPILib makes the robot, and its time would stand."""
+
+    def refusing(robot_class: type[Any]) -> Patch:
+        original = robot_class.__init__
+
+        def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
+            __tracebackhide__ = True
+            line: str | None = None
+            frame: FrameType | None = get_frame(1)
+            while frame is not None:  # the outermost line: the class has only been called there
+                line, frame = files.line_of_frame(frame) or line, frame.f_back
+            if line is None:
+                original(self, *args, **kwargs)
+                return
+            raise RobotCodeError(
+                f"a robot is made while the program is imported: {type(self).__name__}()",
+                where=line,
+                remedy="Delete this call: the robot program is its class, and pyfrc and WPILib make the robot.",
+            )
+
+        return Patch(robot_class, "__init__", __init__)
+
+    bases = [wpilib.RobotBase, wpilib.IterativeRobotBase, wpilib.TimedRobot, wpilib.TimesliceRobot]
+    with patched([refusing(base) for base in bases]):
         yield
 
 

@@ -7,12 +7,13 @@ threads that take no part in a robot run they behave as the originals do.
 
 from __future__ import annotations
 
+import os
 import threading
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..compat.cpython_private import get_frame, is_initialized
+from ..compat.cpython_private import current_frames, get_frame, is_initialized
 from .clock import to_us
 from .threads import real_thread_join
 
@@ -28,6 +29,7 @@ _BETWEEN = (
     *(str(_LIBRARY / name) for name in ("threading.py", "queue.py", "concurrent", "sched.py", "contextlib.py")),
     str(Path(__file__).with_name("locks.py")),
 )
+_ASYNCIO = str(_LIBRARY / "asyncio") + os.sep
 # Where a thread of the robot begins, when nothing of the robot's own is on its stack (a pool's worker).
 _ROBOT_THREADS = str(Path(__file__).with_name("threads.py"))
 
@@ -77,7 +79,15 @@ def start_thread(thread: threading.Thread) -> None:
     if initialized and on_behalf_of_robot_code(get_frame(1)):
         start_in_robot_time(thread)
     else:
+        if (caller := _past_library(get_frame(1))) is not None and (line := scope.line_of(caller)) is not None:
+            vars(thread)["_pyfrc_test"] = line
         _start_really(thread)
+
+
+def test_that_started(thread: threading.Thread) -> str | None:
+    """Return the line of the project's tests that has started a thread, if they have."""
+    line: str | None = vars(thread).get("_pyfrc_test")
+    return line
 
 
 def start_in_robot_time(thread: threading.Thread) -> None:
@@ -94,7 +104,7 @@ def start_in_robot_time(thread: threading.Thread) -> None:
 
 def on_behalf_of_robot_code(caller: FrameType | None) -> bool:
     """Whether robot code called, be it through the standard library (an event, a timer, a pool of threads)."""
-    while caller is not None:
+    while (caller := _runner_of_event_loop(caller)) is not None:
         filename = caller.f_code.co_filename
         if scope.is_robot_code(filename) or filename == _ROBOT_THREADS:
             return True
@@ -107,6 +117,29 @@ def on_behalf_of_robot_code(caller: FrameType | None) -> bool:
                 return scope.is_robot_code(module)
         caller = caller.f_back
     return False
+
+
+def _runner_of_event_loop(caller: FrameType | None) -> FrameType | None:
+    """Return what runs the event loop that calls, or what calls instead: one loop has one time for all that it runs."""
+    if caller is None or not caller.f_code.co_filename.startswith(_ASYNCIO):
+        return caller
+    outermost, frame = caller, caller.f_back
+    while frame is not None:
+        if frame.f_code.co_filename.startswith(_ASYNCIO):
+            outermost = frame
+        frame = frame.f_back
+    return outermost.f_back
+
+
+def _past_library(caller: FrameType | None) -> FrameType | None:
+    while caller is not None and caller.f_code.co_filename.startswith(_BETWEEN):
+        caller = caller.f_back
+    return caller
+
+
+def is_event_loop_of_robot_code(caller: FrameType) -> bool:
+    """Return whether asyncio calls, in a loop that robot code runs."""
+    return caller.f_code.co_filename.startswith(_ASYNCIO) and on_behalf_of_robot_code(caller)
 
 
 def begin_waiting_threads() -> None:
@@ -151,6 +184,14 @@ def _start_really(thread: threading.Thread) -> None:
         real_thread_start(thread)
     finally:
         scope.local.starting = False
+
+
+def line_of_thread(ident: int | None) -> str | None:
+    """Return the project's line that a thread is at, as ``robot.py:12``."""
+    frame = None if ident is None else current_frames().get(ident)
+    while frame is not None and (line := scope.line_of(frame)) is None:
+        frame = frame.f_back
+    return None if frame is None else line
 
 
 def record_of(thread: threading.Thread) -> RobotThread | None:

@@ -1,7 +1,7 @@
 """The ways a test run of a robot ends before its test function returns.
 
-`TestEnded` and `TestRanTooLong` derive from `BaseException`, so that robot code's ``except Exception`` does not
-swallow the end of its own run. (Importable from their documented place, `pyfrc.test_support.fake_time`.)
+`TestEnded`, `TestRanTooLong` and `TestFroze` derive from `BaseException`, so that robot code's ``except Exception``
+does not swallow the end of its own run. (Importable from their documented place, `pyfrc.test_support.fake_time`.)
 """
 
 from __future__ import annotations
@@ -29,8 +29,12 @@ class TestRanTooLong(BaseException):
     __test__ = False
 
 
-class TestFroze(Exception):
-    """The robot code stopped letting time go on: an endless loop, or a call that never returns."""
+class TestFroze(BaseException):
+    """The robot code stopped letting time go on: an endless loop, or a call that never returns.
+
+    Inherits from `BaseException`: a blanket ``except Exception`` does not catch it. If code catches it all the same,
+    the test fails at its end.
+    """
 
     __test__ = False
 

@@ -1,43 +1,55 @@
-"""Detects robot code that hangs: robot time does not move while the code uses processor time.
+"""Detects code that hangs: while robot time does not move, it computes for too long, or waits for too long.
 
-It measures processor time, not wall time, so that a busy machine cannot make a correct robot fail. Code that blocks
-without using processor time (it reads from the keyboard) has a long limit of wall time instead, which never applies
-while robot time moves.
+The time in which a busy machine did not let the code run is neither, and a look that comes late, since this process or
+the machine was stopped, counts as one look. So only the code itself can make a correct robot fail.
 """
 
 from __future__ import annotations
 
+import atexit
 import faulthandler
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING
 
 from ..compat.cpython_private import allocate_lock, current_frames, raise_in_thread, start_bare_thread
 from ..processes.exit import EXIT_HANGS, prepare_sudden_exit
+from ..processes.standstill import Standstill, StandstillNotice
 from .exceptions import TestFroze
-from .thread_cpu import cpu_of_this_thread
+from .robot import active_run
+from .thread_cpu import ThreadTimes
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
     from ..project.robot_files import RobotFiles
     from .robot import RobotRun
 
-#: Wall seconds blocked without any processor time, after which robot code counts as hanging, too.
-BLOCKED_SECONDS = 60.0
+#: How many times as long the user's own tests may compute: they may have reasons that a robot has not.
+_OUTSIDE_FACTOR = 6.0
 
-#: How many times `hang_seconds`, in wall time, no Python code at all may run. Even a busy machine lets a thread run
-#: once in a minute.
-STUCK_FACTOR = 6
+#: Code that was interrupted has this part of the limit to end.
+_UNWINDING = 0.25
 
+#: For how long no Python code may run until C code writes the stack, as a part of the limit, and in seconds at least.
+_DUMP_PART, _DUMP_LEAST = 0.35, 1.0
+
+#: The least limit for code that waits, in seconds: devices and networks are slower than processors.
+_BLOCKED_SECONDS = 10.0
+
+#: Where the system does not say for how long a thread has waited for a processor: one that has used it for more than
+#: this part of a look would have used it for all of it.
+_COMPUTING = 0.1
+
+_IMPORT = "<frozen importlib"
 _SIGNAL = getattr(signal, "SIGVTALRM", None)  # not on Windows
-_wait, _wall, _cpu = time.sleep, time.monotonic, time.process_time
+_wait, _wall = time.sleep, time.monotonic
 _get_ident = threading.get_ident
-_start_thread, _join_thread = threading.Thread.start, threading.Thread.join
 _exit = os._exit
 
 
@@ -91,123 +103,248 @@ class _Interruption:
             raise_in_thread(ident, type("TestFroze", (TestFroze,), members))
 
 
-@contextmanager
-def importing(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
-    """While this lasts, the calling thread imports robot code, which is interrupted with `TestFroze` when it hangs.
-
-    :param hang_seconds: processor seconds in the project's own files, after which it does; what libraries take while
-        they are imported does not count
-    """
-    ident, cpu = _get_ident(), cpu_of_this_thread()
-    interruption, returned = _Interruption(), allocate_lock()
-    returned.acquire()
-
-    def watch() -> None:
-        seen, busy = cpu(), 0.0
-        while not returned.acquire(timeout=min(0.25, hang_seconds / 4)):
-            frame = current_frames().get(ident)
-            now = cpu()
-            if frame is not None and files.is_project_file(frame.f_code.co_filename):
-                busy += now - seen
-            seen = now
-            del frame  # or what it holds would live on
-            if busy >= hang_seconds:
-                busy = 0.0
-                interruption.interrupt(ident, f"the robot code hangs here, through {hang_seconds:g} s of computing")
-
-    thread = threading.Thread(target=watch, name="pyfrc import hang detector", daemon=True)
-    with interruption.possible():
-        _start_thread(thread)
-        try:
-            yield
-        finally:
-            interruption.end()
-            returned.release()
-            _join_thread(thread)  # what forks this process next counts its threads
-
-
 class HangDetector:
-    """Watches one robot run from a thread of its own.
+    """Watches the code of this process, from a thread of its own.
 
-    :param hang_seconds: processor seconds without a microsecond of robot time, after which code counts as hanging
-    :param log: where the explanation is written before the process is ended, when the code cannot be stopped; also
-        the stack of code that keeps Python's lock, so that not even this class gets to run. Without it the process is
-        never ended.
+    :param hang_seconds: the limit for code that computes, and for code that waits if it is more than 10 s
+    :param log: where to write where the code stands, for the process that owns this one, and the explanation before
+        the process is ended, when the code cannot be stopped. Without it, the process is never ended
+    :param everything: whether code counts, too, that runs while no robot's code does: tests, and what is imported
+    :param terminal: the descriptor of the file where to print, without a log, where the code stands
+    :param meanwhile: in what, see `Standstill.text`
     """
 
     def __init__(
         self,
-        run: RobotRun,
         files: RobotFiles | None,
         hang_seconds: float,
         log: CrashLog | None = None,
+        *,
+        everything: bool = False,
+        terminal: int = 2,
+        meanwhile: str = "",
     ) -> None:
-        self._run = run
         self._files = files
         self._hang_seconds = hang_seconds
+        self._blocked_seconds = max(hang_seconds, _BLOCKED_SECONDS)
         self._log = log
+        self._everything = everything
+        self._terminal = terminal
+        self._notice = StandstillNotice(meanwhile)
         self._interruption = _Interruption()
+        self._look_seconds = min(0.25, hang_seconds / 4)
+        self._steps = 0
+        #: How many times as long code outside the robot's may compute.
+        self.outside_factor = _OUTSIDE_FACTOR
+        #: The thread that is outside the robot's code while no robot runs: by default the one that is watched.
+        self.outside: int | None = None
+        #: Whether code that hangs is interrupted, and not only named.
+        self.judges = True
+        #: Whether a debugger has stopped the code.
+        self.paused = False
+        #: What was raised in the code.
+        self.raised: TestFroze | None = None
+
+    def proceed(self) -> None:
+        """Note that code outside the robot's has made progress."""
+        self._steps += 1
 
     @contextmanager
     def watching(self) -> Iterator[None]:
         """Watch while this lasts; code that hangs is interrupted with `TestFroze`."""
+        self._watched = _get_ident(), ThreadTimes()
+        global _active
         with self._interruption.possible():
+            before, _active = _active, self
             start_bare_thread(self._watch)
             try:
                 yield
             finally:
+                _active = before
                 self._interruption.end()
-                if self._log is not None:
-                    faulthandler.cancel_dump_traceback_later()
+                faulthandler.cancel_dump_traceback_later()
 
     def _watch(self) -> None:
-        clock, interruption, cpu_of_running = self._run.clock, self._interruption, self._run.threads.cpu_of_running
-        seen, cpu, own, wall = clock.now_us, _cpu(), cpu_of_running(), _wall()
-        warned = False
-        while not interruption.over:
-            if self._log is not None:
-                # From C, and so without Python's lock; put off again each time this thread does get to run.
-                faulthandler.dump_traceback_later(
-                    STUCK_FACTOR * self._hang_seconds, exit=True, file=self._log.descriptor
-                )
-            _wait(min(0.25, self._hang_seconds / 4))
-            if clock.now_us != seen or not self._run.in_motion or interruption.over:
-                seen, cpu, own, wall, warned = clock.now_us, _cpu(), cpu_of_running(), _wall(), False
+        me = ThreadTimes()
+        seen, stood = self._progress(), _Standing()
+        while not self._interruption.over:
+            self._have_c_code_watch()
+            ident, times = self._whose_turn()
+            wall, cpu, starved = _wall(), times.cpu(), _sum(times.starved(), me.starved())
+            _wait(self._look_seconds)
+            if self._interruption.over:
+                return
+            progress = self._progress()
+            if progress != seen or progress is None:
+                if stood.seconds:
+                    self._tell(None)
+                seen, stood = progress, _Standing()
                 continue
-            busy = _cpu() - cpu >= self._hang_seconds
-            blocked = _wall() - wall >= BLOCKED_SECONDS and cpu_of_running() - own < 0.01 * BLOCKED_SECONDS
-            if not (busy or blocked):
-                continue
-            culprit = self._culprit()
-            if warned:
-                self._give_up(culprit)
-            interruption.interrupt(culprit, self._explain(culprit, busy))
-            cpu, own, wall, warned = _cpu(), cpu_of_running(), _wall(), True
+            elapsed, used = _wall() - wall, max(0.0, times.cpu() - cpu)
+            stood.seconds += min(elapsed, 2 * self._look_seconds)
+            ident, place, imports = self._place(ident)
+            # This thread holds Python's lock while it waits for a processor.
+            starved_now = _sum(times.starved(), me.starved())
+            if starved is not None and starved_now is not None:
+                elapsed -= starved_now - starved
+            elif used > _COMPUTING * elapsed:
+                elapsed = used
+            if not imports:
+                stood.computed += used
+                # The system adds the time of a starved thread when that is over: then it is more than this look.
+                stood.waited += min(elapsed - used, 2 * self._look_seconds)
+            run = active_run.run
+            self._tell(Standstill(stood.seconds, place, None if run is None else run.clock.now))
+            if self.judges and self._is_too_long(stood):
+                self._judge(stood, ident, place)
 
-    def _culprit(self) -> int:
-        """Return the thread that has the turn."""
-        running = self._run.threads.running
-        if running is not None and running.ident is not None:
-            return running.ident
-        return self._run.threads.driver
+    def _limit(self, computes: bool) -> float:
+        if not computes:
+            return self._blocked_seconds
+        return self._hang_seconds * (self.outside_factor if self._running is None and self._everything else 1.0)
 
-    def _explain(self, ident: int, busy: bool) -> str:
-        line = self._files.line_of_thread(ident) if self._files is not None else None
-        place = f"{line}: " if line else ""
-        where = "a thread of the robot" if ident != self._run.threads.driver else "the robot code"
-        stands = f"robot time has stood at {self._run.clock.now:.2f} s"
-        if busy:
-            what = f"{where} hangs here: {stands} through {self._hang_seconds:g} s of computing"
+    def _is_too_long(self, stood: _Standing) -> bool:
+        part = 1.0 if self.raised is None else _UNWINDING
+        return stood.computed >= part * self._limit(True) or stood.waited >= part * self._limit(False)
+
+    def _judge(self, stood: _Standing, ident: int, place: str) -> None:
+        if self.raised is not None:
+            self._give_up(str(self.raised))
+        self.raised = TestFroze(self._explain(stood, ident, place))
+        if self._running is not None:
+            self._running.threads.fail(self.raised)  # whatever code catches it
+        if self.outside is not None and self._running is None:
+            raise_in_thread(ident, SystemExit)  # ends it without a word
+        else:
+            self._interruption.interrupt(ident, str(self.raised))
+        stood.computed = stood.waited = 0.0
+
+    @property
+    def _running(self) -> RobotRun | None:
+        """The run whose code is running."""
+        run = active_run.run
+        return run if run is not None and run.in_motion else None
+
+    def _progress(self) -> object:
+        """Return what changes when there is progress; None while no code is watched."""
+        if self.paused or "pydevd" in sys.modules or (self._running is None and not self._everything):
+            return None
+        run = active_run.run
+        running = self._running
+        return None if running is None else id(running), None if run is None else run.clock.now_us, self._steps
+
+    def _whose_turn(self) -> tuple[int, ThreadTimes]:
+        return self._watched if self._running is None else self._running.threads.whose_turn()
+
+    def _place(self, ident: int) -> tuple[int, str, bool]:
+        """Return the thread that stands, the user's line, and whether that imports a library."""
+        if self._running is None and self.outside is not None:
+            ident = self.outside
+        imports = False
+        frame = current_frames().get(ident)
+        innermost = frame
+        while frame is not None and self._files is not None:
+            if (line := self._files.line_of_frame(frame)) is not None:
+                return ident, line, imports
+            imports = imports or frame.f_code.co_filename.startswith(_IMPORT)
+            frame = frame.f_back
+        known = f"{innermost.f_code.co_filename}:{innermost.f_lineno}" if innermost is not None else "unknown"
+        return ident, known, imports
+
+    def _tell(self, standstill: Standstill | None) -> None:
+        """Write where the code stands, for those who wait for it."""
+        if self._log is not None:
+            self._log.set_standstill(standstill)
+        elif (text := self._notice.look(standstill)) is not None:
+            with suppress(OSError):
+                os.write(self._terminal, f"{text}\n".encode(errors="replace"))
+
+    def _have_c_code_watch(self) -> None:
+        """Have the stack written by C code, which does not need Python's lock, if this thread does not run any more."""
+        file: int = self._terminal
+        if self._log is not None:
+            self._log.forget_stacks()
+            file = self._log.descriptor
+        with suppress(OSError):
+            seconds = max(_DUMP_LEAST, _DUMP_PART * self._hang_seconds)
+            faulthandler.dump_traceback_later(seconds, repeat=True, file=file)
+
+    def _explain(self, stood: _Standing, ident: int, place: str) -> str:
+        computes = stood.computed >= self._limit(True)
+        seconds = f"{self._limit(computes):g} s"
+        run, who = active_run.run, "the test"
+        if self._running is None and self.outside is not None:
+            return (
+                f"{place}: a thread that the test has started is still running, {seconds} after the test.\n"
+                "End it in the test, or make it a daemon: threading.Thread(..., daemon=True)"
+            )
+        if self._running is not None and ident != self._running.threads.driver:
+            who = "a thread of the robot"
+        elif self._files is not None and self._files.is_robot_code(self._files.root + place.rpartition(":")[0]):
+            who = "the robot code"
+        stands = "," if run is None else f": robot time has stood at {run.clock.now:.2f} s"
+        if computes:
+            what = f"{who} hangs here{stands} through {seconds} of computing"
             advice = "Is it an endless loop? A loop that waits for something must wait(), sleep or return."
         else:
-            what = f"{where} is blocked here: {stands} for {BLOCKED_SECONDS:g} s, waiting for the world outside"
+            what = f"{who} is blocked here{stands} for {seconds}, waiting for the world outside"
             advice = "Read from sockets, files and the keyboard in a thread of their own, or with a time-out."
-        return f"{place}{what}.\n{advice}"
+        return f"{place}: {what}.\n{advice} If it only takes long: hang_seconds under [tool.pyfrc.test]."
 
-    def _give_up(self, ident: int) -> None:
+    def _give_up(self, text: str) -> None:
         """End the process: the code caught the interruption, or never ran Python code again."""
         if self._log is None:
             return
-        self._log.write(self._explain(ident, busy=True))
+        self._log.write(text)
         prepare_sudden_exit()
         _exit(EXIT_HANGS)
+
+
+class _Standing:
+    """For how long code has stood, in seconds."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+        #: The parts of it that count: in which it has used a processor, and in which it has not wanted to. What a
+        #: library does while it is imported does not count.
+        self.computed = self.waited = 0.0
+
+
+def _sum(first: float | None, second: float | None) -> float | None:
+    return None if first is None or second is None else first + second
+
+
+@contextmanager
+def watching_exit(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
+    """Watch, at the end of this program, what robot code registers with `atexit` in this context."""
+    detector = HangDetector(files, hang_seconds, everything=True, meanwhile="the end of the program")
+    detector.outside_factor = 1.0
+    watching = ExitStack()
+    atexit.register(watching.close)  # the last to be registered is the first to be called
+    yield
+    atexit.register(lambda: watching.enter_context(detector.watching()))
+
+
+#: The detector that watches this process.
+_active: HangDetector | None = None
+
+
+@contextmanager
+def importing(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
+    """While this lasts, the calling thread imports robot code, which is interrupted with `TestFroze` when it hangs.
+
+    :param hang_seconds: the limit for the project's own files; what libraries take while they are imported does not
+        count
+    """
+    if _active is not None:
+        _active.proceed()
+        before, _active.outside_factor = _active.outside_factor, 1.0
+        try:
+            yield
+        finally:
+            _active.outside_factor = before
+        return
+    detector = HangDetector(files, hang_seconds, everything=True, meanwhile="the import of the robot's code")
+    detector.outside_factor = 1.0
+    with detector.watching():
+        yield

@@ -17,8 +17,9 @@ from ..processes.crash_report import reported_exit
 from ..processes.lent_streams import lent_streams
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_by_any_name
+from .construction import refused
 from .exceptions import TestFroze
-from .hang_detector import importing
+from .hang_detector import importing, watching_exit
 from .keyboard_input import refuse_keyboard_input
 from .misspelled_methods import refuse_unawaited_methods
 from .robot_class import choose_robot_class
@@ -35,7 +36,8 @@ def load_robot(project: Project) -> type[Any]:
     :raises RobotCodeError: when the user's code fails, naming the user's line
     :raises ProjectError: when there is not exactly one robot class to choose
     """
-    with standing_at_zero():
+    exit_watched = watching_exit(project.files, project.settings.test.hang_seconds)
+    with standing_at_zero(), refused(project.files), exit_watched:
         module = import_file(project, project.main_file)
     robot_class = choose_robot_class(project, module)
     refuse_unawaited_methods(project)
@@ -80,10 +82,9 @@ def _import_error(project: Project, file: Path, error: BaseException) -> RobotCo
     """Return what the program raised while it was imported as an error with the user's line and what to do."""
     place = project.files.innermost_line(error.__traceback__) or file.name
     if isinstance(error, TestFroze):
-        remedy = (
-            f"{_WHILE_IMPORTED} Is it an endless loop? If it only takes long: hang_seconds under [tool.pyfrc.test]."
-        )
-        return RobotCodeError(str(error), where=place, remedy=remedy)
+        place, _, text = str(error).partition(": ")
+        text, _, advice = text.partition("\n")
+        return RobotCodeError(text.rstrip("."), where=place, remedy=f"{_WHILE_IMPORTED} {advice}")
     explained = explain(error, project.files) or Explanation()
     remedy = explained.remedy or _WHILE_IMPORTED
     if isinstance(error, SystemExit):

@@ -26,7 +26,18 @@ from ..compat.object_hashes import hash_by_number, object_base
 from ..compat.wpilib_noise import replace_chance
 from ..compat.wpilib_private import LOOP_FUNCTION
 from ..hal import timing
-from . import cooperative, counters, data_logs, driver_station, hal_resets, locks, robot_stack, sysid_logs, udp_ports
+from . import (
+    cooperative,
+    counters,
+    data_logs,
+    driver_station,
+    event_loops,
+    hal_resets,
+    locks,
+    robot_stack,
+    sysid_logs,
+    udp_ports,
+)
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
 from .deferred_imports import deferred_imports
@@ -134,7 +145,7 @@ class Patches:
         def waits_in_threading() -> float:
             # The waiting thread computes the deadlines of conditions and queues, so they go by thread, not by file.
             threads = cooperative.scope.taking_part()
-            return real_monotonic() if threads is None else _Instant(threads.clock.now)
+            return real_monotonic() if threads is None else _Instant(threads.time_of_waits())
 
         real_monotonic = time.monotonic
         return [
@@ -145,6 +156,7 @@ class Patches:
             reading("monotonic_ns", lambda us: us * 1_000),
             reading("perf_counter", lambda us: us / 1_000_000),
             reading("perf_counter_ns", lambda us: us * 1_000),
+            *event_loops.patches(),
             Patch(*THREADING_TIME.place, waits_in_threading),
             Patch(*QUEUE_TIME.place, waits_in_threading),
         ]

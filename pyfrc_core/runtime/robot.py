@@ -362,7 +362,7 @@ class RobotRun:
         __tracebackhide__ = True
         self.in_motion = True
         try:
-            self.still_running = self.threads.end()
+            self.still_running = self.threads.end(cooperative.line_of_thread)
         except TestFroze:
             if self.threads.failure is None:  # the first failure is the one to report
                 raise
@@ -402,7 +402,7 @@ class RobotRun:
             if self.threads.failure is None:
                 raise
             raise self.threads.failure from None
-        except Exception as failure:
+        except (Exception, TestFroze) as failure:
             self.threads.fail(failure)
             raise
         finally:

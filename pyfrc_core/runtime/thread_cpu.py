@@ -4,26 +4,36 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from pathlib import Path
 
 # Bound before these names are patched for robot code.
 _process_time, _get_ident = time.process_time, threading.get_ident
 
 
-def cpu_of_this_thread() -> Callable[[], float]:
-    """Return a function that any thread can call for the processor time of the calling thread, in seconds.
+class ThreadTimes:
+    """The times of the thread that creates this, in seconds; any thread may ask."""
 
-    Where the system does not measure it by thread, it is the time of the whole process. When the thread has ended, it
-    is infinite: a thread that has ended does not wait.
-    """
-    if not hasattr(time, "pthread_getcpuclockid"):
-        return _process_time
-    clock, clock_gettime = time.pthread_getcpuclockid(_get_ident()), time.clock_gettime
+    def __init__(self) -> None:
+        self._clock: int | None = None
+        if hasattr(time, "pthread_getcpuclockid"):
+            self._clock = time.pthread_getcpuclockid(_get_ident())
+        self._schedule = Path(f"/proc/self/task/{threading.get_native_id()}/schedstat")
 
-    def cpu() -> float:
+    def cpu(self) -> float:
+        """Return its processor time; that of the whole process where the system does not measure it by thread.
+
+        When the thread has ended, it is infinite: a thread that has ended does not wait.
+        """
+        if self._clock is None:
+            return _process_time()
         try:
-            return clock_gettime(clock)
+            return time.clock_gettime(self._clock)
         except OSError:
             return float("inf")
 
-    return cpu
+    def starved(self) -> float | None:
+        """Return for how long it has waited for a processor of a busy machine. None where the system does not say."""
+        try:
+            return int(self._schedule.read_text("ascii").split()[1]) / 1e9
+        except (OSError, ValueError, IndexError):
+            return None

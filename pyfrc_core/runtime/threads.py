@@ -22,16 +22,17 @@ from functools import partial
 from pathlib import Path
 from types import TracebackType
 
-from ..compat.cpython_private import LockType, allocate_lock
+from ..compat.cpython_private import LockType, allocate_lock, target_of
 from .clock import WAKE_UP, Clock
 from .exceptions import TestEnded, TestFroze
-from .thread_cpu import cpu_of_this_thread
+from .thread_cpu import ThreadTimes
 
 # Bound before these names are patched for robot code: this module needs the real ones.
 real_allocate_lock = allocate_lock
 real_thread_join = threading.Thread.join
 _process_time, _get_ident = time.process_time, threading.get_ident
 
+_AFTER_ALL_TIMEOUTS = 1e9
 #: How often `TestEnded` is raised in a thread before it counts as one that does not stop.
 _TELL_TO_STOP = 1000
 # A thread that has the turn and uses (nearly) no processor time for this much wall time, in this many looks, waits for
@@ -46,26 +47,26 @@ class RobotThread:
     def __init__(self, thread: threading.Thread | None) -> None:
         self.thread = thread
         self.ident: int | None = None
-        #: Its processor time in seconds, when it has begun.
-        self.cpu: Callable[[], float] = _process_time
+        #: Its processor time, when it has begun.
+        self.times: ThreadTimes | None = None
         self.finished = False
         self.detached = False  # it waits for something outside the process; the clock continues without it
         self.is_the_robot = False  # its end is the robot program's
         self.error: BaseException | None = None
+        self.ready: Callable[[], bool] | None = None  # whether what it waits for is there
+        self.left_at: str | None = None  # the user's line where it waited when the robot had ended
         self.joiners: list[RobotThread] = []
         self.waits = 0  # counts its waits, so that a late wake-up has no effect
         self.go = _taken_lock()  # released when it is its turn
         self.done = _taken_lock()  # released when it hands the turn back
 
+    def cpu(self) -> float:
+        """Return its processor time, in seconds; that of the process until it has begun."""
+        return _process_time() if self.times is None else self.times.cpu()
+
     @property
     def left_alone(self) -> bool:
         return self.detached and self.thread is not None and self.thread.daemon
-
-
-def _taken_lock() -> LockType:
-    lock = real_allocate_lock()
-    lock.acquire()
-    return lock
 
 
 def _wants_to_run(record: RobotThread) -> bool:
@@ -76,6 +77,12 @@ def _wants_to_run(record: RobotThread) -> bool:
     except OSError:
         return False
     return state == "R"
+
+
+def _taken_lock() -> LockType:
+    lock = real_allocate_lock()
+    lock.acquire()
+    return lock
 
 
 def _below_threading(traceback: TracebackType | None) -> TracebackType | None:
@@ -92,11 +99,13 @@ class RobotThreads:
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
         self.driver = _get_ident()
-        self._drivers_cpu = cpu_of_this_thread()
+        self._drivers_times = ThreadTimes()
         #: The thread whose turn it is; None while the driver itself runs.
         self.running: RobotThread | None = None
         self._threads: dict[int, RobotThread] = {}
         self._all: list[RobotThread] = []
+        #: Set while threads see the end of the robot program, and waits with a time-out end early.
+        self.closing = False
         self.ending = False
         self._over = False
         #: The failure that occurred while robot code on the driver waited. The code that runs the robot raises it.
@@ -128,7 +137,7 @@ class RobotThreads:
 
     def run_body(self, record: RobotThread, body: Callable[[], object]) -> None:
         """Wait for the first turn, call `body`, and hand the turn back for good. Called by the new thread."""
-        record.ident, record.cpu = _get_ident(), cpu_of_this_thread()
+        record.ident, record.times = _get_ident(), ThreadTimes()
         self._threads[record.ident] = record
         record.go.acquire()
         try:
@@ -186,11 +195,19 @@ class RobotThreads:
                     return False
                 self._wake(me, deadline)
             waiters.append(me)
+            me.ready = ready
             try:
                 self._park(me)
             finally:
+                me.ready = None
                 waiters.remove(me)
+            if self.closing and deadline is not None:
+                return ready()
         return True
+
+    def time_of_waits(self) -> float:
+        """Return the robot time, in seconds, by which waits of the standard library compute what is left of them."""
+        return self.clock.now + (_AFTER_ALL_TIMEOUTS if self.closing else 0.0)
 
     def notify(self, waiters: list[RobotThread]) -> None:
         """Make each waiting thread check again, at the current time."""
@@ -212,7 +229,7 @@ class RobotThreads:
         self.driver_waits += 1
         try:
             yield
-        except Exception as failure:
+        except (Exception, TestFroze) as failure:
             self.fail(failure)
             raise TestEnded from None
         finally:
@@ -225,10 +242,12 @@ class RobotThreads:
 
     # -- the turn -----------------------------------------------------------------------------------------------
 
-    def cpu_of_running(self) -> float:
-        """Return the processor time of the thread that has the turn, in seconds. Any thread may ask."""
+    def whose_turn(self) -> tuple[int, ThreadTimes]:
+        """Return the thread that has the turn, by its `ident`, and its times. Any thread may ask."""
         running = self.running
-        return self._drivers_cpu() if running is None else running.cpu()
+        if running is None or running.ident is None or running.times is None:  # it has not begun
+            return self.driver, self._drivers_times
+        return running.ident, running.times
 
     def _wake(self, record: RobotThread, due_us: int) -> None:
         waits = record.waits
@@ -293,13 +312,28 @@ class RobotThreads:
 
     # -- the end ------------------------------------------------------------------------------------------------
 
-    def end(self) -> list[RobotThread]:
+    def end(self, line_of: Callable[[int | None], str | None] = lambda ident: None) -> list[RobotThread]:
         """Raise `TestEnded` in each thread's wait. Return the threads that did not stop.
 
-        A daemon thread that waits for something outside the process does no harm, and is not among them.
+        A daemon thread that waits for something outside the process does no harm, and is not among them. A thread that
+        is no daemon would keep the robot program from ending: its wait ends early, once, and it has to end then.
+
+        :param line_of: returns the user's line that a thread is at
         """
-        self.ending = True
         hangs: TestFroze | None = None
+        left_running = []
+        self.closing = True
+        for record in [each for each in self._all if self._must_end(each)]:
+            record.left_at = line_of(record.ident)
+            try:
+                self._give_turn(record)
+            except TestFroze as froze:
+                hangs = froze
+            except Exception:
+                continue  # as below
+            if not (record.finished or record.is_the_robot):
+                left_running.append(record)
+        self.ending = True
         for record in list(self._all):
             if record.detached and record.done.acquire(blocking=False):
                 record.detached = False
@@ -315,4 +349,17 @@ class RobotThreads:
         self._over = True
         if hangs is not None:
             raise hangs
-        return [record for record in self._all if not (record.finished or record.left_alone)]
+        stuck = [record for record in self._all if not (record.finished or record.left_alone)]
+        return [*left_running, *(record for record in stuck if record not in left_running)]
+
+    def _must_end(self, record: RobotThread) -> bool:
+        """Return whether Python would wait for this thread at the end of the robot program.
+
+        A loop of the robot's own ends if `endCompetition` has ended what it waits for; it may have files to close.
+        """
+        thread = record.thread
+        if record.is_the_robot:
+            return record.ready is not None and record.ready()
+        if thread is None or thread.daemon or record.finished or record.detached or self.failure is not None:
+            return False
+        return "concurrent.futures" not in getattr(target_of(thread), "__module__", "")  # Python ends those itself

@@ -22,10 +22,10 @@ from ..hal import HalData
 from ..invariants.load import Invariant, load_invariants
 from ..processes.lent_streams import lent_streams
 from ..project import Project
+from ..runtime.cooperative import line_of_thread
 from ..runtime.crash_moment import CrashMoment
 from ..runtime.data_logs import TEST_LOGS, LogPlace
 from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_libraries, names_its_place
-from ..runtime.hang_detector import HangDetector
 from ..runtime.loading import load_robot
 from ..runtime.loop_limit import LoopLimit
 from ..runtime.patches import patches
@@ -39,6 +39,7 @@ from . import controller
 from .controller import TestController
 from .device_misuse import warning_of_misuse
 from .fake_time import FakeTime
+from .hangs import WatchedTests
 from .options import READY_MADE_TESTS, TestOptions
 from .reporting import BUG, REAL_TIME, bug_of, put_first
 
@@ -46,9 +47,6 @@ if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
     from ..physics.engine import Physics, PhysicsModule
     from ..processes.crash_report import CrashLog
-
-#: The fixtures that use the robot: a test with one of them runs in a separate process.
-ROBOT_FIXTURES = frozenset({"control", "fake_time", "hal_data", "physics_controller", "robot", "wpilib"})
 
 _READY_MADE_DIRECTORY = Path(__file__).parents[1] / "tests"
 
@@ -59,7 +57,7 @@ class ThreadStillRunningError(NamesItsPlace):
     """A thread of the robot was still running after its test, although it was stopped."""
 
 
-class PyFrcPlugin:
+class PyFrcPlugin(WatchedTests):
     """The pytest plugin. A test function gets each fixture that it names as an argument.
 
     :param robot_class: your robot class; None to load it from the file when a test first needs it
@@ -177,8 +175,7 @@ class PyFrcPlugin:
         self.invariants  # noqa: B018 - likewise
         name = _file_name(request.node.nodeid).removesuffix(".jsonl")
         run = RobotRun(LogPlace.of_test(self.project.root, name))
-        hang_detector = HangDetector(run, self.project.files, self.options.hang_seconds, self.crash_log)
-        with hang_detector.watching(), ExitStack() as closing:
+        with ExitStack() as closing:
             run.open()
             if self.crash_log is not None:
                 CrashMoment(self.crash_log, run)
@@ -202,9 +199,12 @@ class PyFrcPlugin:
             warnings.warn_explicit(warning, UserWarning, self._robot_file, 1)
 
     def _still_running(self, record: RobotThread) -> str:
-        line = None if record.ident is None else self.project.files.line_of_thread(record.ident)
+        line = record.left_at or line_of_thread(record.ident) or self.project.main_file.name
         name = record.thread.name if record.thread is not None else "?"
-        return f"{line or self.project.main_file.name}: the thread {name!r} is still running after the test was over"
+        return (
+            f"{line}: the thread {name!r} is still running after the test was over.\n"
+            "End it in endCompetition, or make it a daemon: threading.Thread(..., daemon=True)"
+        )
 
     def _recorded(self, run: RobotRun, item: pytest.Item) -> ExitStack:
         """Record the robot's trace and inputs, if the options ask for it."""
@@ -249,6 +249,7 @@ class PyFrcPlugin:
 
     def pytest_sessionstart(self) -> None:
         self._former_logs = self._data_logs()
+        super().pytest_sessionstart()
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Print the directory of the data logs that robots have written."""

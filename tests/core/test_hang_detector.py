@@ -9,35 +9,54 @@ from typing import Any
 
 import pytest
 
+from pyfrc_core.processes.standstill import Standstill
 from pyfrc_core.runtime import hang_detector
 from pyfrc_core.runtime.exceptions import TestFroze
-from pyfrc_core.runtime.hang_detector import EXIT_HANGS, HangDetector, importing
+from pyfrc_core.runtime.hang_detector import EXIT_HANGS, HangDetector
 
 DRIVER = 11
 
 
 class World:
-    """What a detector sees, look by look: processor and wall time, and the robot's. One look, one `step`."""
+    """What a detector sees, look by look: the times of the thread that has the turn, wall time, and the robot's."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, **options: Any) -> None:
-        #: Processor time of all threads, and of those that do not have the turn.
-        self.cpu = self.others = 0.0
-        self.wall = 0.0
+        self.used = self.wall = 0.0
+        #: For how long the thread has waited for a processor; None where the system does not say.
+        self.starved: float | None = 0.0
         self.log: list[str] = []
+        self.told: list[object] = []
+        times = SimpleNamespace(cpu=lambda: self.used, starved=lambda: self.starved)
+        self.turn = DRIVER
         self.run = SimpleNamespace(
             clock=SimpleNamespace(now_us=0, now=1.5),
             in_motion=True,
-            threads=SimpleNamespace(running=None, driver=DRIVER, cpu_of_running=lambda: self.cpu - self.others),
+            threads=SimpleNamespace(
+                driver=DRIVER, whose_turn=lambda: (self.turn, times), fail=lambda error: self.log.append("failed")
+            ),
         )
-        self.files = SimpleNamespace(line_of_thread=lambda ident: f"robot.py:{ident}")
+        files = SimpleNamespace(
+            root="",
+            line_of_frame=lambda frame: f"robot.py:{frame.f_lineno}",
+            is_robot_code=lambda name: name == "robot.py",
+        )
         self.steps: Iterator[object] = iter(())
-        monkeypatch.setattr(hang_detector, "_cpu", lambda: self.cpu)
+        self.frame = SimpleNamespace(f_lineno=7, f_back=None)
+        watchers = SimpleNamespace(starved=lambda: 0.0)
+        monkeypatch.setattr(hang_detector, "ThreadTimes", lambda: watchers)
         monkeypatch.setattr(hang_detector, "_wall", lambda: self.wall)
         monkeypatch.setattr(hang_detector, "_wait", self._wait)
-        monkeypatch.setattr(hang_detector, "_exit", self._exit)
-        self.detector = HangDetector(self.run, self.files, 10.0, **options)  # type: ignore[arg-type]
+        monkeypatch.setattr(hang_detector, "_exit", lambda code: self.log.append(f"exit {code}"))
+        monkeypatch.setattr(hang_detector, "current_frames", lambda: {DRIVER: self.frame, 22: self.frame})
+        monkeypatch.setattr(
+            hang_detector, "faulthandler", SimpleNamespace(dump_traceback_later=lambda *args, **more: None)
+        )
+        monkeypatch.setattr(hang_detector.active_run, "run", self.run)
+        self.detector = HangDetector(files, 10.0, **options)  # type: ignore[arg-type]
+        self.detector._watched = 33, times  # type: ignore[assignment]
         self.interruption = self.detector._interruption
         monkeypatch.setattr(self.interruption, "interrupt", self._interrupt)
+        monkeypatch.setattr(self.detector, "_tell", self.told.append)
 
     def _wait(self, seconds: float) -> None:
         assert seconds == 0.25
@@ -45,10 +64,7 @@ class World:
             self.interruption.over = True
 
     def _interrupt(self, ident: int, message: str) -> None:
-        self.log.append(f"cpu {self.cpu:g} wall {self.wall:g}: {ident} {message.splitlines()[0]}")
-
-    def _exit(self, code: int) -> None:
-        self.log.append(f"exit {code}")
+        self.log.append(f"wall {self.wall:g}: {ident} {message.splitlines()[0]}")
 
     def watch(self, steps: Iterator[object]) -> list[str]:
         """Let the detector look once for each step."""
@@ -56,74 +72,98 @@ class World:
         self.detector._watch()
         return self.log
 
+    def passes(self, seconds: float, used: float = 0.0, starved: float = 0.0) -> Iterator[object]:
+        """Let wall time pass, look by look.
+
+        :param used: in which part of it the thread computes
+        :param starved: in which part of it the thread waits for a processor
+        """
+        for _ in range(round(seconds / 0.25)):
+            self.wall += 0.25
+            self.used += 0.25 * used
+            if self.starved is not None:
+                self.starved += 0.25 * starved
+            yield 1
+
 
 def test_code_that_computes_while_robot_time_stands_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
 
     def steps() -> Iterator[object]:
-        for world.cpu in (5.0, 9.0):
-            yield 1
+        yield from world.passes(9, used=1)
         world.run.clock.now_us = 20_000  # it moves: the count restarts
         yield 1
-        for world.cpu in (18.5, 19.0):
-            yield 1
-        for world.cpu in (25.0, 28.5):
-            yield 1
+        yield from world.passes(10, used=1)
 
     assert world.watch(steps()) == [
-        "cpu 19 wall 0: 11 robot.py:11: the robot code hangs here: robot time has stood at 1.50 s "
-        "through 10 s of computing."
+        "failed",  # remembered, whatever the code catches
+        "wall 19: 11 robot.py:7: the robot code hangs here: robot time has stood at 1.50 s through 10 s of computing.",
     ]
+    assert str(world.detector.raised).startswith("robot.py:7: the robot code hangs here")
 
 
-def test_it_is_interrupted_again_and_ended_only_with_a_crash_log(monkeypatch: pytest.MonkeyPatch) -> None:
-    def steps(world: World) -> Iterator[object]:
-        for world.cpu in (10.0, 15.0, 20.0):
-            yield 1
-
+def test_code_that_waits_for_something_outside_hangs_as_soon(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
-    assert [entry.partition(":")[0] for entry in world.watch(steps(world))] == ["cpu 10 wall 0", "cpu 20 wall 0"]
-    words: list[str] = []
-    stuck: list[tuple[float, object]] = []
-    faults = SimpleNamespace(dump_traceback_later=lambda seconds, exit, file: stuck.append((seconds, file)))
-    monkeypatch.setattr(hang_detector, "faulthandler", faults)
-    world = World(monkeypatch, log=SimpleNamespace(write=words.append, descriptor=7))
-    world.watch(steps(world))
-    assert world.log[1] == f"exit {EXIT_HANGS}"
-    assert words[0].startswith("robot.py:11: the robot code hangs here")
-    assert words[0].endswith("A loop that waits for something must wait(), sleep or return.")
-    assert set(stuck) == {(60.0, 7)}
+    assert world.watch(world.passes(10))[1] == (
+        "wall 10: 11 robot.py:7: the robot code is blocked here: robot time has stood at 1.50 s for 10 s, "
+        "waiting for the world outside."
+    )
 
 
-def test_code_that_is_blocked_has_a_minute_of_wall_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_code_that_waits_and_computes_in_turns_has_the_limit_for_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(monkeypatch)
+    assert "is blocked here" in world.watch(world.passes(13.5, used=0.25))[1]
+
+
+def test_the_time_in_which_a_busy_machine_does_not_let_it_run_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(monkeypatch)
+    assert world.watch(world.passes(39, used=0.25, starved=0.75)) == []
+    world = World(monkeypatch)
+    assert world.watch(world.passes(40, used=0.25, starved=0.75))[1].startswith("wall 40")
+
+
+def test_where_that_is_not_measured_code_that_computes_does_not_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(monkeypatch)
+    world.starved = None
+    assert world.watch(world.passes(39, used=0.25)) == []
+    world = World(monkeypatch)
+    world.starved = None
+    assert world.watch(world.passes(10))[1].startswith("wall 10")
+
+
+def test_a_process_that_was_stopped_does_not_hang(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
 
     def steps() -> Iterator[object]:
-        for world.wall in (30.0, 59.9, 60.0):
+        for _ in range(10):
+            world.wall += 3600  # the machine was suspended
             yield 1
 
-    assert world.watch(steps()) == [
-        "cpu 0 wall 60: 11 robot.py:11: the robot code is blocked here: robot time has stood at 1.50 s for 60 s, "
-        "waiting for the world outside."
-    ]
-    # One that gets little of a busy machine's processor is not blocked.
+    assert world.watch(steps()) == []
+
+
+def test_where_the_code_stands_is_told_at_each_look(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
 
-    def busy() -> Iterator[object]:
-        for world.wall in (30.0, 60.0, 90.0):
-            world.cpu += 0.4
-            yield 1
+    def steps() -> Iterator[object]:
+        yield from world.passes(0.5)
+        world.run.clock.now_us = 20_000
+        yield 1
 
-    assert world.watch(busy()) == []
-    # Another thread that is always a little busy, such as a library's, does not hide it.
+    world.watch(steps())
+    assert world.told == [Standstill(0.25, "robot.py:7", 1.5), Standstill(0.5, "robot.py:7", 1.5), None]
+
+
+def test_it_is_interrupted_again_and_ended_only_with_a_crash_log(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
-
-    def beside_others() -> Iterator[object]:
-        for world.wall in (30.0, 60.0):
-            world.cpu = world.others = 0.04 * world.wall
-            yield 1
-
-    assert [entry.partition(": 11")[0] for entry in world.watch(beside_others())] == ["cpu 2.4 wall 60"]
+    entries = world.watch(world.passes(12.5, used=1))
+    assert [entry.partition(":")[0] for entry in entries] == ["failed", "wall 10", "failed", "wall 12.5"]
+    words: list[str] = []
+    log = SimpleNamespace(write=words.append, descriptor=7, forget_stacks=lambda: None)
+    world = World(monkeypatch, log=log)
+    assert f"exit {EXIT_HANGS}" in world.watch(world.passes(12.5, used=1))
+    assert words[0].startswith("robot.py:7: the robot code hangs here")
+    assert words[0].endswith("If it only takes long: hang_seconds under [tool.pyfrc.test].")
 
 
 def test_while_the_robots_code_does_not_run_nothing_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,26 +171,58 @@ def test_while_the_robots_code_does_not_run_nothing_hangs(monkeypatch: pytest.Mo
 
     def steps() -> Iterator[object]:
         world.run.in_motion = False
-        world.cpu = 50.0
-        yield 1
+        yield from world.passes(50)
         world.run.in_motion = True
-        world.cpu = 59.0
-        yield 1
+        yield from world.passes(9)
 
     assert world.watch(steps()) == []
 
 
+def test_tests_may_compute_for_longer_than_robots_but_not_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    for used, seconds, what in ((1.0, 60, "hangs"), (0.0, 10, "is blocked")):
+        world = World(monkeypatch, everything=True)
+        world.run.in_motion = False
+        world.frame = SimpleNamespace(f_lineno=7, f_back=None)
+        monkeypatch.setattr(hang_detector, "current_frames", lambda world=world: {33: world.frame})
+        world.detector._files.is_robot_code = lambda name: False  # type: ignore[union-attr, method-assign]
+        (entry,) = world.watch(world.passes(seconds, used=used))
+        assert entry.startswith(f"wall {seconds}: 33 robot.py:7: the test {what} here")
+
+
+def test_a_thread_that_outlives_its_test_is_the_one_that_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(monkeypatch, everything=True)
+    world.run.in_motion = False
+    world.detector.outside = 22
+    ended: list[object] = []
+    monkeypatch.setattr(hang_detector, "raise_in_thread", lambda *what: ended.append(what))
+    assert world.watch(world.passes(10)) == []
+    assert ended == [(22, SystemExit)]
+    assert str(world.detector.raised).startswith(
+        "robot.py:7: a thread that the test has started is still running, 10 s after the test."
+    )
+
+
+def test_the_import_of_a_library_may_take_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(monkeypatch)
+    users = world.frame
+    world.frame = SimpleNamespace(
+        f_lineno=1, f_back=users, f_code=SimpleNamespace(co_filename="<frozen importlib._bootstrap>")
+    )
+    world.detector._files.line_of_frame = lambda frame: "robot.py:7" if frame is users else None  # type: ignore
+    assert world.watch(world.passes(60, used=1)) == []
+    assert world.told[-1] == Standstill(60.0, "robot.py:7", 1.5)
+
+
+def test_in_a_debugger_nothing_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(monkeypatch)
+    world.detector.paused = True
+    assert world.watch(world.passes(60)) == []
+
+
 def test_the_thread_whose_turn_it_is_is_the_one_that_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
-    world.run.threads.running = SimpleNamespace(ident=22)
-
-    def steps() -> Iterator[object]:
-        world.cpu = 10.0
-        yield 1
-
-    assert world.watch(steps())[0].startswith("cpu 10 wall 0: 22 robot.py:22: a thread of the robot hangs here")
-    world.run.threads.running = SimpleNamespace(ident=None)
-    assert world.detector._culprit() == DRIVER
+    world.turn = 22
+    assert world.watch(world.passes(10, used=1))[1].startswith("wall 10: 22 robot.py:7: a thread of the robot hangs")
 
 
 @pytest.mark.parametrize("thread", [False, True], ids=["the main thread", "another"])
@@ -192,42 +264,3 @@ def test_an_interruption_that_comes_too_late_does_nothing() -> None:
     interruption.interrupt(
         threading.main_thread().ident or 0, "it would end this process by a signal without a handler"
     )
-
-
-def test_what_the_project_computes_while_it_is_imported_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    interrupted: list[str] = []
-    monkeypatch.setattr(
-        hang_detector._Interruption, "interrupt", lambda self, ident, message: interrupted.append(message)
-    )
-    cpu = iter(float(number) for number in range(10_000))
-    monkeypatch.setattr(hang_detector, "cpu_of_this_thread", lambda: lambda: next(cpu))
-    for ours, expected in ((False, []), (True, ["the robot code hangs here, through 0.01 s of computing"])):
-        looks: list[str] = []
-
-        def is_project_file(filename: str, ours: bool = ours, looks: list[str] = looks) -> bool:
-            looks.append(filename)
-            return ours
-
-        with importing(SimpleNamespace(is_project_file=is_project_file), 0.01):  # type: ignore[arg-type]
-            while len(looks) < 3:
-                threading.Event().wait(0.001)
-        assert interrupted[:1] == expected
-    assert "pyfrc import hang detector" not in {thread.name for thread in threading.enumerate()}
-
-
-def test_an_import_that_goes_on_is_interrupted_again_only_after_as_much_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    interrupted: list[float] = []
-    now = [0.0]
-    monkeypatch.setattr(
-        hang_detector._Interruption, "interrupt", lambda self, ident, message: interrupted.append(now[0])
-    )
-
-    def cpu() -> float:
-        now[0] += 0.004
-        return now[0]
-
-    monkeypatch.setattr(hang_detector, "cpu_of_this_thread", lambda: cpu)
-    with importing(SimpleNamespace(is_project_file=lambda filename: True), 0.01):  # type: ignore[arg-type]
-        while len(interrupted) < 3:
-            threading.Event().wait(0.001)
-    assert [round(each, 6) for each in interrupted[:3]] == [0.016, 0.028, 0.04]

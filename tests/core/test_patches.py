@@ -460,6 +460,6 @@ def test_code_is_in_motion_only_while_it_runs(run: RobotRun) -> None:
     assert (seen, run.in_motion) == ([True], False)
     seen.clear()
     end = run.threads.end
-    run.threads.end = lambda: seen.append(run.in_motion) or end()  # type: ignore[method-assign, func-returns-value]
+    run.threads.end = lambda line_of: seen.append(run.in_motion) or end()  # type: ignore[method-assign, func-returns-value]
     run.end()
     assert (seen, run.in_motion) == ([True], False)

@@ -16,7 +16,7 @@ from ...errors import PyfrcError, RobotCodeError
 from ...hal import HalData
 from ...processes.crash_report import CrashLog
 from ...project import Project
-from ...runtime.exceptions import TestEnded, TestRanTooLong
+from ...runtime.exceptions import TestEnded, TestFroze, TestRanTooLong
 from ...runtime.failures import as_robot_code_error, leave_out_libraries
 from ...runtime.hang_detector import HangDetector
 from ...runtime.loading import load_robot
@@ -34,7 +34,7 @@ _SETTLING_US = 100_000
 #: The limit of robot time, for robots that sleep in their loops.
 _LIMIT_US = 10_000_000_000
 
-_FAILURES = (Exception, SystemExit, TestRanTooLong)
+_FAILURES = (Exception, SystemExit, TestFroze, TestRanTooLong)
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ def survey(project: Project, log: CrashLog) -> Survey:
     robot_class = load_robot(project)
     run = RobotRun()
     hang_seconds = project.settings.test.hang_seconds
-    with HangDetector(run, project.files, hang_seconds, log).watching():
+    with HangDetector(project.files, hang_seconds, log).watching():
         try:
             run.open()
             run.clock.limit_us = _LIMIT_US

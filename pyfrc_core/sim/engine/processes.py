@@ -16,10 +16,13 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from ...processes.channel import Channel
+from ...processes.crash_report import standstill_of
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.outbox import Outbox
 from ...processes.output_pipe import OutputPipe
 from ...processes.spawn import Interpreter
+from ...processes.standstill import Standstill
+from ...project.robot_files import RobotFiles
 from . import host_process
 from .commands import Quit
 from .host import CLOSING_SECONDS, Exited, Hosting, Kill, Launch, Preload
@@ -110,6 +113,13 @@ class RobotProcesses:
                 self._tell_host(Kill())
             elif self._host is not None:
                 self._end_host()
+
+    def standstill(self, files: RobotFiles) -> Standstill | None:
+        """Return where the robot's code stands, if it does. End a process in which no Python code can run."""
+        standstill = standstill_of(self._crash_report(self._number), files)
+        if standstill is not None and standstill.hopeless:
+            self.kill()
+        return standstill
 
     def preload(self, modules: tuple[str, ...]) -> None:
         """Have robots to come find these modules imported."""

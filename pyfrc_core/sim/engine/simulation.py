@@ -94,8 +94,10 @@ class Simulation(Controls):
     def status(self) -> Status:
         """The state of the simulation."""
         status = self._status
-        if status.state == "running" and monotonic() - self._reported_at > _SILENCE:
-            return replace(status, responding=False)
+        if status.state not in ("failed", "closed") and monotonic() - self._reported_at > _SILENCE:
+            standstill = None if self._processes is None else self._processes.standstill(self.project.files)
+            silent = status.state == "running" or standstill is not None
+            return replace(status, responding=not silent, standstill=standstill)
         return status
 
     @property

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Literal
 
+from ...processes.standstill import Standstill
 from .scene import Point, Scene
 
 #: The state of a simulation. ``starting``: robot code is imported, or replayed to a moment of the past.
@@ -103,6 +104,7 @@ class Status:
     :param failure: the reason, while `state` is ``failed``
     :param note: information for the user, such as why a command was not carried out
     :param responding: False while the robot should run and its process has sent nothing for a second
+    :param standstill: where the robot's code stands meanwhile, if that is known
     :param former_trail: the robot's path before the code changed or the user went back in time
     :param starts: the number of robot processes that were started
     :param replayed: how far the robot has come, in seconds of robot time, while it replays its inputs to `replaying_to`
@@ -123,6 +125,7 @@ class Status:
     failure: Failure | None = None
     note: str = ""
     responding: bool = True
+    standstill: Standstill | None = None
     former_trail: tuple[Point, ...] = ()
     network_address: str | None = None
     starts: int = 0

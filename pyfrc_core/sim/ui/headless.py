@@ -8,6 +8,7 @@ from typing import Literal
 
 from ...errors import UsageError
 from ...physics.pose import METRES_PER_FOOT
+from ...processes.standstill import StandstillNotice
 from ...runtime.match import MatchPeriods
 from ...runtime.robot_time import PACKET_US, to_us
 from ..engine.commands import ChosenMode
@@ -132,6 +133,7 @@ class Headless(FrontEnd):
         self._lines = WholeLines(say)
         self._reported: Failure | None = None
         self._noted = ""
+        self._notice = StandstillNotice()
         self.summary: Summary | None = None
 
     def run(self, simulation: Simulation) -> int:
@@ -243,6 +245,8 @@ class Headless(FrontEnd):
         if status.note not in ("", self._noted):
             self._noted = status.note
             self._lines.own(f"warning: {status.note}\n")
+        if (text := self._notice.look(status.standstill)) is not None:
+            self._lines.own(f"{text}\n")
         if self._watching and status.failure is not None and status.failure is not self._reported:
             self._reported = status.failure
             if status.state == "failed":  # otherwise it is over, and the summary says so

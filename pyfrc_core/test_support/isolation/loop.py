@@ -31,8 +31,9 @@ from ...runtime.failures import headline_is_the_robots
 from ...runtime.fork_obstacles import reasons_not_to_fork
 from ...runtime.module_files import resolve_module_files
 from ...runtime.turns import taking_turns
+from ..hangs import ROBOT_FIXTURES
 from ..options import Jobs
-from ..pytest_plugin import ROBOT_FIXTURES, PyFrcPlugin, seed_section
+from ..pytest_plugin import PyFrcPlugin, seed_section
 from ..reporting import BUG, bug_of
 from .durations import Durations, longest_first
 from .messages import replay
@@ -72,6 +73,9 @@ class IsolatedTests:
         with uncaptured_output(session.config) as self._output, taking_turns():
             try:
                 self._run_all(session)
+            except KeyboardInterrupt:
+                self._tell_interrupted(session.config)
+                raise
             finally:
                 for process in self._running.values():
                     process.worker.kill()
@@ -157,6 +161,7 @@ class IsolatedTests:
                 if sum(not worker.finished for worker in workers) <= down_to:
                     return
                 wait_for_any(workers)
+                self._tell_standstills(session.config)
                 continue
             item = waiting.pop(0)
             self._announce(item)
@@ -169,6 +174,28 @@ class IsolatedTests:
             _stop_if_asked(session)
             if waiting and waiting[0] in self._running:
                 self._announce(waiting[0])
+
+    def _tell_standstills(self, config: pytest.Config) -> None:
+        """Print the lines of tests that make no progress: pytest shows nothing of a test before it ends."""
+        for process in self._running.values():
+            if not process.worker.finished:
+                standstill = process.worker.standstill(self._plugin.project.files)
+                if (text := process.notice.look(standstill)) is not None:
+                    self._print(config, text)
+
+    def _tell_interrupted(self, config: pytest.Config) -> None:
+        """Print what was running, and where it stood, when the user ended the tests."""
+        for item, process in self._running.items():
+            if not process.worker.finished:
+                standstill = process.worker.standstill(self._plugin.project.files)
+                self._print(config, f"interrupted: {standstill.text(item.nodeid) if standstill else item.nodeid}")
+
+    def _print(self, config: pytest.Config, text: str) -> None:
+        reporter: Any = config.pluginmanager.getplugin("terminalreporter")
+        if reporter is not None:
+            reporter.ensure_newline()
+            reporter.write_line(text, yellow=True)
+            reporter.flush()
 
     def _announce(self, item: pytest.Item) -> None:
         if self._announced is not item:
@@ -201,11 +228,9 @@ class IsolatedTests:
 
     def _explain(self, config: pytest.Config, text: str) -> None:
         """Print once why the tests are slower than they could be."""
-        reporter: Any = config.pluginmanager.getplugin("terminalreporter")
-        if not self._explained and reporter is not None:
+        if not self._explained:
             self._explained = True
-            reporter.ensure_newline()
-            reporter.write_line(f"pyfrc: {text}", yellow=True)
+            self._print(config, f"pyfrc: {text}")
 
     def _uses_robot(self, item: pytest.Item) -> bool:
         if self._plugin.options.only_changed:

@@ -11,6 +11,7 @@ import pytest
 
 from ...compat.pytest_private import capture_into
 from ...processes.crash_report import CrashLog
+from ...processes.standstill import StandstillNotice
 from ...processes.worker import ForkedWorker, Send, SpawnedWorker, Worker
 from ...runtime.turns import take
 from ..pytest_plugin import PyFrcPlugin
@@ -42,8 +43,9 @@ class TestProcess:
 
     __test__ = False  # pytest: not a test class, for all its name
 
-    def __init__(self, worker: Worker, captured: Captured) -> None:
+    def __init__(self, worker: Worker, captured: Captured, nodeid: str) -> None:
         self.worker = worker
+        self.notice = StandstillNotice(nodeid)
         self._captured = captured
 
     def captured(self) -> str:
@@ -63,7 +65,7 @@ def forked_test(item: pytest.Item, plugin: PyFrcPlugin, output: UncapturedOutput
     """
     captured = Captured()
     files = captured.stdout.fileno(), captured.stderr.fileno()
-    return TestProcess(ForkedWorker(partial(_run_in_fork, item, plugin, files, output)), captured)
+    return TestProcess(ForkedWorker(partial(_run_in_fork, item, plugin, files, output)), captured, item.nodeid)
 
 
 def spawned_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
@@ -79,7 +81,9 @@ def spawned_test(item: pytest.Item, plugin: PyFrcPlugin) -> TestProcess:
         plugin.project.class_name,
         plugin.options,
     )
-    return TestProcess(SpawnedWorker(partial(run_in_interpreter, job), captured.stdout, captured.stderr), captured)
+    return TestProcess(
+        SpawnedWorker(partial(run_in_interpreter, job), captured.stdout, captured.stderr), captured, item.nodeid
+    )
 
 
 # -- on the other side -----------------------------------------------------------------------------------------------

@@ -70,7 +70,7 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
         robot_class = load_robot(project)
         physics = load_physics(project) if project.physics_file.is_file() else None
         loaded = True
-        hang_detector = HangDetector(run, files, project.settings.test.hang_seconds, log)
+        hang_detector = HangDetector(files, project.settings.test.hang_seconds, log)
         with hang_detector.watching(), ExitStack() as closing:
             run.open()
             closing.callback(run.data_logs.close)

@@ -6,6 +6,7 @@ import math
 import re
 
 from ....physics.pose import Pose
+from ....processes.standstill import TOLD_AFTER
 from ...engine.snapshot import Snapshot, Status
 
 #: The alliance stations: as they are shown, in the order of their numbers, and as they are commanded.
@@ -33,6 +34,9 @@ def mode_text(snapshot: Snapshot | None, status: Status) -> tuple[str, str]:
     if status.state == "failed":
         return "No robot code", "error"
     if not status.responding:
+        stands = status.standstill
+        if stands is not None and stands.seconds >= TOLD_AFTER:
+            return f"Not responding: {stands.place}", "error"
         return "Not responding", "error"
     if status.state == "starting" and status.replaying_to:
         return f"Replaying {clock(status.replayed)} of {clock(status.replaying_to)}", "wait"

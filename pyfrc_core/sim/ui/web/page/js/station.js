@@ -43,6 +43,11 @@ export class StationBar extends Live {
     return model.connection === "open" && ["disabled", "enabled"].includes(model.station.kind) && !model.readonly;
   }
 
+  // The robot's code does not respond: a stop is carried out as soon as it does.
+  get stuck() {
+    return model.connection === "open" && !model.status.responding && !model.readonly;
+  }
+
   driving() {
     const present = model.station;
     const connected = model.connection === "open";
@@ -63,7 +68,7 @@ export class StationBar extends Live {
   }
 
   emergencyStop() {
-    return html`<button class="estop" disabled=${!this.ready} title="Emergency stop: the space bar. Only a restart enables the robot again."
+    return html`<button class="estop" disabled=${!this.ready && !this.stuck} title="Emergency stop: the space bar. Only a restart enables the robot again."
         onClick=${() => command("e_stop")}>E-STOP</button>`;
   }
 }
