@@ -39,7 +39,7 @@ from . import controller
 from .controller import TestController
 from .device_misuse import warning_of_misuse
 from .fake_time import FakeTime
-from .hangs import WatchedTests
+from .hangs import ROBOT_FIXTURES, WatchedTests
 from .options import READY_MADE_TESTS, TestOptions
 from .reporting import BUG, REAL_TIME, bug_of, put_first
 
