@@ -9,6 +9,7 @@ from ..errors import RobotCodeError
 from ..processes.call import run_in_subprocess
 from ..project import Project
 from ..runtime.clock import PACKET_US
+from ..runtime.hang_detector import not_watched
 from ..runtime.scripts.script import InputScript
 from .boots import MEANWHILE
 from .match import ReplayTask, play
@@ -27,7 +28,8 @@ def replay_in_subprocess(
     :raises ScriptError: when something cannot be written, or the robot has no such device
     """
     task = ReplayTask(script, use_oracle=bool(script.story), trace=trace, ignores_missing=False, quietly=quietly)
-    played = run_in_subprocess(partial(play, task=task), project, MEANWHILE, quietly)
+    with not_watched():
+        played = run_in_subprocess(partial(play, task=task), project, MEANWHILE, quietly)
     failed = [each for each in played.each_failure() if each.failure is not None]
     if not failed:
         return script.end_us / 1_000_000, None

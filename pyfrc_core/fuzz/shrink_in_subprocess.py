@@ -10,6 +10,7 @@ from ..errors import PyfrcError
 from ..processes.call import can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
 from ..project import Project
+from ..runtime.hang_detector import not_watched
 from ..runtime.scripts.script import InputScript
 from .describe import story_of
 from .failure import FuzzFailure
@@ -43,7 +44,8 @@ def shrink_in_subprocess(
         return Shrunk(None, why_not="making it short takes hundreds of processes, and they cannot be forked here")
     work = partial(_shrink, script=script, failure=failure, inputs=dict(inputs), most_runs=most_runs)
     try:
-        return run_in_subprocess(work, project, "while a script was made shorter")
+        with not_watched():
+            return run_in_subprocess(work, project, "while a script was made shorter")
     except PyfrcError as wrong:
         return Shrunk(None, why_not=f"it could not be made short ({wrong})")
 

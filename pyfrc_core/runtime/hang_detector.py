@@ -315,6 +315,20 @@ def _sum(first: float | None, second: float | None) -> float | None:
 
 
 @contextmanager
+def not_watched() -> Iterator[None]:
+    """Let pyfrc itself wait for a process that it has started, and whose robot is watched there."""
+    detector = _active
+    if detector is None:
+        yield
+        return
+    detector.paused, before = True, detector.paused
+    try:
+        yield
+    finally:
+        detector.paused = before
+
+
+@contextmanager
 def watching_exit(files: RobotFiles, hang_seconds: float) -> Iterator[None]:
     """Watch, at the end of this program, what robot code registers with `atexit` in this context."""
     detector = HangDetector(files, hang_seconds, everything=True, meanwhile="the end of the program")

@@ -20,6 +20,7 @@ from ..fuzz.network_reads import watch_network_reads
 from ..fuzz.robot_constants import find_constants
 from ..hal import HalData, modes
 from ..project import Project, find_project
+from ..runtime.exceptions import TestFroze
 from ..runtime.scripts.script import InputScript
 from ..test_support.controller import TestController
 from ..test_support.fake_time import FakeTime
@@ -56,13 +57,13 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
         fuzz_run.write()
         try:
             control.run_test(fuzz_run.on_packet)
-        except Exception as error:
+        except (Exception, TestFroze) as error:
             print(f"The robot failed at {clock.now:.2f} s of a match with random inputs, in {modes.mode_name()} mode.")
             _save(project, fuzz_run.script(project.main_file.name, seed), generator, error)
             raise
 
 
-def _save(project: Project, script: InputScript, generator: InputGenerator, error: Exception) -> None:
+def _save(project: Project, script: InputScript, generator: InputGenerator, error: BaseException) -> None:
     """Shrink the script, and save it where a run with the same seed finds it, outside version control."""
     from ..fuzz.failure import failure_of
     from ..fuzz.shrink_in_subprocess import shrink_in_subprocess

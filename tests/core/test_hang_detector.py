@@ -12,7 +12,7 @@ import pytest
 from pyfrc_core.processes.standstill import Standstill
 from pyfrc_core.runtime import hang_detector
 from pyfrc_core.runtime.exceptions import TestFroze
-from pyfrc_core.runtime.hang_detector import EXIT_HANGS, HangDetector
+from pyfrc_core.runtime.hang_detector import EXIT_HANGS, HangDetector, not_watched
 
 DRIVER = 11
 
@@ -264,3 +264,11 @@ def test_an_interruption_that_comes_too_late_does_nothing() -> None:
     interruption.interrupt(
         threading.main_thread().ident or 0, "it would end this process by a signal without a handler"
     )
+
+
+def test_what_pyfrc_itself_waits_for_does_not_hang(monkeypatch: pytest.MonkeyPatch) -> None:
+    world = World(monkeypatch, everything=True)
+    monkeypatch.setattr(hang_detector, "_active", world.detector)
+    with not_watched():
+        assert world.watch(world.passes(60)) == []
+    assert not world.detector.paused
