@@ -243,6 +243,8 @@ def page_of(browser: Browser, server: Served, address: str = "", script: str = "
     """Open the page as a new person, for whom nothing was arranged, on a robot that has just started."""
     (server.simulation.project.root / ".pyfrc" / "sim-layout.json").unlink(missing_ok=True)
     starts = server.simulation.status.starts
+    server.simulation.choose_mode("teleop")  # a restart keeps what was chosen
+    server.simulation.choose(f"/SmartDashboard/{CHOOSER}", "Nothing")
     server.simulation.restart()
     server.simulation.resume()
     server.simulation.set_speed(1)

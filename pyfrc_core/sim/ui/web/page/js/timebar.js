@@ -1,7 +1,7 @@
 // Robot time, along the bottom: pause, step, speed, the timeline, and the way back from the past.
 import { command } from "./connection.js";
 import { compared } from "./compare.js";
-import { askText } from "./dialog.js";
+import { askText, askWhether } from "./dialog.js";
 import { clock, speedText } from "./format.js";
 import { Menu } from "./menu.js";
 import { model } from "./model.js";
@@ -118,7 +118,7 @@ async function save() {
   const file = await askText("Save the recording in the project's directory as", "drive.jsonl");
   if (!file) return;
   let answer = await command("save", { file });
-  if (answer?.exists && confirm(`${answer.exists} exists. Replace it?`)) answer = await command("save", { file, replace: true });
+  if (answer?.exists && (await askWhether(`${answer.exists} exists. Replace it?`, "Replace"))) answer = await command("save", { file, replace: true });
   if (answer?.file) model.set("problem", `Saved ${answer.file}`);
 }
 
