@@ -677,6 +677,11 @@ def test_a_restart_keeps_what_was_chosen(simulation: Simulation) -> None:
     assert now.values["event.game_specific_message"] == "RLR"
     assert now.choosers[0].active == "Forward"
     assert (now.mode, now.chosen_mode) == ("disabled autonomous", "autonomous")
+    simulation.choose_mode("teleop")
+    simulation.restart()
+    settle(simulation)
+    run(simulation, 0.1)
+    assert simulation.snapshot.chosen_mode == "teleop"
 
 
 @pytest.mark.parametrize(("start", "station"), [(None, 4), ("left", 4), ("far", 1)])

@@ -33,7 +33,9 @@ def choices_of(
     :param pending: commands that are not recorded yet
     :param first: the script that the robot starts with, which chooses for itself
     """
+    pending = tuple(pending)
     writes = [command for command in pending if isinstance(command, Write)]
+    modes = [command for command in pending if isinstance(command, ChooseMode)]
     by_itself = _values_after(first.steps)
     chosen = {
         target: value
@@ -42,7 +44,9 @@ def choices_of(
     }
     commands: list[Command] = [Write(chosen)] if chosen else []
     # A match chooses modes by itself, as a script does.
-    if snapshot is not None and snapshot.practice_since is None and "mode" not in by_itself:
+    if modes:
+        commands.append(modes[-1])
+    elif snapshot is not None and snapshot.practice_since is None and "mode" not in by_itself:
         commands.append(ChooseMode(cast(ChosenMode, snapshot.chosen_mode)))
     return tuple(commands)
 
