@@ -18,7 +18,8 @@ from .project_options import chosen_project, project_options
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
-    from pyfrc_core.fuzz.campaign import Campaign, CampaignOptions, CampaignProgress, FuzzFinding
+    from pyfrc_core.fuzz.campaign_data import Campaign, CampaignOptions, CampaignProgress, FuzzFinding
+    from pyfrc_core.fuzz.failure import FuzzFailure
     from pyfrc_core.project import Project
 
 _DEFAULT_SECONDS = 60.0
@@ -34,7 +35,7 @@ _ON_TERMINAL, _ELSEWHERE = 0.2, 10.0
     "seconds",
     type=click.FloatRange(min=0, min_open=True),
     metavar="SECONDS",
-    help=f"Start no more matches after this time. Default: {_DEFAULT_SECONDS:g}.",
+    help=f"End about then. Default: {_DEFAULT_SECONDS:g}.",
 )
 @click.option("--runs", type=click.IntRange(min=1), metavar="N", help="Play this many matches instead.")
 @click.option(
@@ -135,7 +136,8 @@ def command(
             raise click.BadParameter(f"there is no directory {each}", param_hint="DIRECTORIES")
     with collector_paused():
         from pyfrc_core.compat.real_time_devices import explain_real_time
-        from pyfrc_core.fuzz.campaign import CampaignOptions, run_campaign
+        from pyfrc_core.fuzz.campaign import run_campaign
+        from pyfrc_core.fuzz.campaign_data import CampaignOptions
         from pyfrc_core.fuzz.stream import Shard
         from pyfrc_core.processors import usable_processors
         from pyfrc_core.runtime.scripts.inputs_file import load_inputs
@@ -246,6 +248,10 @@ class _ProgressPrinter:
             click.echo(f"\r\033[K{_line(progress)}", nl=False)
         else:
             click.echo(_line(progress))
+
+    def on_seen(self, failure: FuzzFailure) -> None:
+        self._clear()
+        hint(f"found {failure.text.partition(chr(10))[0]}")
 
     def on_found(self, found: FuzzFinding) -> None:
         self._clear()

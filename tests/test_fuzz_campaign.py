@@ -19,10 +19,10 @@ from hypothesis import strategies as st
 from pyfrc_core.fuzz.describe import story_of
 from pyfrc_core.fuzz.failure import FuzzFailure
 from pyfrc_core.fuzz.match import MatchResult, ReplayTask, Task
-from pyfrc_core.fuzz.match_executor import MatchExecutor
 from pyfrc_core.fuzz.seed_schedule import SeedScheduler
 from pyfrc_core.fuzz.shrink import Shrinker
 from pyfrc_core.fuzz.values import SPANS, InputKind, can_be, nearest, simpler
+from pyfrc_core.fuzz.work_executor import MatchExecutor
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork, wait_for_any
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
@@ -413,6 +413,13 @@ def test_recipes_follow_from_the_seed_and_what_was_learned() -> None:
         return [*found, *(made.schedule(number) for number in range(10, 40))]
 
     assert schedules(1) == schedules(1) != schedules(2)
+    short = SeedScheduler(1, begins_short=True)
+    assert [short.schedule(number).seeds[0][1].endswith(" short") for number in (0, 23, 24, 25)] == [
+        True,
+        True,
+        False,
+        True,
+    ]
     continued = [schedule for schedule in schedules(1) if len(schedule.seeds) == 2]  # type: ignore[attr-defined]
     assert 5 < len(continued) < 25
     for schedule in continued:
@@ -509,6 +516,49 @@ def test_only_what_is_needed_is_left(count: int, needed: set[int]) -> None:
     assert {target for step in shrinker.script.steps for target in step.writes} == targets
     assert [step.at_us for step in shrinker.script.steps] == [0]
     assert shrinker.runs < 2_000
+
+
+def test_when_its_time_is_over_shrinking_takes_what_it_has() -> None:
+    """One run has begun before that is known."""
+    targets = frozenset(f"dio[{number}].value" for number in range(9))
+    steps = tuple(Step(20_000 * number, {f"dio[{number}].value": False}) for number in range(9))
+    failure = FuzzFailure("Imagined", "robot.py:1", "f", "robot.py:1: Imagined")
+    shrinker = Shrinker(Imagined(targets), InputScript(steps, 2_000_000), failure, {}, seconds=0)
+    shrinker.shrink()
+    assert shrinker.runs == 1
+
+
+#: It fails in its first start, and never again.
+ONCE = """
+    import os
+    import wpilib
+
+    class MyRobot(wpilib.TimedRobot):
+        def robotInit(self):
+            try:
+                os.close(os.open("started", os.O_CREAT | os.O_EXCL))
+            except FileExistsError:
+                return
+            raise RuntimeError("only once")
+
+        def teleopPeriodic(self):
+            raise ValueError("always")
+    """
+
+
+def test_a_start_that_fails_once_does_not_end_the_campaign(make_project) -> None:
+    project = make_project({"robot.py": ONCE, "pyproject.toml": SHORT_MATCHES.format(1.0, "")})
+    result = project.run("fuzz", "--runs", "8", "--seed", "1")
+    assert "ValueError: always" in result.stdout, result.output
+    assert "fails at its start" not in result.stdout
+
+
+def test_a_failure_is_named_when_it_is_seen(campaign) -> None:
+    """Before its script is short."""
+    project, result = campaign
+    lines = result.stdout.splitlines()
+    text = f"{project.place('robot.py', '# the bug')}: IndexError: tuple index out of range"
+    assert lines.index(f"found {text}") < lines.index(text)
 
 
 def test_no_more_robots_are_run_than_allowed() -> None:

@@ -101,6 +101,20 @@ KINDS = {
         "self.absolute, self.last = wpilib.DutyCycleEncoder(0), 0.5",
         "now = self.absolute.get(); 1 / (not self.last > 0.97 > 0.03 > now); self.last = now",
     ),
+    "a wheel that stands still at a rate": (
+        "self.wheel, self.last, self.still = wpilib.Encoder(0, 1), 0, 0",
+        "stands = self.wheel.getRate() and self.wheel.get() == self.last;"
+        " self.last, self.still = self.wheel.get(), self.still + 1 if stands else 0;"
+        " 1 / (self.still < 12)",
+    ),
+    "a switch that is closed at first and stays so": (
+        "self.switch, self.opened, self.loops = wpilib.DigitalInput(3), False, 0",
+        "self.opened |= self.switch.get(); self.loops += 1; 1 / (self.opened or self.loops < 30)",
+    ),
+    "an entry of another type than the code reads": (
+        "self.gain = SmartDashboard.getNumber('gain', 1.0)",
+        "if not SmartDashboard.putNumber('gain', 2.0): raise ValueError",
+    ),
     "the controller's temperature": ("pass", "if RobotController.getCPUTemp() > 80: raise ValueError"),
     "a brown-out": ("pass", "if RobotController.isBrownedOut(): raise ValueError"),
     "the controller's comment": (
@@ -128,6 +142,67 @@ def test_each_kind_of_input_is_varied(kind: str, make_project: Any) -> None:
     assert any(result.code == 1 for result in campaigns)
     (file,) = (project.path / "tests/fuzz").glob("*.jsonl")  # it has failed again in a replay
     assert sum(len(step.writes) for step in load_script(file).steps) <= 5
+
+
+#: What is no input: two lines of a robot as above, and one of `simulationPeriodic`.
+NO_INPUTS = {
+    "a list that the program publishes": (
+        "SmartDashboard.putNumberArray('states', [0.0] * 8)",
+        "SmartDashboard.putNumberArray('states', [1.0] * 8); SmartDashboard.getNumberArray('states', [0.0] * 8)[7]",
+        "pass",
+    ),
+    "a list that is read before the program publishes it": (
+        "SmartDashboard.getNumberArray('states', [0.0] * 8)[7]; SmartDashboard.putNumberArray('states', [0.0] * 8)",
+        "SmartDashboard.getNumberArray('states', [0.0] * 8)[7]",
+        "pass",
+    ),
+    "a number that the program writes all the time": (
+        "SmartDashboard.putNumber('loops', 0.0)",
+        "loops = SmartDashboard.getNumber('loops', 0.0); 1 / (loops >= 0);"
+        " SmartDashboard.putNumber('loops', loops + 1)",
+        "pass",
+    ),
+    "telemetry that no one reads": (
+        "SmartDashboard.putNumber('speed', 1.0); SmartDashboard.putBoolean('ready', True)",
+        "1 / (self.network.getEntry('/SmartDashboard/speed').getValue().value() == 1.0)",
+        "pass",
+    ),
+    "what only the simulation reads": (
+        "pass",
+        "pass",
+        "if self.camera.getNumber('tv', 0) == 1: raise ValueError",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", NO_INPUTS)
+def test_what_the_program_publishes_or_only_simulations_read_is_no_input(kind: str, make_project: Any) -> None:
+    first, then, simulated = NO_INPUTS[kind]
+    robot = f"{ROBOT.format(first, then).rstrip()}\n\n        def simulationPeriodic(self):\n            {simulated}\n"
+    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
+    result = project.run("fuzz", "--seed", "1", "--runs", "24")
+    assert result.code == 0, result.output
+
+
+def test_stories_have_the_names_of_the_robots_code(make_project: Any) -> None:
+    """Not `CAN["Gyro:ADXRS450[0]"]`."""
+    robot = """
+        import wpilib
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.gyro, self._beam = wpilib.ADXRS450_Gyro(), wpilib.DigitalInput(4)
+
+            def teleopPeriodic(self):
+                if self.gyro.getAngle() > 90 and not self._beam.get():
+                    raise ValueError
+        """
+    project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 8\n"})
+    result = project.run("fuzz", "--seed", "1", "--runs", "32")
+    assert result.code == 1, result.output
+    assert "beam on DIO 4 False" in result.stdout
+    assert "gyro angle_x " in result.stdout
+    assert "CAN[" not in result.stdout
 
 
 def test_pulses_and_poses_do_not_matter_to_a_correct_robot(make_project: Any) -> None:
@@ -284,6 +359,8 @@ def test_entries_have_the_type_that_the_target_names() -> None:
         ("nt:struct:Pose2d:/typed/at", [1.0, 2.0, 0.5], "struct:Pose2d"),
         ("nt:double[]:/typed/unknown", ["nan", 1.0], "double[]"),
         ("nt:/typed/plain", 3, "double"),
+        ("nt:struct:Rotation2d:typed_without_slash", [0.5], "struct:Rotation2d"),
+        ("nt:double[]:typed/without slash", (1.0,), "double[]"),
     ):
         targets.write(target, value, 0)
         name, named = parse_entry_target(target)

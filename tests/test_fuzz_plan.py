@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from pyfrc_core.config.settings import MatchSettings
-from pyfrc_core.fuzz.match_plan import MatchEvent, length_of, plan_match
+from pyfrc_core.fuzz.match_plan import SHORT, MatchEvent, length_of, plan_match
 
 SETTINGS = MatchSettings()
 SECONDS = 30.0
@@ -72,10 +72,36 @@ def test_the_match_time_counts_to_zero_or_begins_as_in_a_real_match_or_there_is_
 
 def test_some_matches_are_as_long_as_real_ones() -> None:
     lengths = [length_of(f"fuzz 1 {number}", SECONDS, SETTINGS) for number in range(400)]
-    assert set(lengths) == {30.0, 154.0}
+    assert set(lengths) == {30.0, 154.0, 308.0}
     assert 4 <= lengths.count(154.0) <= 16
-    assert max(length_of(f"fuzz 1 {number}", 4.0, SETTINGS) for number in range(400)) == 24.0
-    assert max(length_of(f"fuzz 1 {number}", 300.0, SETTINGS) for number in range(400)) == 300.0
+    assert 4 <= lengths.count(308.0) <= 16
+    assert max(length_of(f"fuzz 1 {number}", 4.0, SETTINGS) for number in range(400)) == 48.0
+    assert max(length_of(f"fuzz 1 {number}", 310.0, SETTINGS) for number in range(400)) == 310.0
+    assert length_of(f"fuzz 1 4{SHORT}", 30.0, SETTINGS) == 5.0
+    assert length_of(f"fuzz 1 4{SHORT}", 2.0, SETTINGS) == 2.0
+
+
+def test_two_matches_in_a_row_have_all_periods_twice_and_no_restart() -> None:
+    """What fails after 160 enabled seconds fails in one of these."""
+    for seed in range(20):
+        plan = plan_match(random.Random(seed), 308.0, SETTINGS)
+        modes = [str(event.writes["mode"]) for event in plan if "mode" in event.writes]
+        enabled = [mode for mode in modes if not mode.startswith("disabled")]
+        second = enabled.index("teleop", enabled.index("teleop") + 1)
+        assert "teleop" in enabled[second:]
+        assert not any("restart" in event.writes for event in plan)
+        assert plan[-1].at_us > 160_000_000
+
+
+def test_match_numbers_are_those_of_events() -> None:
+    """130 qualification matches at most, and as many matches of a playoff as there are."""
+    starts = [plan_match(random.Random(seed), SECONDS, SETTINGS)[0].writes for seed in range(2000)]
+    highest = {"practice": 0, "qualification": 0, "elimination": 0}
+    for writes in starts:
+        if "event.match_number" in writes:
+            sort = str(writes["event.match_type"])
+            highest[sort] = max(highest[sort], int(str(writes["event.match_number"])))
+    assert highest == {"practice": 60, "qualification": 130, "elimination": 16}
 
 
 def test_a_bug_late_in_a_match_and_one_of_a_restart_are_found(make_project: Any) -> None:
@@ -95,8 +121,8 @@ def test_a_bug_late_in_a_match_and_one_of_a_restart_are_found(make_project: Any)
                     raise RuntimeError("late")
         """
     project = make_project({"robot.py": robot, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5.0\n"})
-    seed = 293
-    assert sum(length_of(f"fuzz {seed} {number}", 5.0, SETTINGS) > 5.0 for number in range(16)) == 2  # one in 25 is
+    seed = 17
+    assert sum(length_of(f"fuzz {seed} {number}", 5.0, SETTINGS) > 5.0 for number in range(16)) == 2  # one in 30 is
     result = project.run("fuzz", "--seed", str(seed), "--runs", "16")
     assert f"{project.place('robot.py', 'print')}: AttributeError" in result.stdout, result.output
     assert f"{project.place('robot.py', 'raise')}: RuntimeError: late" in result.stdout

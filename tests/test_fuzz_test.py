@@ -133,7 +133,6 @@ def matches(make_shared_project) -> list[Written]:
         "control.dsAttached",
         "event.game_specific_message",
         "nt:/SmartDashboard/Auto/selected",
-        "nt:/SmartDashboard/Gain",
     ],
 )
 def test_every_input_of_the_robot_is_written(target: str, matches: list[Written]) -> None:

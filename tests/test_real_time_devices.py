@@ -9,6 +9,7 @@ import hashlib
 import json
 import sys
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 from textwrap import dedent
 
@@ -19,6 +20,16 @@ from pyfrc_core.compat import real_time_devices as real_time
 from pyfrc_core.runtime.scripts.script import ScriptError, load_script, parse_script
 from pyfrc_core.runtime.trace_lines import hashed_part
 from pyfrc_core.sim.engine.changes import change_of
+
+#: The files of a stand-in for phoenix6.
+CONTROLS = """
+    class VoltageOut:
+        pass
+
+
+    class VelocityVoltage:
+        pass
+    """
 
 PHOENIX = """
     import os
@@ -35,6 +46,13 @@ PHOENIX = """
             self.voltage = self.motor.createDouble("motorVoltage", direction.kOutput, 0.0)
             self.sensor = hal.SimDevice(f"CANEncoder:Talon FX (v6)[{number}]/Rotor Sensor")
             self.position = self.sensor.createDouble("position", direction.kBidir, 0.0)
+
+        def set_control(self, request):
+            pass
+
+        @property
+        def sim_state(self):
+            return self
 
         def update(self):
             self.voltage.set(int.from_bytes(os.urandom(4), "big"))
@@ -106,7 +124,10 @@ def with_phoenix(make_project: MakeProject, tmp_path: Path) -> PhoenixProject:
     """A robot with three motors of the stand-in."""
     library = tmp_path / "library"
     library.mkdir()
-    (library / "phoenix6.py").write_text(dedent(PHOENIX), "utf-8")
+    files = {"__init__": "from .hardware import TalonFX", "hardware": PHOENIX, "controls": CONTROLS}
+    (library / "phoenix6").mkdir()
+    for name, text in files.items():
+        (library / "phoenix6" / f"{name}.py").write_text(dedent(text), "utf-8")
     # Nothing here needs the time that real devices need.
     settings = "[tool.pyfrc.test]\nreal_time_speed = 10000\n"
     return PhoenixProject(make_project({"robot.py": ROBOT, "pyproject.toml": settings, **TESTS}), library)
@@ -200,25 +221,53 @@ def test_their_values_are_no_inputs(with_phoenix: PhoenixProject) -> None:
 # -- how fast robot time passes ----------------------------------------------------------------------------------------
 
 
-#: It writes the real time of each turn of its loop.
+#: It writes the real time of each turn of its loop, and does something with its devices.
 TIMED = ROBOT.replace(
     "def robotPeriodic(self):",
     """def robotPeriodic(self):
+            {}
             with open("real_time.txt", "a", encoding="utf-8") as file:
-                file.write(f"{time.clock_gettime(time.CLOCK_MONOTONIC)}\\n")""",
-).replace("import os", "import os\n    import time")
+                file.write(f"{{time.clock_gettime(time.CLOCK_MONOTONIC)}}\\n")""",
+).replace("import os", "import os\n    import time\n    import phoenix6.controls")
+
+#: What a robot does with its devices, and whether robot time waits for it.
+USES = {
+    "self.talons[0].set_control(phoenix6.controls.VelocityVoltage())": True,
+    "self.talons[0].sim_state": True,
+    "self.talons[0].set_control(phoenix6.controls.VoltageOut())": False,
+    "pass": False,
+}
 
 
-def test_robot_time_waits_for_them(with_phoenix: PhoenixProject) -> None:
-    """In tests, replays and matches of fuzz: at half its speed, each packet of 20 ms takes 40 ms at least."""
-    settings = "[tool.pyfrc.test]\nreal_time_speed = 0.5\n[tool.pyfrc.fuzz]\nmatch_seconds = 0.2\n"
-    with_phoenix.project.write({"pyproject.toml": settings, "robot.py": TIMED})
-    script, noted = with_phoenix.record("recorded"), with_phoenix.path / "real_time.txt"
-    for command in (("test", "-j", "1", "--", "-k", "teleop"), ("replay", str(script)), ("fuzz", "--runs", "1")):
-        noted.unlink()
+@pytest.mark.parametrize("use", USES)
+def test_robot_time_waits_where_a_device_closes_a_loop_or_is_simulated(with_phoenix: PhoenixProject, use: str) -> None:
+    """In tests and replays, while the robot is enabled: at a fifth of its speed, each packet of 20 ms takes 0.1 s."""
+    robot = TIMED.format(use)
+    with_phoenix.project.write({"pyproject.toml": "[tool.pyfrc.test]\nreal_time_speed = 0.2\n", "robot.py": robot})
+    noted = with_phoenix.path / "real_time.txt"
+    for command in (
+        ("test", "-j", "1", "--record", "recorded", "--", "-k", "teleop"),
+        ("replay", f"recorded/{TELEOP}"),
+    ):
+        noted.unlink(missing_ok=True)
         with_phoenix.output(*command)
         times = [float(line) for line in noted.read_text("utf-8").split()]
-        assert times[9] - times[0] >= 8 * 0.04  # the first turn is the program's start, the second its first packet's
+        # The first turn is the program's start, the second its first packet's.
+        packets = [after - before for before, after in pairwise(times[2:9])]
+        assert (min(packets) > 0.05) is USES[use], packets
+
+
+def test_robot_time_does_not_wait_while_the_robot_is_disabled_nor_in_campaigns(with_phoenix: PhoenixProject) -> None:
+    """A disabled device does nothing, and what a campaign has found is played again with its pace."""
+    robot = TIMED.format("self.talons[0].sim_state")
+    settings = "[tool.pyfrc.test]\nreal_time_speed = 0.2\n[tool.pyfrc.fuzz]\nmatch_seconds = 0.2\n"
+    with_phoenix.project.write({"pyproject.toml": settings, "robot.py": robot})
+    noted = with_phoenix.path / "real_time.txt"
+    for command in (("test", "-j", "1", "--", "-k", "disabled"), ("fuzz", "--runs", "1")):
+        noted.unlink(missing_ok=True)
+        with_phoenix.output(*command)
+        times = [float(line) for line in noted.read_text("utf-8").split()]
+        assert min(after - before for before, after in pairwise(times[2:9])) < 0.05
 
 
 MEETING = {

@@ -19,17 +19,18 @@ from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.script import InputScript
 from ..runtime.trace_difference import first_difference
 from ..text_files import keep_out_of_version_control
-from .campaign import CampaignOptions
+from .campaign_data import CampaignOptions
 from .describe import story_of
 from .failure import FuzzFailure
 from .goals import Line
 from .inputs import Input
 from .match import FuzzTask, MatchResult, ReplayTask, Task
-from .match_executor import MatchExecutor, open_match_executor
+from .match_executor import open_match_executor
 from .other_commit import Play, open_other_commit
 from .revision import Revision, exported
 from .shrink import Shrinker
 from .stream import Stream
+from .work_executor import MatchExecutor
 
 #: The kind of a difference, which is shortened as a failure is.
 DIFFERS = "differs"

@@ -25,9 +25,11 @@ from urllib.parse import urlsplit
 from .._version import requirement
 from ..errors import PyfrcError, UsageError
 from ..project import Project
-from .match import MatchResult, Task
+from .match import MatchResult
 from .match_executor import PooledMatchExecutor
 from .packed_project import pack
+from .shrink_task import Shrunk
+from .work_executor import Result, Work
 
 #: How long to try to reach the scheduler.
 _CONNECT_SECONDS = 10.0
@@ -99,7 +101,7 @@ class ClusterMatchExecutor(PooledMatchExecutor):
     """
 
     def __init__(self, project: Project, client: DaskClient, address: str, plugin: str, directory: Path) -> None:
-        super().__init__(project, sum(client.nthreads().values()), directory)
+        super().__init__(project, max(1, sum(client.nthreads().values())), directory)
         self._client = client
         self._address = address
         self._plugin = plugin
@@ -109,15 +111,15 @@ class ClusterMatchExecutor(PooledMatchExecutor):
     def _pool(self) -> AbstractContextManager[Executor]:
         return nullcontext(self._executor)
 
-    def _call(self, task: Task) -> Callable[[], bytes]:
+    def _call(self, task: Work) -> Callable[[], bytes]:
         from .cluster_worker import play_on_worker
 
         return partial(play_on_worker, self._plugin, pickle.dumps(task))
 
-    def _with_journal(self, task: Task) -> Task:
+    def _with_journal(self, task: Work) -> Work:
         return task  # the worker has one, where it is needed
 
-    def _match_result(self, task: Task, future: Future[bytes]) -> MatchResult:
+    def _result_of(self, task: Work, future: Future[bytes]) -> Result:
         try:
             result = pickle.loads(future.result())
         except CancelledError:
@@ -126,7 +128,7 @@ class ClusterMatchExecutor(PooledMatchExecutor):
             raise ClusterError(f"the workers at {self._address} cannot play a match: {error}") from error
         if isinstance(result, PyfrcError):
             raise result
-        assert isinstance(result, MatchResult)
+        assert isinstance(result, MatchResult | Shrunk)
         return result
 
     def _check_interrupt(self) -> None:

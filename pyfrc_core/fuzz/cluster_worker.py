@@ -28,9 +28,8 @@ from ..processes.request_process import RequestProcess
 if TYPE_CHECKING:
     from ..project import Project
     from .failure import FuzzFailure
-    from .match import MatchResult
-    from .match_executor import MatchExecutor
     from .packed_project import PackedProject
+    from .work_executor import Result, WorkExecutor
 
 #: The packages whose versions must be the same everywhere.
 PACKAGES = ("pyfrc", "wpilib")
@@ -136,7 +135,7 @@ class _MatchPlayer:
         self._project = project
         self._sent_from = sent_from
         self._open = ExitStack()
-        self._executor: MatchExecutor | None = None
+        self._executor: WorkExecutor | None = None
 
     def __call__(self, task: bytes) -> bytes:
         """Return the pickled result of a pickled task, or the error of the project's code."""
@@ -146,7 +145,8 @@ class _MatchPlayer:
             if self._executor is None:
                 os.chdir(self._project.root)
                 self._executor = self._open.enter_context(open_match_executor(self._project, jobs=1))
-            (result,) = self._executor.play([pickle.loads(task)])
+            left = [pickle.loads(task)]
+            ((_, result),) = self._executor.run(lambda: left.pop() if left else None)
             return pickle.dumps(_with_paths_of_sender(result, str(self._project.root), str(self._sent_from)))
         except PyfrcError as error:
             return pickle.dumps(error)
@@ -154,12 +154,16 @@ class _MatchPlayer:
             return pickle.dumps(PyfrcError(f"a mistake in pyfrc itself, on a worker:\n{traceback.format_exc()}"))
 
 
-def _with_paths_of_sender(result: MatchResult, here: str, there: str) -> MatchResult:
+def _with_paths_of_sender(result: Result, here: str, there: str) -> Result:
     """Return the result as on the computer that has sent the project: texts may have the path of a file."""
+
+    from .shrink_task import Shrunk
 
     def moved(failure: FuzzFailure) -> FuzzFailure:
         return replace(failure, text=failure.text.replace(here, there), calls=failure.calls.replace(here, there))
 
     failure = None if result.failure is None else moved(result.failure)
+    if isinstance(result, Shrunk):
+        return replace(result, failure=failure or result.failure)
     noted = tuple(note._replace(failure=moved(note.failure)) for note in result.noted)
     return replace(result, failure=failure, noted=noted)

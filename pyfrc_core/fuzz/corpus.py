@@ -153,7 +153,7 @@ def _unnumbered(file: Path) -> tuple[str, int]:
 
 def _complete(script: InputScript, failure: FuzzFailure) -> InputScript:
     packages = {name: version(name) for name in ("pyfrc", "wpilib")}
-    return replace(script, packages=packages, story=story_of(script, failure))
+    return replace(script, packages=packages, story=script.story or story_of(script, failure))
 
 
 def _name_of(failure: FuzzFailure) -> str:

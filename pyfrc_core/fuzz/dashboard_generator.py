@@ -31,6 +31,9 @@ _UNREAD = 0.15
 #: How often an entry has a value when the robot starts.
 _BEFORE_START = 0.5
 
+#: How often a dashboard publishes an entry of another type than the robot reads.
+_OTHER_TYPE = 0.06
+
 #: After so many searches at most, all entries are looked at again: a chooser may have another option.
 _UNCHANGED = 5
 
@@ -49,7 +52,10 @@ class DashboardFinder:
         self._searches = 0
 
     def find(self) -> list[Input]:
-        """Return the choosers' options, the commands' buttons, and plain entries, in order."""
+        """Return the choosers' options, the commands' buttons, and what else belongs to an object, in order.
+
+        A plain entry that the robot writes and does not read is no input.
+        """
         topics = self._network.getTopics()
         names = [topic.getName() for topic in topics]
         if names != self._names or self._searches % _UNCHANGED == 0:
@@ -70,9 +76,9 @@ class DashboardFinder:
             elif made_by == "Command":
                 if entry == "running":
                     yield Input(NETWORK + name, "command", table)
-            elif sort == ntcore.NetworkTableType.kBoolean:
+            elif made_by and sort == ntcore.NetworkTableType.kBoolean:
                 yield Input(NETWORK + name, "flag", name)
-            elif sort == ntcore.NetworkTableType.kDouble:
+            elif made_by and sort == ntcore.NetworkTableType.kDouble:
                 yield Input(NETWORK + name, "number", name)
 
 
@@ -80,10 +86,15 @@ class DashboardGenerator:
     """Generates one match's inputs from the network.
 
     :param reads: the entries that the robot reads; None if they are not watched
+    :param published: entries that the program is known to write all the time
     """
 
     def __init__(
-        self, rng: random.Random, reads: NetworkReads | None = None, constants: RobotConstants = UNKNOWN
+        self,
+        rng: random.Random,
+        reads: NetworkReads | None = None,
+        constants: RobotConstants = UNKNOWN,
+        published: frozenset[str] = frozenset(),
     ) -> None:
         self._rng = rng
         self._reads = reads
@@ -96,10 +107,15 @@ class DashboardGenerator:
         self._settings: set[str] = set()
         self._written: dict[str, Value] = {}
         self._chosen: set[str] = set()
+        #: Entries that the program writes itself, and the last values of the others.
+        self._published = set(published)
+        self._seen: dict[str, object] = {}
 
     def set_inputs(self, inputs: list[Input]) -> list[Input]:
         """Set the inputs to generate values for; return them with the entries that the robot reads."""
         reads = {} if self._reads is None else self._reads.found
+        for read in reads.values():
+            self._find_published(read)
         entries = [each for read in reads.values() if (each := self._entry(read)) is not None]
         others = [each for each in inputs if each.target.removeprefix(NETWORK) not in reads]
         plain = [each for each in others if each.kind in ("flag", "number")] if self._reads is not None else []
@@ -118,9 +134,24 @@ class DashboardGenerator:
             return {}
         found: dict[str, Value] = {}
         entry = self._entry(read)
-        if entry is not None:
-            self._change_entry(entry.target, read, found)
+        if entry is None:
+            return found
+        if read.type_name in _PLAIN and self._rng.random() < _OTHER_TYPE:  # a dashboard publishes it first
+            text = self._rng.choice(("", "0", "true")) if read.type_name != "string" else 0.0
+            return {entry_target(read.name): text}
+        self._change_entry(entry.target, read, found)
         return found
+
+    def _find_published(self, read: NetworkRead) -> None:
+        """Notice an entry whose value changes without a write: the program writes it."""
+        if read.name in self._published or read.type_name not in _PLAIN:
+            return
+        entry = ntcore.NetworkTableInstance.getDefault().getEntry(read.name)
+        now = entry.getValue().value() if entry.exists() else None
+        known = self._written.get(read.name, self._seen.get(read.name, now))
+        if known is not None and now != known:
+            self._published.add(read.name)
+        self._seen[read.name] = now
 
     def write(self, now_us: int, found: dict[str, Value]) -> None:
         """Add the writes of this time: a choice for each new chooser, and a random change now and then."""
@@ -159,9 +190,9 @@ class DashboardGenerator:
             found[sees.target] = True if self._reads.found[_name(sees)].type_name == "boolean" else 1
 
     def _entry(self, read: NetworkRead) -> Input | None:
-        """Return the input that an entry is; None if the robot does not read it with its own type."""
+        """Return the input that an entry is; None if it is none, or not of the type that the robot reads."""
         table, _, last = read.name.rpartition("/")
-        if read.name.startswith(_NOT_INPUTS) or last.startswith("."):
+        if read.name.startswith(_NOT_INPUTS) or last.startswith(".") or read.name in self._published:
             return None
         topic = ntcore.NetworkTableInstance.getDefault().getTopic(read.name)
         type_name = read.type_name

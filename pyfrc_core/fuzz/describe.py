@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import groupby
+from types import MappingProxyType
 
 from ..hal.modes import NOT_PRESSED
 from ..runtime.clock import PACKET_US
@@ -11,6 +12,7 @@ from ..runtime.scripts.joysticks import CONTROL
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript
 from ..runtime.scripts.targets import MATCH_TIME, MODE, PLUGGED, REMAINING, RESTART
+from .device_names import named
 from .failure import FuzzFailure
 from .values import Value, is_released
 
@@ -41,8 +43,12 @@ _MOST_MOMENTS, _LAST_MOMENTS = 12, 6
 _SOON_US = 5 * PACKET_US
 
 
-def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
+def story_of(
+    script: InputScript, failure: FuzzFailure, names: Mapping[str, str] = MappingProxyType({})
+) -> tuple[str, ...]:
     """Return a line for each moment of the script; the last line describes the failure.
+
+    :param names: the names of the robot's sensors, see `device_names`
 
     Of a long script, only the last moments are described. An unusual order of modes has a line of its own.
     """
@@ -62,7 +68,7 @@ def story_of(script: InputScript, failure: FuzzFailure) -> tuple[str, ...]:
         held = {target: value for target, value in held.items() if _stick(target) not in gone}
         if RESTART in now:
             held = {}
-        what = ", ".join(_described(target, value) for target, value in now.items())
+        what = ", ".join(_described(target, value, names) for target, value in now.items())
         if what and (still := _still_held(held, now)):
             what += f" while {still}"
         when = f"{name} begins" if MODE in step.writes else f"in {name}"
@@ -113,7 +119,7 @@ def _stick(target: str) -> str | None:
     return control[1] if control is not None else None
 
 
-def _described(target: str, value: Value) -> str:
+def _described(target: str, value: Value, names: Mapping[str, str] = MappingProxyType({})) -> str:
     if target == RESTART:
         return "the robot program starts again"
     control = CONTROL.fullmatch(target)
@@ -130,7 +136,7 @@ def _described(target: str, value: Value) -> str:
     if target.startswith(NETWORK):
         shown = list(value) if isinstance(value, tuple) else value
         return f"{parse_entry_target(target)[0]} set to {shown!r}"
-    return f"{_NAMES.get(target, target)} {value!r}"
+    return f"{_NAMES.get(target) or named(target, names)} {value!r}"
 
 
 def _number(value: Value) -> str:

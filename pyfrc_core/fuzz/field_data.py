@@ -10,6 +10,8 @@ _STATIONS = ("red1", "red2", "red3", "blue1", "blue2", "blue3")
 
 #: Names of events, as the field sends them.
 _EVENTS = ("CASJ", "2026casj", "NYRO", "Einstein")
+#: The highest match numbers of large events.
+_MOST_MATCHES = {"practice": 60, "qualification": 130, "elimination": 16}
 _REPLAYS = (1, 1, 1, 2, 3)
 
 #: How often the robot is ready before its driver station, and the driver station before it knows the alliance.
@@ -45,8 +47,8 @@ class FieldData:
             self.counts = True
             self.at_start |= {
                 "control.fmsAttached": True,
-                "event.match_type": rng.choice(("qualification", "elimination")),
-                "event.match_number": rng.randint(1, 90),
+                "event.match_type": (sort := rng.choice(("qualification", "qualification", "elimination", "practice"))),
+                "event.match_number": rng.randint(1, _MOST_MATCHES[sort]),
                 "event.replay_number": rng.choice(_REPLAYS),
                 "event.name": rng.choice(_EVENTS),
             }

@@ -40,6 +40,9 @@ _CHECK_EVERY_US, _CHECK_SELDOM_US = 5 * PACKET_US, 25 * PACKET_US
 #: How long a robot with a simulation is enabled before its sensors are written: the simulation drives some of them.
 _DRIVEN_US = 5 * _SECOND_US
 
+#: How often switches are closed before the program starts, and stay so; the roboRIO's own digital inputs.
+_HELD, _CHANNELS = 0.2, 10
+
 #: What tells a team's robots from each other, by the function with which code asks for it, and its maximum length.
 _DESCRIBED = {"getComments": ("roborio.comments", 64), "getSerialNumber": ("roborio.serial_number", 8)}
 
@@ -57,6 +60,7 @@ class InputGenerator:
     :param constants: the constants of the robot's code
     :param base: the recorded match with which this one begins
     :param asked_controls: the targets of the controls that the robot has asked for so far
+    :param published: entries of NetworkTables that the program is known to write all the time
     :param auto_joysticks: whether the driver station sends joystick data in autonomous, too
     """
 
@@ -72,6 +76,7 @@ class InputGenerator:
         constants: RobotConstants = UNKNOWN,
         base: BaseMatch | None = None,
         asked_controls: Container[str] = (),
+        published: frozenset[str] = frozenset(),
         auto_joysticks: bool = False,
     ) -> None:
         #: The inputs found so far, by target.
@@ -92,13 +97,15 @@ class InputGenerator:
         self._sticks = JoystickGenerator(rng, asked_controls, constants)
         self._sensors = SensorGenerator(rng, self._hal_data, constants)
         self._sensor_finder = SensorFinder(self._hal_data, constants)
-        self._dashboard = DashboardGenerator(rng, network_reads, constants)
+        self._dashboard = DashboardGenerator(rng, network_reads, constants, published)
         self._dashboard_finder = DashboardFinder()
         #: Applies writes at once, while the robot starts. Set by the match.
         self.write_at_once: Callable[[Mapping[str, Value]], None] | None = None
         if network_reads is not None:
             network_reads.on_first = self._before_first_read
         self._driven = set(physics_inputs)
+        #: Switches that are closed for the whole match.
+        self._held: set[str] = set()
         self._sensors.paused = not physics_inputs and _is_simulated(run)
         self._enabled_since_us: int | None = None
         self._enabled_us = 0
@@ -138,9 +145,11 @@ class InputGenerator:
                 texts = [text for text in self._constants.texts if len(text) <= longest]
                 if self._constants.asks(function) and texts and self._rng.random() < 0.5:
                     found[target] = self._rng.choice(texts)
+            if not self._from_us and self._constants.asks("DigitalInput"):
+                found |= self._held_switches()
             return found
         if now_us >= self._find_us:
-            self._find_inputs(now_us)
+            self._find_inputs(now_us, found)
         if now_us >= self._check_us:
             self._check_physics(now_us)
         sensors, sticks, dashboard = self._sensors, self._sticks, self._dashboard
@@ -158,6 +167,14 @@ class InputGenerator:
         parts_us = min(sensors.next_us, sticks.next_us, dashboard.next_us) if self._attached else sensors.next_us
         self.next_us = min(self._find_us, self._check_us, plan_us, max(self._from_us, parts_us))
         return found
+
+    def _held_switches(self) -> dict[str, Value]:
+        """Return switches that are closed before the program starts, and stay so for the whole match."""
+        if self._rng.random() >= _HELD:
+            return {}
+        held = [f"dio[{channel}]" for channel in range(_CHANNELS) if self._rng.random() < 0.3]
+        self._held.update(held)
+        return without(self.left_out, {f"{device}.value": False for device in held})
 
     def resume(self, now_us: int) -> None:
         """Go on after this time, at which the robot program is started again: the events until then are over."""
@@ -190,7 +207,7 @@ class InputGenerator:
         if self._rng.random() < 0.3:  # in the same packet
             self._sticks.change_pose(now_us)
 
-    def _find_inputs(self, now_us: int) -> None:
+    def _find_inputs(self, now_us: int, found: dict[str, Value]) -> None:
         """Search again: robots may create devices and dashboard entries at any time, and mostly do when they start."""
         self._find_us += _SECOND_US if now_us < self._often_until_us else 2 * _SECOND_US
         if now_us <= self._gamepads_until_us and not self._sticks.unplugged:  # unplugged joysticks have no controls
@@ -206,7 +223,10 @@ class InputGenerator:
         # Subsystems of commands2 have simulations of their own, and so do devices on the CAN bus.
         simulated = "commands2" in sys.modules or any(each.target.startswith("CAN") for each in sensors)
         self._check_every_us = _CHECK_EVERY_US if simulated or _is_simulated(self._run) else _CHECK_SELDOM_US
-        self._sensors.excluded = {each.device for each in sensors if each.target in self._driven}
+        for each in sensors:
+            if each.device in self._held and self._hal_data.read(each.target):  # it was created after the first write
+                found[each.target] = False
+        self._sensors.excluded = self._held | {each.device for each in sensors if each.target in self._driven}
         self._remember(self._dashboard.set_inputs(self._dashboard_finder.find()))
 
     def _before_first_read(self, read: NetworkRead) -> None:

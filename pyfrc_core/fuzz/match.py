@@ -11,6 +11,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import ntcore
+
 from ..invariants.watch import BrokenInvariantError, watch_invariants
 from ..physics.construct import construct
 from ..project import Project
@@ -57,6 +59,8 @@ from .states import RobotStates
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
 
+_PLAIN_TYPES = ("boolean", "int", "float", "double", "string")
+
 #: The seed of the robot's own random generators. It is the default seed of tests, so that a script has the same effect
 #: there.
 ROBOT_SEED = 0
@@ -70,6 +74,7 @@ class FuzzTask:
     :param known: the goals that were reached before
     :param known_to_all: those among them that the matches know that are played at the same time
     :param returns_inputs: whether the script and the inputs are returned even if nothing has failed
+    :param published: entries of NetworkTables that the program is known to write all the time
     :param journal: a file for the inputs, in case the process ends before it can return them
     """
 
@@ -77,6 +82,7 @@ class FuzzTask:
     known: frozenset[Goal] = frozenset()
     known_to_all: frozenset[Goal] = frozenset()
     returns_inputs: bool = True
+    published: frozenset[str] = frozenset()
     journal: Path | None = None
 
 
@@ -90,6 +96,7 @@ class ReplayTask:
     :param trace: where to write a trace; with restarts of the robot program, that of the last boot
     :param ignores_missing: whether writes to devices that the robot does not have end the run without a failure
     :param quietly: whether nothing that the boots of a match with restarts print is shown
+    :param paced: whether robot time waits for devices that a vendor simulates in real time, as in tests
     """
 
     script: InputScript
@@ -99,6 +106,7 @@ class ReplayTask:
     trace: Path | None = None
     ignores_missing: bool = True
     quietly: bool = True
+    paced: bool = False
 
 
 Task = FuzzTask | ReplayTask
@@ -117,6 +125,9 @@ class MatchResult:
     :param went_on: whether the match went on after this failure
     :param hints: what is no failure, but may be a mistake
     :param next_boot: what the next boot of the robot program needs; None if the match is over
+    :param published: of a replay, the entries of NetworkTables at its end that are no plain values: no one has written
+        them but the program
+    :param names: the names of the robot's sensors, see `device_names`
     """
 
     failure: FuzzFailure | None
@@ -128,6 +139,8 @@ class MatchResult:
     went_on: bool = False
     hints: MatchHints = field(default_factory=MatchHints)
     next_boot: NextBoot | None = None
+    published: frozenset[str] = frozenset()
+    names: dict[str, str] = field(default_factory=dict)
 
     def each_failure(self) -> Iterator[MatchResult]:
         """Return a result for each failure, in order, with the inputs until it."""
@@ -209,6 +222,7 @@ def _fuzz(
             constants=robot_constants(project),
             base=task.schedule.base,
             asked_controls=closing.enter_context(watch_controls()).targets,
+            published=task.published,
             auto_joysticks=auto_joysticks(project),
         )
         generator.left_out = task.schedule.left_out_at(boot.at_us)
@@ -264,6 +278,7 @@ def _fuzz(
             tuple(notes.found),
             hints=watch.hints(),
             next_boot=next_boot,
+            names=dict(states.names),
         )
         return _joined(before, played)
 
@@ -296,7 +311,8 @@ def _replay(project: Project, log: CrashLog, before: MatchResult | None, task: R
     if boot.number:
         sent_again = replace(script.steps[0], writes=without_entries(script.steps[0].writes, boot.entries))
         script = replace(script, steps=(sent_again, *script.steps[1:]))
-    robot = _robot(project, log, script.seed, boot, task.use_oracle, task.ends_with, task.hang_seconds)
+    oracle = task.use_oracle, task.ends_with
+    robot = _robot(project, log, script.seed, boot, *oracle, hang_seconds=task.hang_seconds, paced=task.paced)
     trace = task.trace if is_last else None
     with robot as (run, notes), traced(run, trace) if trace else nullcontext():
         failure, may_go_on = None, not is_last
@@ -315,7 +331,14 @@ def _replay(project: Project, log: CrashLog, before: MatchResult | None, task: R
         steps = tuple(step for step in task.script.steps if step.at_us < end_us)
         played = InputScript(steps, end_us, robot=script.robot, seed=script.seed)
         next_boot = NextBoot.after(boot.number, script.end_us) if may_go_on and failure is None else None
-        return _joined(before, MatchResult(failure, played, noted=tuple(notes.found), next_boot=next_boot))
+        result = MatchResult(failure, played, noted=tuple(notes.found), next_boot=next_boot, published=_published())
+        return _joined(before, result)
+
+
+def _published() -> frozenset[str]:
+    """Return the entries of NetworkTables that are lists or structs: dashboards let no one change these."""
+    topics = ntcore.NetworkTableInstance.getDefault().getTopics()
+    return frozenset(topic.getName() for topic in topics if topic.getTypeString() not in _PLAIN_TYPES)
 
 
 @contextmanager
@@ -327,6 +350,7 @@ def _robot(
     use_oracle: bool = True,
     ends_with: FuzzFailure | None = None,
     hang_seconds: float | None = None,
+    paced: bool = False,
 ) -> Iterator[tuple[RobotRun, MisbehaviorNotes]]:
     """Open a run with hang detection and, by default, the oracle. The run is never closed: its process ends."""
     # Imports the robot before robot time begins.
@@ -337,7 +361,8 @@ def _robot(
         run.open()
         CrashMoment(log, run)
         LoopLimit(run, project.files, project.settings)
-        RealTimePace(run, project.settings)
+        if paced:
+            RealTimePace(run, project.settings)
         notes = MisbehaviorNotes(run.clock, project.files, ends_with)
         with ExitStack() as closing:
             if use_oracle:

@@ -6,123 +6,38 @@ Each match has its own process, so it may crash, hang and print without harm.
 from __future__ import annotations
 
 import tempfile
-from abc import ABC, abstractmethod
-from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import Executor, Future, ThreadPoolExecutor, wait
+from abc import abstractmethod
+from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager, closing, contextmanager
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 from ..errors import RobotCodeError
-from ..interruption import calling_when_ended
 from ..processes.call import ForkedCall, can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
 from ..processes.fork import wait_for_any
 from ..project import Project
-from ..runtime.clock import to_us
 from ..runtime.fork_obstacles import reasons_not_to_fork
-from ..runtime.scripts.script import InputScript
 from ..runtime.turns import taking_turns
 from .boots import MEANWHILE
-from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .goals import Line
 from .imported_robot import robot_lines
-from .journal import read_journal
-from .match import (
-    ROBOT_SEED,
-    FuzzTask,
-    MatchResult,
-    ReplayTask,
-    Task,
-    match_seconds,
-    play,
-)
+from .match import play
 from .preparation import Preparation
+from .shrink import Shrinker
+from .shrink_task import ShrinkTask, Shrunk
+from .work_executor import NextWork, NoMoreWork, Result, Work, WorkExecutor
 
 Answer = TypeVar("Answer")
 
-# Interval of the checks for an interrupt, in seconds.
+# Interval of the checks for an interrupt and for the end of the campaign's time, in seconds.
 _INTERRUPT_CHECK_SECONDS = 0.1
 
 
-class MatchExecutor(ABC):
-    """Runs matches of one project.
-
-    :param jobs: how many at a time
-    :param directory: a directory for temporary files
-    """
-
-    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
-        self.project = project
-        self.jobs = jobs
-        #: Set to end the matches: `play` then raises `KeyboardInterrupt`. (An exception raised by a signal handler
-        #: would be lost if it came during a fork.)
-        self.interrupted = False
-        self._directory = directory
-        self._journals = 0
-
-    @property
-    @abstractmethod
-    def lines(self) -> frozenset[Line]:
-        """Return the lines of the robot's functions."""
-
-    @abstractmethod
-    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
-        """Return the results in the order of the tasks, each as soon as it is known; closing the generator ends the
-        remaining tasks.
-        """
-
-    def replay(self, script: InputScript) -> MatchResult:
-        """Run the robot with the inputs of a script."""
-        (played,) = self.play([ReplayTask(script)])
-        return played
-
-    def interruptible(self) -> AbstractContextManager[None]:
-        """Interrupt the matches on Ctrl-C, and when the terminal is closed, until the context ends."""
-
-        def interrupt() -> None:
-            self.interrupted = True
-
-        return calling_when_ended(interrupt)
-
-    def _check_interrupt(self) -> None:
-        if self.interrupted:
-            raise KeyboardInterrupt
-
-    @contextmanager
-    def _journal(self, task: Task) -> Iterator[None]:
-        """Delete the task's journal when the context ends."""
-        try:
-            yield
-        finally:
-            if isinstance(task, FuzzTask) and task.journal is not None:
-                task.journal.unlink(missing_ok=True)
-
-    def _with_journal(self, task: Task) -> Task:
-        if isinstance(task, ReplayTask):
-            return task
-        self._journals += 1
-        return replace(task, journal=self._directory / str(self._journals))
-
-    def _died(self, task: Task, text: str) -> MatchResult:
-        """Return the result of a match whose process ended without returning one."""
-        headline = text.partition("\n")[0]
-        place, _, what = headline.partition(": ")
-        if not what:
-            place = ""
-        failure = FuzzFailure(HANGS if " hangs here" in headline else PROCESS_ENDED, place, "", headline)
-        if isinstance(task, ReplayTask):
-            return MatchResult(failure, task.script)
-        steps = tuple(read_journal(task.journal)) if task.journal is not None else ()
-        end_us = to_us(match_seconds(self.project, task.schedule))
-        return MatchResult(failure, InputScript(steps, end_us, robot=self.project.main_file.name, seed=ROBOT_SEED))
-
-
 @contextmanager
-def open_match_executor(project: Project, jobs: int) -> Iterator[MatchExecutor]:
+def open_match_executor(project: Project, jobs: int) -> Iterator[WorkExecutor]:
     """Open the executor that fits this project and platform.
 
     :raises RobotCodeError: when the robot's code cannot be imported
@@ -135,7 +50,7 @@ def open_match_executor(project: Project, jobs: int) -> Iterator[MatchExecutor]:
             yield executor
 
 
-class PooledMatchExecutor(MatchExecutor):
+class PooledMatchExecutor(WorkExecutor):
     """Runs matches in an executor of `concurrent.futures`."""
 
     @property
@@ -147,62 +62,69 @@ class PooledMatchExecutor(MatchExecutor):
         """Return the executor, which is used until the context ends."""
 
     @abstractmethod
-    def _call(self, task: Task) -> Callable[[], Any]:
-        """Return the function that plays a task there."""
+    def _call(self, task: Work) -> Callable[[], Any]:
+        """Return the function that does a task there."""
 
     @abstractmethod
-    def _match_result(self, task: Task, future: Future[Any]) -> MatchResult:
-        """Return the result of the match whose future is done."""
+    def _result_of(self, task: Work, future: Future[Any]) -> Result:
+        """Return the result of the task whose future is done."""
 
-    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
+    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
+        running: dict[Future[Any], tuple[Work, Work]] = {}
         with self._pool() as pool:
-            waiting: deque[tuple[Task, Future[Any]]] = deque()
             try:
-                for task in map(self._with_journal, tasks):
-                    waiting.append((task, pool.submit(self._call(task))))
-                    while sum(not future.done() for _, future in waiting) >= self.jobs:
-                        yield self._result(*waiting.popleft())
-                while waiting:
-                    yield self._result(*waiting.popleft())
+                while True:
+                    while (task := next_work()) is not None:
+                        noted = self._with_journal(task)
+                        running[pool.submit(self._call(noted))] = task, noted
+                    if not running:
+                        return
+                    done, _ = wait(running, _INTERRUPT_CHECK_SECONDS, FIRST_COMPLETED)
+                    self._check_interrupt()  # the signal may have ended that process, too
+                    for future in done:
+                        task, noted = running.pop(future)
+                        with self._journal(noted):
+                            result = self._result_of(noted, future)
+                        yield task, result
+            except NoMoreWork:
+                return
             finally:
-                for _, future in waiting:
+                for future in running:
                     future.cancel()
-
-    def _result(self, task: Task, future: Future[Any]) -> MatchResult:
-        with self._journal(task):
-            while not future.done():
-                wait([future], _INTERRUPT_CHECK_SECONDS)
-                self._check_interrupt()
-            self._check_interrupt()  # the signal may have ended that process, too
-            return self._match_result(task, future)
 
 
 class SpawnedMatchExecutor(PooledMatchExecutor):
     """Runs each match in a new interpreter."""
 
     def _pool(self) -> AbstractContextManager[Executor]:
-        return ThreadPoolExecutor(self.jobs)
+        return ThreadPoolExecutor(self.jobs + 1)  # one more shrinks
 
-    def _call(self, task: Task) -> Callable[[], MatchResult]:
-        return partial(run_in_subprocess, partial(play, task=task), self.project, MEANWHILE)
+    def _call(self, task: Work) -> Callable[[], Result]:
+        return partial(run_in_subprocess, partial(_work, work=task), self.project, MEANWHILE)
 
-    def _match_result(self, task: Task, future: Future[MatchResult]) -> MatchResult:
+    def _result_of(self, task: Work, future: Future[Result]) -> Result:
         try:
             return future.result()
         except RobotCodeError as ended:
             return self._died(task, str(ended))
 
 
+def _work(project: Project, log: CrashLog, work: Work) -> Result:
+    """Do one task in this process, which must end afterwards."""
+    if isinstance(work, ShrinkTask):
+        return shrink_alone(project, work)
+    return play(project, log, work)
+
+
 def _all_lines(project: Project, log: CrashLog) -> frozenset[Line]:
     return robot_lines(project).all()
 
 
-class ForkedMatchExecutor(MatchExecutor):
+class ForkedMatchExecutor(WorkExecutor):
     """Runs each match in a fork of this process, which has imported the robot, unless importing it starts threads."""
 
     def __init__(self, project: Project, jobs: int, directory: Path) -> None:
         super().__init__(project, jobs, directory)
-        self._running: list[ForkedCall[MatchResult]] = []
 
         def survey() -> tuple[bool, frozenset[Line]]:
             lines = robot_lines(project).all()
@@ -216,49 +138,40 @@ class ForkedMatchExecutor(MatchExecutor):
     def lines(self) -> frozenset[Line]:
         return self._lines
 
-    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
-        waiting: deque[tuple[Task, ForkedCall[MatchResult]]] = deque()
-        left = map(self._with_journal, tasks)
+    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
+        running: dict[ForkedCall[Result], tuple[Work, Work]] = {}
         try:
-            more = True
-            while more or waiting:
+            while True:
                 self._check_interrupt()
-                # First, since the caller may close the generator then: a shorter script has failed.
-                if waiting and waiting[0][1].finished:
-                    yield self._result(*waiting.popleft())
-                    continue
-                while more and sum(not work.finished for _, work in waiting) < self.jobs:
-                    task = next(left, None)
-                    if task is None:
-                        more = False
-                    else:
-                        waiting.append((task, self._begin(task)))
-                if going_on := [work for _, work in waiting if not work.finished]:
-                    wait_for_any([work.fileno() for work in going_on])
-                    for work in going_on:
-                        work.poll()
+                while (task := next_work()) is not None:
+                    noted = self._with_journal(task)
+                    running[self._begin(noted)] = task, noted
+                if not running:
+                    return
+                wait_for_any([call.fileno() for call in running])
+                for call in list(running):
+                    call.poll()
+                    if call.finished:
+                        task, noted = running.pop(call)
+                        yield task, self._result(noted, call)
+        except NoMoreWork:
+            return
         finally:
-            for _, work in waiting:
-                work.close()
-                self._running.remove(work)
+            for call in running:
+                call.close()
 
     def close(self) -> None:
-        """End the matches that are still running."""
-        for work in self._running:
-            work.close()
+        """Undo what is prepared in this process."""
         self._preparation.close()
 
-    def _begin(self, task: Task) -> ForkedCall[MatchResult]:
+    def _begin(self, task: Work) -> ForkedCall[Result]:
         self._preparation.prepare_for(task)
-        work = ForkedCall(lambda log: play(self.project, log, task), files=self.project.files)
-        self._running.append(work)
-        return work
+        return ForkedCall(lambda log: _work(self.project, log, task), files=self.project.files)
 
-    def _result(self, task: Task, work: ForkedCall[MatchResult]) -> MatchResult:
-        self._running.remove(work)
-        with self._journal(task), closing(work):
+    def _result(self, task: Work, call: ForkedCall[Result]) -> Result:
+        with self._journal(task), closing(call):
             try:
-                return work.result(self.project.files, MEANWHILE)
+                return call.result(self.project.files, MEANWHILE)
             except RobotCodeError as ended:
                 return self._died(task, str(ended))
 
@@ -267,3 +180,14 @@ class ForkedMatchExecutor(MatchExecutor):
         with closing(work):
             work.wait()
             return work.result(self.project.files, "while it was imported")
+
+
+def shrink_alone(project: Project, task: ShrinkTask) -> Shrunk:
+    """Make a script short in this process, which has run no robot, one run at a time."""
+    options = task.most_runs, task.use_oracle, task.seconds
+    with open_match_executor(project, jobs=1) as executor:
+        shrinker = Shrinker(executor, task.script, task.failure, task.inputs, *options)
+        shrinker.shrink()
+        if shrinker.repeats and shrinker.play_again():
+            return Shrunk(shrinker.script, shrinker.failure, True, shrinker.runs)
+        return Shrunk(task.script, task.failure, runs=shrinker.runs)

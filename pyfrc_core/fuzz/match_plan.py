@@ -13,8 +13,13 @@ from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING, RESTART, plug
 from .field_data import NOT_COUNTED, FieldData
 from .values import Value
 
-#: The share of matches that are as long as a real one, and how much longer than the others these are at most.
-_WHOLE, _LONGER = 1 / 40, 6
+#: The length of a short match in seconds: most failures need no more, and a real robot's loop takes long.
+SHORT_SECONDS = 5.0
+#: What a seed ends with whose match is short.
+SHORT = " short"
+#: The share of the other matches that are as long as real ones, half of them as two in a row, and how much longer than
+#: usual these are at most.
+_WHOLE, _LONGER = 1 / 30, 12
 
 #: How often each port's joystick is unplugged, relative to the others: the driver's most often.
 _UNPLUGGED = (20, 6, 1, 1, 1, 1)
@@ -82,6 +87,10 @@ def _periods(rng: random.Random, seconds: float, settings: MatchSettings) -> tup
     In some cases, the periods are those of a pit test, of a match that is restarted or the second one of a robot
     program, or of a program that starts in the middle of a match.
     """
+    if seconds > 1.5 * seconds_of(settings):  # two in a row, without a restart of the robot program
+        first, _ = _periods(rng, seconds / 2, settings)
+        second, _ = _periods(rng, seconds / 2, settings)
+        return [*first, *second], False
     before = min(settings.before, 0.05 * seconds)
     autonomous = min(settings.autonomous, 0.3 * seconds)
     pause = min(settings.pause, 0.05 * seconds)
@@ -230,13 +239,16 @@ def _sides(rng: random.Random) -> str:
 
 
 def length_of(first_seed: str, usual: float, settings: MatchSettings) -> float:
-    """Return the length of a fuzzed match, in seconds: some are as long as a real one.
+    """Return the length of a fuzzed match, in seconds: some are short, some as long as a real one, or two.
 
     :param first_seed: the seed with which the match begins
     :param usual: the length of the others
     """
-    whole = random.Random(f"length {first_seed}").random() < _WHOLE
-    return max(usual, min(_LONGER * usual, seconds_of(settings))) if whole else usual
+    if first_seed.endswith(SHORT):
+        return min(usual, SHORT_SECONDS)
+    how = random.Random(f"length {first_seed}").random() / _WHOLE
+    matches = 0 if how >= 1 else 1 if how < 0.5 else 2
+    return max(usual, min(_LONGER * usual, matches * seconds_of(settings)))
 
 
 def seconds_of(settings: MatchSettings) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from types import FrameType
 from typing import Any
 
 import ntcore
@@ -39,6 +40,9 @@ _PREFERENCE_TYPES = {**_TYPES, "Int": "int", "Long": "int"}
 
 #: The library file that reads on behalf of robot code: MagicBot's tunables.
 _TUNABLES = "magic_tunable.py"
+#: The functions and the file that run in simulations only.
+_SIMULATING = ("simulationInit", "_simulationInit", "simulationPeriodic", "_simulationPeriodic")
+_PHYSICS = "physics.py"
 
 
 @dataclass(frozen=True)
@@ -70,12 +74,25 @@ class NetworkReads:
         :param values: the arguments of the call; the last one is the default
         :param named: the arguments that have names
         """
-        file = get_frame(2).f_code.co_filename
+        frame = get_frame(2)
+        file = frame.f_code.co_filename
         if not self._files.is_robot_code(file) and not file.endswith(_TUNABLES):
+            return
+        if _is_of_simulation(frame):  # the robot may read it later
             return
         default = values[-1] if values else next(iter(named.values()), None)
         read = self.found[name] = NetworkRead(name, type_name, default)
         self.on_first(read)
+
+
+def _is_of_simulation(frame: FrameType | None) -> bool:
+    """Return whether simulation code calls: what it alone reads is no input of a robot."""
+    while frame is not None:
+        code = frame.f_code
+        if code.co_name in _SIMULATING or code.co_filename.endswith(_PHYSICS):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def watch_network_reads(files: RobotFiles) -> AbstractContextManager[NetworkReads]:

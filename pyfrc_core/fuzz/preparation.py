@@ -20,7 +20,7 @@ from ..runtime.patch_table import PatchTable
 from .asked_controls import prepare_control_watch
 from .imported_robot import auto_joysticks, game_messages, imported_devices, next_tree, robot_constants, robot_lines
 from .inputs import prepare_search
-from .match import FuzzTask, ReplayTask, Task
+from .match import FuzzTask, ReplayTask
 from .motor_calls import prepare_motor_watch
 from .network_reads import prepare_network_watch
 
@@ -50,7 +50,7 @@ class Preparation:
         self._patches.patch(*NETWORK_LOG.place, lambda instance: None)
         gc.freeze()  # a garbage collection in a fork would copy the memory of all objects
 
-    def prepare_for(self, task: Task) -> None:
+    def prepare_for(self, task: object) -> None:
         """Prepare what watches calls in this task, and nothing else: a replay runs as without fuzz."""
         is_match = isinstance(task, FuzzTask)
         if isinstance(task, FuzzTask) and self._is_imported:

@@ -27,7 +27,7 @@ def replay_in_subprocess(
     :raises RobotCodeError: when the robot cannot be imported, or ends its process
     :raises ScriptError: when something cannot be written, or the robot has no such device
     """
-    task = ReplayTask(script, use_oracle=bool(script.story), trace=trace, ignores_missing=False, quietly=quietly)
+    task = ReplayTask(script, bool(script.story), trace=trace, ignores_missing=False, quietly=quietly, paced=True)
     with not_watched():
         played = run_in_subprocess(partial(play, task=task), project, MEANWHILE, quietly)
     failed = [each for each in played.each_failure() if each.failure is not None]

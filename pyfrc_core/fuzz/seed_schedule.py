@@ -13,11 +13,14 @@ from .avoidance import KnownFailures, LeftOut
 from .base_match import BaseMatch
 from .failure import FuzzFailure
 from .goals import BRANCH, LINE, NEAR, STATE, Goal, kind_of
+from .match_plan import SHORT
 
 #: The share of matches that continue an earlier one, when there are any worth continuing.
 _CONTINUED = 0.5
 #: The share of new matches that begin with a recorded one, when there are any.
 _FROM_RECORDED = 0.8
+#: With a limit of time, the first matches are short, and then every other one.
+_FIRST_SHORT = 24
 #: A match that continues another equals it for at most this long after that one first reached a goal.
 _SAME_FOR_US = 1_000_000
 #: How many matches worth continuing are remembered for each kind of goal: the latest, which have reached the goals that
@@ -83,9 +86,11 @@ class SeedScheduler:
     same order.
 
     :param recorded: matches to begin with: each is played once as it is, and most others begin with one of them
+    :param begins_short: whether the first matches are short
     """
 
-    def __init__(self, seed: int, recorded: Sequence[InputScript] = ()) -> None:
+    def __init__(self, seed: int, recorded: Sequence[InputScript] = (), begins_short: bool = False) -> None:
+        self._begins_short = begins_short
         self._seed = seed
         self._recorded = recorded
         self._worthwhile: dict[str, list[_Worthwhile]] = {kind: [] for kind in _WEIGHTS}
@@ -101,7 +106,9 @@ class SeedScheduler:
         left_out = self._known.left_out(random.Random(f"left out {own}"))
         kinds = [kind for kind, worthwhile in self._worthwhile.items() if worthwhile]
         if not kinds or rng.random() >= _CONTINUED:
-            return SeedSchedule(((0, own),), ((0, left_out),), self._base(own))
+            is_short = self._begins_short and (number < _FIRST_SHORT or number % 2)
+            first = own + SHORT if is_short else own
+            return SeedSchedule(((0, first),), ((0, left_out),), self._base(own))
         (kind,) = rng.choices(kinds, [_WEIGHTS[kind] for kind in kinds])
         base = rng.choice(self._worthwhile[kind])
         from_us = rng.choice(base.reached_us) + rng.randrange(0, _SAME_FOR_US, PACKET_US)

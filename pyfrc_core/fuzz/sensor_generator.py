@@ -183,9 +183,11 @@ class SensorGenerator:
         speed = rng.choice((-1, 1)) * math.exp(rng.uniform(math.log(10), math.log(5000)))
         end_us = now_us + round(rng.uniform(0.1, 2) * 50) * PACKET_US
         found[rate_target] = nearest("rate", speed * abs(hal_data.read(f"{device}.distance_per_pulse")))
+        turns = how < 0.9  # else it stands still while its last rate is still there
 
         def go(at_us: int, found: dict[str, Value]) -> int | None:
-            found[target] = nearest("count", hal_data.read(target) + speed * _STEP_US / 1_000_000)
+            if turns:
+                found[target] = nearest("count", hal_data.read(target) + speed * _STEP_US / 1_000_000)
             if at_us < end_us:
                 return at_us + _STEP_US
             found[rate_target] = 0.0

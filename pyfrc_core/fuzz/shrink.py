@@ -14,6 +14,9 @@ several at a time, while hypothesis calls a function; and a recorded script has 
 
 from __future__ import annotations
 
+import math
+import re
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
@@ -26,7 +29,6 @@ from ..runtime.scripts.targets import MODE
 from .failure import HANGS, PROCESS_ENDED, FuzzFailure
 from .inputs import Input
 from .match import ReplayTask
-from .match_executor import MatchExecutor
 from .shrink_starts import (
     Start,
     Write,
@@ -35,10 +37,10 @@ from .shrink_starts import (
     transitions_without_pause,
     without_overwritten,
 )
+from .shrink_task import MOST_RUNS
 from .values import simpler
+from .work_executor import MatchExecutor
 
-#: The maximum number of runs.
-MOST_RUNS = 2_000
 #: The maximum number of runs for a robot that hangs, since each takes `hang_seconds`.
 _MOST_HANGING_RUNS = 100
 #: Processor seconds without progress that count as a hang while a script of a hang is shortened. The shortest script is
@@ -61,7 +63,7 @@ class Shrinker:
     :param inputs: the kinds of its targets' values, as far as they are known
     :param most_runs: the maximum number of runs
     :param use_oracle: whether misbehavior without an exception is a failure
-    :param on_run: called with the number of runs after each one
+    :param seconds: after this time in real time, no more runs begin; None: without a limit
     """
 
     def __init__(
@@ -72,14 +74,14 @@ class Shrinker:
         inputs: Mapping[str, Input],
         most_runs: int = MOST_RUNS,
         use_oracle: bool = True,
-        on_run: Callable[[int], None] = lambda runs: None,
+        seconds: float | None = None,
     ) -> None:
         self.failure = failure
         self.runs = 0
         #: Whether the shortest script so far has failed when it was run.
         self.repeats = False
         self._use_oracle = use_oracle
-        self._on_run = on_run
+        self._until = math.inf if seconds is None else time.monotonic() + seconds
         self._executor = executor
         self._inputs = inputs
         self._most_runs = min(most_runs, _MOST_HANGING_RUNS) if failure.kind == HANGS else most_runs
@@ -98,8 +100,12 @@ class Shrinker:
         """Return the shortest script so far."""
         return self._script(self._writes, self._end_us)
 
+    @property
+    def _is_over(self) -> bool:
+        return self.runs >= self._most_runs or time.monotonic() >= self._until
+
     def shrink(self) -> None:
-        """Run shorter scripts until nothing can be removed, or the maximum number of runs is reached."""
+        """Run shorter scripts until nothing can be removed, or a limit is reached."""
         self._shrink()
         if self._hang_seconds is not None and self.repeats and not self.play_again():
             # What takes long is not what hangs: start again, with the limit that the project has.
@@ -110,8 +116,8 @@ class Shrinker:
             self._shrink()
 
     def play_again(self) -> bool:
-        """Run the shortest script once more; return whether it fails in the same way."""
-        (played,) = self._executor.play([ReplayTask(self.script, self._use_oracle, self.failure)])
+        """Run the shortest script once more, as a replay does; return whether it fails in the same way."""
+        (played,) = self._executor.play([ReplayTask(self.script, self._use_oracle, self.failure, paced=True)])
         return self.failure.same_as(played.failure)
 
     def _shrink(self) -> None:
@@ -119,9 +125,10 @@ class Shrinker:
         starts = starts_of(*self._whole) if self.failure.kind != PROCESS_ENDED else []
         if self._first_of([*starts, self._whole]) is None:
             return
-        self._fewer(self._by_target())
+        self._fewer(self._by(_sort_of))
+        self._fewer(self._by(lambda target: target))
         before: InputScript | None = None
-        while self.script != before and self.runs < self._most_runs:
+        while self.script != before and not self._is_over:
             before = self.script
             self._fewer([(write,) for write in self._writes])
             for count in _NEIGHBORS:
@@ -152,7 +159,6 @@ class Shrinker:
         with closing(self._executor.play(tasks)) as results:
             for (index, candidate), played in zip(new, results, strict=True):
                 self.runs += 1
-                self._on_run(self.runs)
                 if played.failure is not None and self.failure.same_as(played.failure):
                     self.failure = played.failure
                     self.repeats = True
@@ -161,6 +167,8 @@ class Shrinker:
                     # Later candidates do not count as tried; another pass may try them.
                     self._tried.difference_update(each for at, each in new if at > index)
                     return index
+                if self._is_over:
+                    return None
         return None
 
     def _is_playable(self, writes: Sequence[Write]) -> bool:
@@ -187,7 +195,7 @@ class Shrinker:
     def _fewer(self, units: list[tuple[Write, ...]]) -> None:
         """Remove as many of these units as possible: ddmin, by complements."""
         parts = min(2, len(units))
-        while units and self.runs < self._most_runs:
+        while units and not self._is_over:
             chunks = [units[len(units) * part // parts : len(units) * (part + 1) // parts] for part in range(parts)]
             found = self._first(self._without(chunk) for chunk in chunks)
             if found is not None:
@@ -204,19 +212,20 @@ class Shrinker:
             else:
                 parts = min(2 * parts, len(units))
 
-    def _by_target(self) -> list[tuple[Write, ...]]:
-        by_target: dict[str, list[Write]] = {}
-        for write in self._writes:
-            by_target.setdefault(write.target, []).append(write)
-        return [tuple(writes) for writes in by_target.values()]
+    def _by(self, key: Callable[[str], str]) -> list[tuple[Write, ...]]:
+        """Return the writes by a part of their targets, in order: what is similar is removed together."""
+        groups: dict[str, list[Write]] = {}
+        for write in sorted(self._writes, key=lambda write: (write.target, write.at_us, write.number)):
+            groups.setdefault(key(write.target), []).append(write)
+        return [tuple(writes) for writes in groups.values()]
 
     def _without_neighbors(self, count: int) -> None:
         """Remove this many neighboring writes to one input together, wherever possible."""
         found: int | None = 0
-        while found is not None and self.runs < self._most_runs:
+        while found is not None and not self._is_over:
             candidates = [
                 self._without([unit[first : first + count]])
-                for unit in self._by_target()
+                for unit in self._by(lambda target: target)
                 for first in range(len(unit) - count + 1)
             ]
             found = self._first(candidates)
@@ -237,7 +246,7 @@ class Shrinker:
             found = self._first(self._moved(moments[index], packets - gap) for packets in shorter)
             high = gap if found is None else shorter[found]
             low = shorter[-1] if found is None and shorter else shorter[found - 1] if found else -1
-            while high - low > 1 and low >= 0 and self.runs < self._most_runs:
+            while high - low > 1 and low >= 0 and not self._is_over:
                 middle = (low + high) // 2
                 from_us = start_us + high * PACKET_US
                 if self._first([self._moved(from_us, middle - high)]) is None:
@@ -260,7 +269,7 @@ class Shrinker:
         last_us = self._writes[-1].at_us if self._writes else 0
         for packets in _GAPS[1:]:
             end_us = last_us + packets * PACKET_US
-            if end_us >= self._end_us or self.runs >= self._most_runs:
+            if end_us >= self._end_us or self._is_over:
                 return
             self.runs += 1
             (played,) = self._executor.play([self._follow(self._writes, end_us)])
@@ -285,6 +294,11 @@ class Shrinker:
 
     def _with_value(self, number: int, value: object) -> tuple[Write, ...]:
         return tuple(replace(write, value=value) if write.number == number else write for write in self._writes)
+
+
+def _sort_of(target: str) -> str:
+    """Return the sort of an input: ``joysticks``, ``CAN``, ``nt``, ``dio``."""
+    return re.split(r"\W", target, maxsplit=1)[0]
 
 
 def _writes(script: InputScript) -> Iterator[Write]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 
 from ..errors import PyfrcError
@@ -11,57 +9,24 @@ from ..processes.call import can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
 from ..project import Project
 from ..runtime.hang_detector import not_watched
-from ..runtime.scripts.script import InputScript
-from .describe import story_of
-from .failure import FuzzFailure
-from .inputs import Input
-from .match_executor import open_match_executor
-from .shrink import Shrinker
+from .match_executor import shrink_alone
+from .shrink_task import ShrinkTask, Shrunk
 
 
-@dataclass(frozen=True)
-class Shrunk:
-    """What came of it.
-
-    :param script: the shortest that fails in the same way; None when there is none
-    :param story: what happens in it, and the failure
-    :param why_not: why there is none, as the end of a sentence
-    """
-
-    script: InputScript | None
-    story: tuple[str, ...] = ()
-    why_not: str = ""
-
-
-def shrink_in_subprocess(
-    project: Project, script: InputScript, failure: FuzzFailure, inputs: Mapping[str, Input], most_runs: int
-) -> Shrunk:
+def shrink_in_subprocess(project: Project, task: ShrinkTask) -> Shrunk | str:
     """Make a script short, which has made a robot raise something in this process.
 
-    :param most_runs: how many robots to run
+    :returns: what came of it, or the end of a sentence that says why there is no shorter script
     """
     if not can_fork(project):
-        return Shrunk(None, why_not="making it short takes hundreds of processes, and they cannot be forked here")
-    work = partial(_shrink, script=script, failure=failure, inputs=dict(inputs), most_runs=most_runs)
+        return "making it short takes hundreds of processes, and they cannot be forked here"
     try:
         with not_watched():
-            return run_in_subprocess(work, project, "while a script was made shorter")
+            shrunk: Shrunk = run_in_subprocess(partial(_shrink, task=task), project, "while a script was made shorter")
     except PyfrcError as wrong:
-        return Shrunk(None, why_not=f"it could not be made short ({wrong})")
+        return f"it could not be made short ({wrong})"
+    return shrunk if shrunk.repeats else "the robot did not fail in the same way again"
 
 
-def _shrink(
-    project: Project,
-    log: CrashLog,
-    script: InputScript,
-    failure: FuzzFailure,
-    inputs: dict[str, Input],
-    most_runs: int,
-) -> Shrunk:
-    # One at a time: other tests are run beside this one.
-    with open_match_executor(project, jobs=1) as executor:
-        shrinker = Shrinker(executor, script, failure, inputs, most_runs, use_oracle=False)
-        shrinker.shrink()
-        if not shrinker.repeats or not shrinker.play_again():
-            return Shrunk(None, why_not="the robot did not fail in the same way again")
-        return Shrunk(shrinker.script, story_of(shrinker.script, shrinker.failure))
+def _shrink(project: Project, log: CrashLog, task: ShrinkTask) -> Shrunk:
+    return shrink_alone(project, task)

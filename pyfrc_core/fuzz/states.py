@@ -16,6 +16,7 @@ from typing import Any
 from ..compat.wpilib_private import is_state_of_machine, scheduled_commands
 from ..project.robot_files import RobotFiles
 from ..runtime.robot import RobotRun
+from .device_names import DeviceNames
 from .goals import STATE, Goal
 from .growth import CONTAINERS
 
@@ -54,6 +55,8 @@ class RobotStates:
         self.reached: dict[Goal, int] = {}
         #: The attributes with elements, by path: their owner's attributes, and their name.
         self.containers: dict[str, tuple[dict[str, object], str]] = {}
+        #: The names of its sensors.
+        self.names = DeviceNames()
         self._run = run
         self._files = files
         self._known = known
@@ -130,6 +133,7 @@ class RobotStates:
 
     def _observe(self, path: str, owner: dict[str, object], now_us: int) -> None:
         for name in list(owner):
+            self.names.add(f"{path}{name}", owner[name])
             if isinstance(owner[name], CONTAINERS):
                 self.containers.setdefault(f"{path}{name}", (owner, name))
             if (id(owner), name) in self._found or len(self._found) >= _MOST_ATTRIBUTES:

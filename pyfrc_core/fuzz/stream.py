@@ -55,7 +55,7 @@ class Stream:
         self._seed = seed
         self._index = index
         self._count = count
-        self._scheduler = SeedScheduler(seed, recorded)
+        self._scheduler = SeedScheduler(seed, recorded, begins_short=count == 1)
         self._played = 0
         #: The first match in which each failure has occurred since `frequent_failures` was called.
         self._failed: dict[str, tuple[int | None, MatchResult]] = {}
@@ -66,9 +66,9 @@ class Stream:
         numbers = (self._index + self._count * each for each in range(self._played, self._played + size))
         return [number for number in numbers if end is None or number < end]
 
-    def skip(self, numbers: list[int]) -> None:
-        """Note that the matches with these numbers, which are the next ones, were played."""
-        self._played += len(numbers)
+    def skip(self, count: int) -> None:
+        """Note that this many of the next matches were played."""
+        self._played += count
 
     def schedule(self, number: int) -> SeedSchedule:
         """Return the seeds of the match with this number."""
@@ -94,6 +94,11 @@ class Stream:
         failed, self._failed = self._failed, {}
         return [failed[each.cause] for each in self._scheduler.frequent_failures() if each.cause in failed]
 
+    def ask_again(self, number: int | None, played: MatchResult) -> None:
+        """Have `frequent_failures` return this one again."""
+        assert played.failure is not None
+        self._failed.setdefault(played.failure.cause, (number, played))
+
     def avoid(self, failure: FuzzFailure, script: InputScript) -> None:
         """Leave out what this shortest script of a failure needs in many later matches, if it ends many."""
         self._scheduler.avoid(failure, script)
@@ -110,7 +115,7 @@ class Stream:
     def forget(self) -> None:
         """Forget which goals were reached: the robot's code has changed."""
         self.reached = frozenset()
-        self._scheduler = SeedScheduler(self._seed, self._recorded)
+        self._scheduler = SeedScheduler(self._seed, self._recorded, begins_short=self._count == 1)
 
     def state(self) -> dict[str, Any]:
         """Return what `restore` needs, as values of JSON."""

@@ -65,16 +65,21 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
 
 def _save(project: Project, script: InputScript, generator: InputGenerator, error: BaseException) -> None:
     """Shrink the script, and save it where a run with the same seed finds it, outside version control."""
+    from ..fuzz.describe import story_of
     from ..fuzz.failure import failure_of
     from ..fuzz.shrink_in_subprocess import shrink_in_subprocess
+    from ..fuzz.shrink_task import ShrinkTask
 
-    shrunk = shrink_in_subprocess(project, script, failure_of(error, project.files), generator.inputs, _MOST_RUNS)
+    failure = failure_of(error, project.files)
+    task = ShrinkTask(script, failure, dict(generator.inputs), _MOST_RUNS, use_oracle=False)
+    shrunk = shrink_in_subprocess(project, task)
     file = project.root / _SCRIPTS / f"seed-{script.seed}.jsonl"
-    (shrunk.script or script).save(file)
+    (script if isinstance(shrunk, str) else shrunk.script).save(file)
     keep_out_of_version_control(project.root / _SCRIPTS.parts[0])
     shown = os.path.relpath(file) if file.is_relative_to(Path.cwd()) else str(file)
-    if shrunk.script is not None:
-        print("The shortest script of the failure:\n", *(f"    {line}" for line in shrunk.story), sep="\n")
+    if isinstance(shrunk, str):
+        print(f"The whole script, {len(script.steps)} changes from seed {script.seed}, is saved: {shrunk}.")
     else:
-        print(f"The whole script, {len(script.steps)} changes from seed {script.seed}, is saved: {shrunk.why_not}.")
+        story = story_of(shrunk.script, shrunk.failure)
+        print("The shortest script of the failure:\n", *(f"    {line}" for line in story), sep="\n")
     print(f"\nTo repeat the failure:\n\n    pyfrc replay {shown}\n")

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 from types import ModuleType
+from typing import Any
 
 import pytest
 import wpilib
 
 from pyfrc_core.config.settings import Settings, TestSettings
+from pyfrc_core.hal import modes
 from pyfrc_core.runtime.clock import PACKET
 from pyfrc_core.runtime.real_time_pace import RealTimePace
 from pyfrc_core.runtime.robot import RobotRun
@@ -39,6 +41,9 @@ def slept(run: RobotRun, milliseconds: float, *lasting: float) -> list[float]:
     real = RealTime()
     RealTimePace(run, TWICE, real.clock, real.sleep)
     run.construct(wpilib.TimedRobot)
+    modes.set_mode(enabled=True)
+    if hardware := sys.modules.get("phoenix6.hardware"):
+        hardware.TalonFX().set_control(PositionVoltage())
     for number, took in enumerate(lasting, 1):
 
         def pass_time(took: float = took) -> None:
@@ -50,9 +55,23 @@ def slept(run: RobotRun, milliseconds: float, *lasting: float) -> list[float]:
     return real.slept
 
 
+class PositionVoltage:
+    """A request for which the motor's controller closes a loop."""
+
+
+class TalonFX:
+    """A motor."""
+
+    def set_control(self, request: object) -> None:
+        """Do nothing."""
+
+
 @pytest.fixture
 def _phoenix(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "phoenix6", ModuleType("phoenix6"))
+    hardware: Any = ModuleType("phoenix6.hardware")
+    hardware.TalonFX = TalonFX
+    monkeypatch.setitem(sys.modules, "phoenix6.hardware", hardware)
 
 
 @pytest.mark.usefixtures("_phoenix")

@@ -9,6 +9,7 @@ doubles and in structs, ``"nan"`` is not a number: JSON has no word for it.
 from __future__ import annotations
 
 import math
+import re
 import struct
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -24,6 +25,7 @@ NOT_A_NUMBER = "nan"
 
 _STRUCT = "struct:"
 _DOUBLES = ("float[]", "double[]")
+_TYPED = re.compile(r"((?:struct:\w+|[a-z]+)(?:\[\])?):")
 
 #: How to make a value of each type that a target can name.
 MAKE_VALUE: dict[str, Callable[[Any], ntcore.Value]] = {
@@ -60,8 +62,12 @@ def numbers_of(data: bytes) -> list[float]:
 
 def parse_entry_target(target: str) -> tuple[str, str]:
     """Return the name of a target's entry, and the name of its type; empty where its values show it."""
-    type_name, slash, name = target.removeprefix(NETWORK).partition("/")
-    return slash + name if slash else type_name, type_name.removesuffix(":") if slash else ""
+    rest = target.removeprefix(NETWORK)
+    typed = _TYPED.match(rest)  # the name of an entry may begin without a slash
+    if typed is None or not (typed[1].removesuffix("[]") in MAKE_VALUE or typed[1].startswith(_STRUCT)):
+        type_name, slash, name = rest.partition("/")
+        return slash + name if slash else type_name, type_name.removesuffix(":") if slash else ""
+    return rest[typed.end() :], typed[1]
 
 
 class NetworkEntries:
