@@ -31,7 +31,7 @@ def test_exceptions_in_libraries_show_the_calls_and_differ_by_them(make_project:
     project = make_project({"robot.py": ROBOT, "pyproject.toml": "[tool.pyfrc.fuzz]\nmatch_seconds = 5\n"})
     result = project.run("fuzz", "--seed", "1", "--runs", "16")
     assert result.code == 1
-    found = re.findall(r"^ZeroDivisionError: .*", result.stdout, re.MULTILINE)
+    found = re.findall(r"^robot.py:\d+: (ZeroDivisionError: .*)", result.stdout, re.MULTILINE)
     wanted = "ZeroDivisionError: division by zero (in {}.execute, called by CommandScheduler.run)"
     assert sorted(found) == [
         wanted.format("Divide"),
@@ -43,4 +43,4 @@ def test_exceptions_in_libraries_show_the_calls_and_differ_by_them(make_project:
         "zerodivisionerror-divideagain_execute.jsonl",
     ]
     replayed = project.run("replay", files[0])
-    assert "then ZeroDivisionError: division by zero (in Divide.execute, called by" in replayed.output
+    assert ": ZeroDivisionError: division by zero (in Divide.execute, called by" in replayed.output

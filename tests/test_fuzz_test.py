@@ -342,7 +342,7 @@ def test_the_shortest_way_to_a_failure_is_kept_and_replayed(make_project) -> Non
         "joysticks[0].buttons[3]": True,
         "dio[3].value": False,
     }
-    assert re.search(r"at [\d.]+ s in teleoperated: .*", result.output), result.output
+    assert re.search(r"at [\d.]+ s teleoperated begins: .*", result.output), result.output
     failed = re.search(r"at [\d.]+ s: (robot\.py:13: RuntimeError: .*)", result.output)
     assert failed is not None, result.output
     replayed = project.run("replay", file[1])

@@ -154,7 +154,7 @@ def test_long_output_of_a_failed_test_is_cut(make_project: MakeProject) -> None:
     (block,) = blocks_of(project.run("test"))
     assert len(block) <= 25
     assert "line 99" in block
-    assert "(90 lines before these: pyfrc test -v)" in block
+    assert any("lines before these: pyfrc test -v" in line for line in block)
     assert "line 0" in project.run("test", "-v").stdout
 
 

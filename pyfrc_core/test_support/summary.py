@@ -23,8 +23,9 @@ from ..runtime.code_checks import find_code_warnings
 from .reporting import BUG, REAL_TIME, put_first
 from .uncollected import find_uncollected
 
-#: How many lines of a failed test's output are shown.
-_SHOWN = 10
+#: How many lines a failure has, if that leaves the fewest for the test's output.
+_LINES = 24
+_FEWEST = 6
 
 
 class SummaryPlugin:
@@ -101,19 +102,20 @@ def _explain_real_time_devices(terminalreporter: Any) -> None:
 
 
 def _shorten_output(stats: dict[str, list[object]]) -> None:
-    """Show only the end of what a failed test has printed."""
+    """Show only the end of what a failed test has printed, so that a failure fits on the screen."""
     for outcome in ("error", "failed"):
         reports = stats.get(outcome, [])
         for index, report in enumerate(reports):
-            if isinstance(report, pytest.TestReport) and any(text.count("\n") > _SHOWN for _, text in report.sections):
+            if isinstance(report, pytest.TestReport):
+                room = max(_FEWEST, _LINES - str(report.longrepr).count("\n") - 2 * len(report.sections))
                 reports[index] = short = copy.copy(report)
-                short.sections = [(name, _end_of(text)) for name, text in report.sections]
+                short.sections = [(name, _end_of(text, room)) for name, text in report.sections]
 
 
-def _end_of(text: str) -> str:
+def _end_of(text: str, room: int) -> str:
     lines = text.splitlines(keepends=True)
-    left_out = len(lines) - _SHOWN
-    return text if left_out <= 0 else f"({left_out} lines before these: pyfrc test -v)\n" + "".join(lines[left_out:])
+    left_out = len(lines) - room
+    return text if left_out <= 1 else f"({left_out} lines before these: pyfrc test -v)\n" + "".join(lines[left_out:])
 
 
 def _explain_each_bug_once(stats: dict[str, list[object]]) -> None:
