@@ -36,8 +36,8 @@ _MOST_REVISITED = 64
 #: The least time between two writes of what guides the campaign.
 _KEPT_EVERY_SECONDS = 5.0
 
-#: The share of a campaign's time that shrinking one failure takes at most, and its limits in seconds.
-_SHRINKING, _LEAST_SECONDS, _MOST_SECONDS = 0.25, 3.0, 60.0
+#: How many seconds shrinking one failure may take, in a campaign with a limit of time.
+_LEAST_SECONDS, _MOST_SECONDS = 3.0, 60.0
 
 #: A robot that fails within this time without any input fails in every match.
 _START_US = 2_000_000
@@ -197,8 +197,8 @@ class _Runner:
         failed = self._waiting.popleft()
         most_runs = _MOST_REAL_TIME_RUNS if self.campaign.real_time else MOST_RUNS
         seconds = None
-        if (left := self._seconds_left()) is not None and self._options.seconds is not None:
-            seconds = max(_LEAST_SECONDS, min(_MOST_SECONDS, _SHRINKING * self._options.seconds, left))
+        if (left := self._seconds_left()) is not None:  # shared with those that wait
+            seconds = max(_LEAST_SECONDS, min(_MOST_SECONDS, left / (1 + len(self._waiting))))
         task = ShrinkTask(failed.played.script, failed.failure, failed.played.inputs, most_runs, seconds)
         self._shrinking[id(task)] = task, failed
         self._count_shrinking()
