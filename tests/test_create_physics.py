@@ -277,8 +277,12 @@ def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
     assert project.run("init").code == 0
     (project.path / "physics.py").unlink()
     shutil.rmtree(project.path / "sim")
-    printed = create(project)
-    assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in printed
+    result = project.run("create-physics")  # the robot's own tests know its numbers
+    assert result.code == 1
+    assert "physics.py was not put in place, since a test fails with it:\n  tests/test_" in result.stderr
+    assert not (project.path / "physics.py").exists()
+    assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in result.stdout
+    shutil.copy(project.path / ".pyfrc/create-physics/physics.py", project.path)
     project.write(
         {
             "tests/test_physics.py": """
@@ -320,6 +324,53 @@ def test_every_sample_robot_runs_with_it(make_project: MakeProject, robot: str) 
     printed = create(project)
     assert "wrote physics.py\nwrote sim/config.json" in printed
     run_tests(project, "--builtin", "--", "-k", "operator")
+
+
+@pytest.mark.parametrize(("passes", "says"), [(True, "The project's tests pass."), (None, "The project has no tests")])
+def test_what_is_put_in_place_was_tried(make_project: MakeProject, passes: bool | None, says: str) -> None:
+    files = {"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"}
+    if passes:
+        files["tests/test_it.py"] = "def test_it(control):\n    control.run_test(lambda tm: tm < 1)\n"
+    assert says in create(make_project(files))
+
+
+def test_a_gyro_on_spi_has_not_the_name_of_the_motor_with_its_number(make_project: MakeProject) -> None:
+    robot = """
+        import hal
+        import wpilib
+
+        class Motor:
+            def getDeviceId(self):
+                return 4
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.right_motor = Motor()
+                self.navx = hal.SimDevice("navX-Sensor", 4)
+                self.yaw = self.navx.createDouble("Yaw", hal.SimDevice.Direction.kInput, 0.0)
+        """
+    printed = create(make_project({"robot.py": robot}))
+    assert "gyro: navX-Sensor[4]\n" in printed
+
+
+def test_a_mechanism_named_pivot_is_no_part_of_a_swerve_drive(make_project: MakeProject) -> None:
+    robot = """
+        import wpilib
+
+        class Module:
+            def __init__(self, number):
+                self.driving_motor, self.turning_motor = wpilib.Talon(number), wpilib.Talon(number + 4)
+
+        class Pivot:
+            def __init__(self):
+                self.motor = wpilib.Talon(9)
+
+        class MyRobot(wpilib.TimedRobot):
+            def robotInit(self):
+                self.modules = [Module(number) for number in range(4)]
+                self.pivot = Pivot()
+        """
+    assert create(make_project({"robot.py": robot})).startswith("swerve drive")
 
 
 def test_a_lift_moves_its_encoder(make_project: MakeProject) -> None:

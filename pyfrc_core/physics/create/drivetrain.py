@@ -15,7 +15,7 @@ from .motors import Motor
 from .names import Name
 from .sticks import FORWARD_AXES, Axis
 from .survey import Encoder, Survey
-from .swerve_modules import Module
+from .swerve_modules import Module, wheel_pairs
 
 
 @dataclass(frozen=True)
@@ -108,8 +108,8 @@ def _swerve(found: Survey) -> Swerve | None:
     if found.swerve.modules:
         modules = found.swerve.modules
         return Swerve([module.drive for module in modules], [module.steer for module in modules], modules)
-    drive, steer = ([motor for motor in found.motors if motor.name.task == task] for task in ("drive", "steer"))
-    return Swerve(drive, steer) if len(drive) == len(steer) == len(CORNERS) else None
+    pairs = wheel_pairs(found.motors)
+    return Swerve([drive for drive, _ in pairs], [steer for _, steer in pairs]) if pairs else None
 
 
 class _Finder:

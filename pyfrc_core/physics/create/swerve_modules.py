@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from wpimath.kinematics import SwerveDrive4Kinematics
 
 from ...runtime.robot import RobotRun
 from .can_devices import CanMotor
+from .motors import Motor
 from .names import Reached
 from .sticks import while_driving_forward
+
+AnyMotor = TypeVar("AnyMotor", bound=Motor)
 
 #: The usual order of the modules, by the signs of their places in front of and to the left of the centre.
 _CORNERS = {
@@ -49,28 +54,40 @@ class SwerveSurvey:
 
 def find_swerve(run: RobotRun, motors: list[CanMotor], objects: Iterable[Reached]) -> SwerveSurvey:
     """Return the modules, if there are four. The robot is driven forward to see where the wheels point then."""
-    drive = [motor for motor in motors if motor.name.task == "drive"]
-    steer = [motor for motor in motors if motor.name.task == "steer"]
-    if len(drive) != len(_CORNERS) or len(steer) != len(_CORNERS):
-        return SwerveSurvey([], [])
-    pairs = [(each, _steering(each, index, steer)) for index, each in enumerate(drive)]
-    if len({other.path for _, other in pairs}) != len(pairs):
+    pairs = wheel_pairs(motors)
+    if not pairs:
         return SwerveSurvey([], [])
     assumptions: list[str] = []
     modules = _placed(pairs, objects, assumptions)
     return SwerveSurvey(_measured(run, modules, assumptions), assumptions)
 
 
-def _steering(drive: CanMotor, index: int, steer: list[CanMotor]) -> CanMotor:
-    for part in ("owner", "corner"):
-        same = [motor for motor in steer if _part(motor, part) == _part(drive, part)]
-        if len(same) == 1:
-            return same[0]
-    return steer[index]
+def wheel_pairs(motors: list[AnyMotor]) -> list[tuple[AnyMotor, AnyMotor]]:
+    """Return the drive motor and the steering motor of each of four wheels; nothing where the names leave a doubt.
+
+    The two motors of a wheel have the same owner, or the same corner in their names. A motor named ``pivot`` that has
+    no such partner belongs to another mechanism.
+    """
+    drive = [motor for motor in motors if motor.name.task == "drive"]
+    steer = [motor for motor in motors if motor.name.task == "steer"]
+    for part in (_owner, _corner, _number):
+        pairs = [(one, other) for one in drive for other in steer if part(one) == part(other)]
+        once = all(len({pair[which].path for pair in pairs}) == len(pairs) for which in (0, 1))
+        if once and len(pairs) == len(_CORNERS):
+            return pairs
+    return []
 
 
-def _part(motor: CanMotor, part: str) -> object:
-    return motor.name.owner if part == "owner" else (motor.name.end, motor.name.side)
+def _owner(motor: Motor) -> object:
+    return motor.name.owner
+
+
+def _number(motor: Motor) -> object:
+    return re.findall(r"\d+", motor.name.text)[-1:]
+
+
+def _corner(motor: Motor) -> object:
+    return motor.name.end, motor.name.side
 
 
 def _placed(pairs: list[tuple[CanMotor, CanMotor]], objects: Iterable[Reached], assumptions: list[str]) -> list[Module]:
