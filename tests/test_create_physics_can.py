@@ -31,9 +31,9 @@ def run_test(project: RobotProject, code: str) -> None:
 
 
 def competition_robot(make_project: MakeProject, name: str) -> RobotProject:
-    """Return a robot without its own physics."""
+    """Return a robot without its own physics, and without its tests, which know its numbers."""
     project = make_project({})
-    project.copy(COMPETITION / name, "physics.py", "sim")
+    project.copy(COMPETITION / name, "physics.py", "sim", "tests")
     return project
 
 
