@@ -361,6 +361,18 @@ def test_devices_are_shown_and_set(user: User) -> None:
     user.press("Return")
     user.until(lambda: user.snapshot.values["encoder[0].count"] == 123)
     assert not any(user.snapshot.values["joysticks[0].buttons"])
+
+    # What is no number is refused with a reason, and Tab sets what was edited.
+    for text, key in (("1,000", "Return"), ("45", "Tab")):
+        user.click_row("Encoder 0")
+        user.until(lambda: user.window.root.focus_get().winfo_class() == "Entry")
+        user.keys("type", text)
+        user.press(key)
+        refused = key == "Return"
+        user.until(lambda refused=refused: ("write thousands without a comma" in user.window._noted) is refused)
+        user.press("Escape")
+        user.until(lambda: devices._editor is None)
+    user.until(lambda: user.snapshot.values["encoder[0].count"] == 45)
     voltage = next(item for item in devices.items if item.row.paths == ("analog_in[0].voltage",))
     y = devices.center_of(voltage.row)[1]
     user.drag(devices.canvas, (voltage.place.left + 20, y), (voltage.place.left + 40, y))

@@ -34,8 +34,10 @@ from pyfrc_core.sim.ui.models.wording import (
     number_text,
     plain_output,
     pose_text,
+    shown_number,
     station_name,
     status_texts,
+    typed_number,
 )
 from pyfrc_core.sim.ui.tk.device_items import ITEMS
 from pyfrc_core.sim.ui.tk.theme import scale_for
@@ -584,3 +586,26 @@ def test_small_words() -> None:
     assert [station_name(station) for station in (0, 1, 6, None)] == ["", "Red 1", "Blue 3", ""]
     assert pose_text(Pose(1.0, 2.5, math.radians(270))) == "x 1.00 ft   y 2.50 ft   heading -90.0°"
     assert "create-physics" in pose_text(None)
+
+
+def test_numbers_are_shown_with_their_significant_digits() -> None:
+    shown = {6e-5: "6e-05", 0.1234567: "0.123457", 2.0: "2", 1234567.0: "1234567", 1234.5678: "1234.568", 7: "7"}
+    assert [shown_number(value) for value in shown] == list(shown.values())
+    assert shown_number(math.inf) == "inf"
+
+
+def test_typed_numbers_have_a_point_or_a_comma_and_nothing_else() -> None:
+    typed = {"6e-5": 6e-5, " 2,5 ": 2.5, "-.5": -0.5, "1000": 1000.0, "0,125": 0.125, "1,0005": 1.0005, "1.": 1.0}
+    assert [typed_number(text) for text in typed] == list(typed.values())
+    for text, reason in {
+        "1,000": "write thousands without a comma and decimals with a point, not “1,000”",
+        "1,000,000": "thousands",
+        "1,234.5": "thousands",
+        "": "a number is needed, not “”",
+        "nan": "a number is needed",
+        "1_000": "a number is needed",
+        "0x10": "a number is needed",
+        "1e999": "“1e999” is too large",
+    }.items():
+        with pytest.raises(ValueError, match=reason):
+            typed_number(text)

@@ -14,6 +14,10 @@ STATIONS = {f"{color.title()} {number}": f"{color}{number}" for color in ("red",
 
 _MODES = {"autonomous": "Autonomous", "teleop": "Teleoperated", "test": "Test"}
 
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
+_MOST_QUOTED = 40
+
 # Colours and the like, for terminals.
 _ESCAPES = re.compile(r"\x1b(\[[0-?]*[ -/]*[@-~]|[@-Z\\-_])|[\x00-\x08\x0b-\x1f\x7f]")
 
@@ -84,6 +88,32 @@ def number_text(value: float, decimals: int) -> str:
         return f"{value:.3g}"
     text = f"{value:.{decimals}f}"
     return text[1:] if float(text) == 0 and text.startswith("-") else text
+
+
+def shown_number(value: float) -> str:
+    """Return any number with six significant digits, and with all digits before its point."""
+    if isinstance(value, int) or not math.isfinite(value):
+        return str(value)
+    return f"{value:.6g}" if abs(value) < 1000 else repr(round(value, 3)).removesuffix(".0")
+
+
+def typed_number(text: str) -> float:
+    """Return the number that a person has typed, with a point or a comma before its decimals.
+
+    `format.js` has the same rules.
+
+    :raises ValueError: with the reason, when it is none
+    """
+    typed = text.strip()
+    shown = f"“{typed if len(typed) <= _MOST_QUOTED else typed[:_MOST_QUOTED] + '…'}”"
+    if _THOUSANDS.fullmatch(typed):
+        raise ValueError(f"write thousands without a comma and decimals with a point, not {shown}")
+    if not _NUMBER.fullmatch(typed):
+        raise ValueError(f"a number is needed, not {shown}")
+    value = float(typed.replace(",", "."))
+    if not math.isfinite(value):
+        raise ValueError(f"{shown} is too large")
+    return value
 
 
 def pose_text(robot: Pose | None) -> str:

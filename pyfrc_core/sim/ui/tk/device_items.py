@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..models.devices import Row, RowKind
-from ..models.wording import number_text
+from ..models.wording import number_text, shown_number
 from . import theme as colors
 from .theme import Theme, fitting
 
@@ -57,7 +57,7 @@ class Item:
 
     def show(self, values: Sequence[object]) -> None:
         value = values[0] if values else ""
-        text = number_text(value, 3) if isinstance(value, float) else str(value)
+        text = shown_number(value) if isinstance(value, float) else str(value)
         self._canvas.itemconfigure(self._text, text=_shortened(text, 22))
 
     def value_at(self, x: int) -> float | None:
@@ -76,11 +76,10 @@ class Item:
         return self._canvas.create_text(right, self.place.y, anchor="e", font=self._theme.small, fill=color)
 
     def _number(self, value: object) -> str:
-        if not isinstance(value, int | float):
-            return str(value)
-        return number_text(value, self.row.decimals) + (
-            f" {self.row.unit}" if self.row.unit not in ("", "°") else self.row.unit
-        )
+        return self._with_unit(number_text(value, self.row.decimals)) if isinstance(value, int | float) else str(value)
+
+    def _with_unit(self, number: str) -> str:
+        return number + (f" {self.row.unit}" if self.row.unit not in ("", "°") else self.row.unit)
 
 
 class Bar(Item):
@@ -160,6 +159,9 @@ class Number(Item):
 
     def show(self, values: Sequence[object]) -> None:
         self._canvas.itemconfigure(self._text, text=self._number(values[0]))
+
+    def _number(self, value: object) -> str:
+        return self._with_unit(shown_number(value)) if isinstance(value, int | float) else str(value)
 
 
 class Lamp(Item):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import tkinter as tk
 from collections.abc import Callable
 from tkinter import ttk
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...engine.snapshot import Snapshot
 from ..models.devices import SETTABLE, DeviceRows, Row
+from ..models.wording import shown_number, typed_number
 from . import theme as colors
 from .device_items import ITEMS, Item, Place
 from .theme import Theme
@@ -43,6 +43,10 @@ class DeviceView:
         self.items: list[Item] = []
         self._held: Item | None = None
         self._editor: tk.Entry | None = None
+        #: What is typed into, and the text that it began with.
+        self._edited: tuple[Item, str] | None = None
+        #: Why what was typed is refused, for the user.
+        self.problem = ""
         self._hint = canvas.create_text(
             theme.px(WIDTH) // 2,
             theme.px(40),
@@ -73,7 +77,7 @@ class DeviceView:
 
     def _make_items(self) -> None:
         canvas, px = self.canvas, self._theme.px
-        self._close_editor()
+        self._end_editing()
         self._held = None
         canvas.delete("all")
         self.items = []
@@ -107,7 +111,7 @@ class DeviceView:
 
     def _scroll(self, way: int) -> None:
         self._tooltip.hide()  # another row is under the mouse
-        self._close_editor()
+        self._end_editing()
         if self.canvas.yview() != (0.0, 1.0):
             self.canvas.yview_scroll(way * self._theme.px(48), "units")
 
@@ -123,7 +127,7 @@ class DeviceView:
 
     def _press(self, event: tk.Event[tk.Canvas]) -> None:
         self._tooltip.hide()
-        self._close_editor()
+        self._end_editing()
         item = self._at(event)
         snapshot = self._simulation.snapshot
         if item is None or snapshot is None or item.row.kind not in SETTABLE:
@@ -159,30 +163,55 @@ class DeviceView:
             highlightthickness=px(1),
             highlightcolor=colors.ACCENT,
         )
-        editor.insert(0, f"{value:g}" if isinstance(value, float) else str(value))
+        text = shown_number(value) if isinstance(value, int | float) else str(value)
+        self._edited = item, text
+        editor.insert(0, text)
         editor.select_range(0, "end")
         self.canvas.create_window(place.right, place.y, anchor="e", window=editor, tags="editor")
-        editor.bind("<Return>", lambda event: self._set(item, editor.get()))
-        editor.bind("<KP_Enter>", lambda event: self._set(item, editor.get()))
+        for key in ("<Return>", "<KP_Enter>"):
+            editor.bind(key, lambda event: self._entered())
+        editor.bind("<Tab>", lambda event: self._end_editing())
+        editor.bind("<FocusOut>", lambda event: self._end_editing(focused=False))
         editor.bind("<Escape>", lambda event: self._close_editor())
         editor.focus_set()
 
-    def _set(self, item: Item, text: str) -> None:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not math.isfinite(value):
-            assert self._editor is not None
-            self._editor.configure(highlightcolor=colors.RED)
-            return
-        whole = item.row.decimals == 0 and item.row.kind == "number"
-        self._simulation.write({item.row.paths[0]: round(value) if whole else value})
-        self._close_editor()
+    def _entered(self) -> None:
+        if self._take():
+            self._close_editor()
 
-    def _close_editor(self) -> None:
+    def _take(self) -> bool:
+        """Set what was typed, if it was edited, and return whether it is right."""
+        assert self._editor is not None
+        assert self._edited is not None
+        (item, before), text = self._edited, self._editor.get()
+        self.problem = ""
+        if text == before:
+            return True
+        try:
+            value = typed_number(text)
+            if item.row.kind == "number" and item.row.decimals == 0 and not value.is_integer():
+                raise ValueError(f"a whole number is needed, not {value:g}")
+        except ValueError as wrong:
+            self.problem = f"{item.row.label.strip()}: {wrong}."
+            self._editor.configure(highlightcolor=colors.RED)
+            return False
+        self._edited = item, text
+        self._simulation.write({item.row.paths[0]: value})
+        return True
+
+    def _end_editing(self, focused: bool = True) -> None:
+        """Set what was typed, if it is right.
+
+        :param focused: whether the keyboard is still on it
+        """
+        if self._editor is not None:
+            self._take()
+            self._close_editor(focused)
+
+    def _close_editor(self, focused: bool = True) -> None:
         if self._editor is not None:
             editor, self._editor = self._editor, None
             self.canvas.delete("editor")
             editor.destroy()
-            self._done()
+            if focused:
+                self._done()

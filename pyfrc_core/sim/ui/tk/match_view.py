@@ -38,9 +38,12 @@ class MatchView:
         grid.columnconfigure(1, weight=1)
         self._rows = 0
         self._shown: tuple[object, ...] = ()
+        #: The game data that the robot has.
+        self._sent = ""
         self._alliance = self._box(list(STATIONS), self._choose_alliance)
         self._message = self._box(list(simulation.project.game_specific_messages), self._send_message, "normal")
         self._message.bind("<Return>", lambda event: self._send_message())
+        self._message.bind("<FocusOut>", lambda event: self._send_typed_message())
         tooltip.attach(self._message, "Game data, which the field sends to all robots: choose, or type and press Enter")
         self._place_row("Alliance", self._alliance)
         self._place_row("Game data", self._message)
@@ -61,8 +64,9 @@ class MatchView:
             return
         self._shown = chosen
         self._alliance.set(station_name(chosen[0]))
+        self._sent = str(chosen[1] or "")
         if not has_keys(self._message):
-            self._message.set(str(chosen[1] or ""))
+            self._message.set(self._sent)
         self._show_choosers(snapshot.choosers)
 
     def _show_choosers(self, choosers: tuple[Chooser, ...]) -> None:
@@ -109,8 +113,13 @@ class MatchView:
         self._done()
 
     def _send_message(self) -> None:
-        self._simulation.set_game_message(self._message.get())
+        self._send_typed_message()
         self._done()
+
+    def _send_typed_message(self) -> None:
+        if self._message.get() != self._sent:
+            self._sent = self._message.get()
+            self._simulation.set_game_message(self._sent)
 
     def _reset(self) -> None:
         self._simulation.reset_position(self._start.get() or None)

@@ -66,8 +66,8 @@ class Window:
         self._starts = 0
         #: Messages of other threads that are not shown yet.
         self._announced: deque[str] = deque()
-        #: The notes of the field, the time bar and the simulation; and the one that is shown.
-        self._notes, self._noted = ("", "", ""), ""
+        #: The notes of the devices, the field, the time bar and the simulation; and the one that is shown.
+        self._notes, self._noted = ("",) * 4, ""
         #: An error in the window itself, or Ctrl+C.
         self.failure: BaseException | None = None
         self.root = root = _open(screen)
@@ -226,7 +226,7 @@ class Window:
         self._line.configure(text="   ·   ".join(status_texts(snapshot, status)))
         if status.note != self._notes[-1]:
             self.time.note = ""
-        notes = self.field.problem, self.time.note, status.note
+        notes = self.devices.problem, self.field.problem, self.time.note, status.note
         if notes != self._notes:
             newer = [now for now, before in zip(notes, self._notes, strict=True) if now != before]
             self._notes = notes

@@ -10,11 +10,15 @@ class Compared {
   pose = { t: [], v: [] };
   difference; // the first moment at which the branch differs from the present run; null: none, undefined: not known
 
+  // Where the branch ends, which may be later than the present; 0 without a branch.
+  get end() {
+    return model.branches.find((each) => each.id === this.id)?.to ?? 0;
+  }
+
   // The robot's place in the branch at a moment; null where the branch knows none.
   poseAt(t) {
     if (this.id === null) return null;
-    const branch = model.branches.find((each) => each.id === this.id);
-    if (!branch || t > branch.to + 1e-6) return null;
+    if (t > this.end + 1e-6) return null;
     return valueAt(this.pose, t) ?? null;
   }
 
@@ -23,9 +27,8 @@ class Compared {
     this.pose = { t: [], v: [] };
     this.difference = undefined;
     if (id === null) return;
-    const branch = model.branches.find((each) => each.id === id);
     try {
-      const answer = await ask("plot", { paths: ["sim.pose"], from: 0, to: branch?.to ?? 0, points: POINTS, branch: id });
+      const answer = await ask("plot", { paths: ["sim.pose"], from: 0, to: this.end, points: POINTS, branch: id });
       if (this.id === id) this.pose = answer.series["sim.pose"] ?? this.pose;
       const first = await ask("first_difference", { branch: id, paths: null });
       if (this.id === id) this.difference = first.t;

@@ -1,5 +1,6 @@
 // The WebSocket to `pyfrc sim`. It connects again by itself; each connection begins with the whole state.
 // A page with a recorded run in it asks that run instead.
+import { model } from "./model.js";
 import { isRecorded, readRun } from "./recorded.js";
 
 const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
@@ -120,8 +121,31 @@ export function ask(type, fields = {}) {
   });
 }
 
+// What moves the robot. While the panels show the past, nobody would see it: it is refused, except that it lets go.
+const MOVES = new Set(["enable", "practice", "write", "button", "pov", "plug", "place", "reset_position"]);
+
+export function refusedInPast() {
+  if (!model.past) return false;
+  onMessage({ type: "problem", text: "The panels show the past. Choose “Live” to drive the robot, or “Drive on from here”." });
+  model.announce("shown"); // a switch that was clicked goes back
+  return true;
+}
+
+function letsGo(name, { pressed, angle, values }) {
+  if (name === "button") return !pressed;
+  if (name === "pov") return angle === -1;
+  return name === "write" && Object.entries(values).every(([target, value]) => target.startsWith("joysticks[") && value === atRest(target));
+}
+
+// The value of an axis, a button or a POV that is not touched.
+export function atRest(target) {
+  if (target.includes(".axes[")) return 0;
+  return target.includes(".povs[") ? -1 : false;
+}
+
 // Carry out a command, such as command("speed", { factor: 0.5 }). A failure is shown to the user.
 export function command(name, fields = {}) {
+  if (MOVES.has(name) && !letsGo(name, fields) && refusedInPast()) return Promise.resolve();
   return ask("command", { ...fields, name }).catch((error) => onMessage({ type: "problem", text: error.message }));
 }
 

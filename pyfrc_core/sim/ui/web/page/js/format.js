@@ -22,6 +22,7 @@ export function plain(value) {
   return value;
 }
 
+// A measured number with a fixed number of decimals, so that it does not jump.
 export function numberText(value, decimals = 2) {
   if (!Number.isFinite(value)) return String(value);
   if (Math.abs(value) >= 1e6) return value.toPrecision(3);
@@ -29,29 +30,40 @@ export function numberText(value, decimals = 2) {
   return Number(text) === 0 && text.startsWith("-") ? text.slice(1) : text;
 }
 
-// The number that a person has typed, with a comma or a point; undefined: it is none.
-export function typedNumber(text) {
-  const value = Number(text.replace(",", "."));
-  return text.trim() && Number.isFinite(value) ? value : undefined;
+// Any number with six significant digits, and with all digits before its point.
+export function shownNumber(value) {
+  if (!Number.isFinite(value) || Number.isInteger(value)) return String(value);
+  return String(Number(Math.abs(value) < 1000 ? value.toPrecision(6) : value.toFixed(3)));
 }
 
-// A number with as many decimals as it has, but not more than `most`.
-export function shortNumber(value, most = 4) {
-  if (!Number.isFinite(value)) return String(value);
-  return Number.isInteger(value) ? String(value) : String(Number(value.toFixed(most)));
+const THOUSANDS = /^[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?$/;
+const NUMBER = /^[+-]?(\d+[.,]?\d*|[.,]\d+)(e[+-]?\d+)?$/i;
+
+// The number that a person has typed, with a point or a comma before its decimals. `models.wording` has the same rules.
+export function typedNumber(text) {
+  const typed = text.trim();
+  if (THOUSANDS.test(typed)) throw new Error(`write thousands without a comma and decimals with a point, not ${quoted(typed)}`);
+  if (!NUMBER.test(typed)) throw new Error(`a number is needed, not ${quoted(typed)}`);
+  const value = Number(typed.replace(",", "."));
+  if (!Number.isFinite(value)) throw new Error(`${quoted(typed)} is too large`);
+  return value;
+}
+
+export function quoted(text) {
+  return `“${text.length > 40 ? `${text.slice(0, 40)}…` : text}”`;
 }
 
 // Any value in one line.
-export function valueText(value, decimals = 3) {
+export function valueText(value) {
   const simple = plain(value);
   if (simple === undefined || simple === null) return "–";
-  if (typeof simple === "number") return Number.isInteger(simple) ? String(simple) : numberText(simple, decimals);
+  if (typeof simple === "number") return shownNumber(simple);
   if (typeof simple === "string") return simple;
   if (typeof simple === "boolean") return String(simple);
-  if (Array.isArray(simple)) return `[${simple.map((each) => valueText(each, decimals)).join(", ")}]`;
+  if (Array.isArray(simple)) return `[${simple.map(valueText).join(", ")}]`;
   if (simple.$ === "bytes") return `${simple.size} bytes`;
   if (simple.$ === "struct") return simple.value === undefined ? simple.type : `${simple.type} ${valueText(simple.value)}`;
-  return `{${Object.entries(simple).map(([key, each]) => `${key}: ${valueText(each, decimals)}`).join(", ")}}`;
+  return `{${Object.entries(simple).map(([key, each]) => `${key}: ${valueText(each)}`).join(", ")}}`;
 }
 
 export function speedText(speed) {

@@ -1,4 +1,5 @@
 // Which values are plotted where: each plot panel has a list of curves in the settings.
+import { model } from "./model.js";
 import { settings } from "./settings.js";
 import { panelsOf } from "./layout/presets.js";
 import { showPanel } from "./station.js";
@@ -35,7 +36,10 @@ export function changePlot(id, change) {
 export function addToPlot(path, id = openPlot()) {
   if (!path) return;
   const { curves } = plotOf(id);
-  if (curves.length < MOST_CURVES && !curves.some((curve) => curve.path === path)) {
+  if (curves.some((curve) => curve.path === path)) return showPanel(id);
+  if (curves.length >= MOST_CURVES) {
+    model.set("problem", `A plot has at most ${MOST_CURVES} curves. Remove one of them, or open another plot under “Panels”.`);
+  } else {
     const used = new Set(curves.map((curve) => curve.color));
     let color = 0;
     while (used.has(color) && color < CURVE_COLORS - 1) color += 1;

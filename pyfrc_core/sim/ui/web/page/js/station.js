@@ -5,6 +5,7 @@ import { activate, close, largestTabs, placeOf, put } from "./layout/tree.js";
 import { Menu } from "./menu.js";
 import { model } from "./model.js";
 import { PANELS, panelTitle } from "./panels/all.js";
+import { live } from "./past.js";
 import { isRecorded } from "./recorded.js";
 import { RecordedLabel } from "./recorded_bar.js";
 import { applyTheme, isDark, settings } from "./settings.js";
@@ -61,7 +62,7 @@ export class StationBar extends Live {
         <button class="go" disabled=${!this.ready || present.enabled} title="Enable the robot: Ctrl+E, or [ ] \\ together"
           onClick=${() => command("enable")}>Enable</button>
         <button class="stop" disabled=${!this.ready || !present.enabled} title="Disable the robot: Enter"
-          onClick=${() => command("disable")}>Disable</button>
+          onClick=${() => stop("disable")}>Disable</button>
       </div>
       <button class="practice" disabled=${!this.ready} title="Practice match: autonomous, a pause and teleop"
         onClick=${() => command("practice")}><${Icon} name="flag" /><span>Practice</span></button>`;
@@ -69,8 +70,14 @@ export class StationBar extends Live {
 
   emergencyStop() {
     return html`<button class="estop" disabled=${!this.ready && !this.stuck} title="Emergency stop: the space bar. Only a restart enables the robot again."
-        onClick=${() => command("e_stop")}>E-STOP</button>`;
+        onClick=${() => stop("e_stop")}>E-STOP</button>`;
   }
+}
+
+// Stop the robot where the person sees it, also after a look at the past.
+function stop(name) {
+  live();
+  command(name);
 }
 
 // The server's text without the seconds, which have a place of their own.

@@ -1,5 +1,6 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
 import { ElementSize, font, sizeCanvas } from "./canvas.js";
+import { compared } from "./compare.js";
 import { clock } from "./format.js";
 import { model } from "./model.js";
 import { length, live, look, lookBy, lookByPackets } from "./past.js";
@@ -60,7 +61,7 @@ export class Timeline extends Live {
   }
 
   get whole() {
-    return Math.max(length(), SHORTEST);
+    return Math.max(length(), compared.end, SHORTEST);
   }
 
   x(t) {

@@ -1,5 +1,5 @@
 // The browser's gamepads move joysticks: the first one joystick 0 and so on, unless the person assigns others.
-import { write } from "../connection.js";
+import { atRest, write } from "../connection.js";
 import { model } from "../model.js";
 import { settings } from "../settings.js";
 
@@ -65,11 +65,6 @@ function targetsOf(stick, reading) {
   return targets;
 }
 
-function atRest(target) {
-  if (target.includes(".axes[")) return 0;
-  return target.includes(".povs[") ? -1 : false;
-}
-
 function poll() {
   polling = gamepads().length > 0 || Object.keys(passedOn).length > 0;
   if (polling) requestAnimationFrame(poll);
@@ -80,8 +75,8 @@ function poll() {
     starts = model.status.starts;
     for (const stick of Object.keys(passedOn)) delete passedOn[stick];
   }
-  // A page that is not seen gets nothing from its gamepads: they are released.
-  const pads = document.hidden ? [] : gamepads();
+  // A page that does not show what they do gets nothing from its gamepads: they are released.
+  const pads = document.hidden || model.past ? [] : gamepads();
   const seen = pads.map((pad) => pad.id).join("\n");
   if (seen !== names) {
     names = seen;

@@ -1,8 +1,9 @@
 // The Driver Station's keys, the keys of robot time, and the keys that drive.
 //
 // Names of keys are those of the server: "w", "bracketleft", "return", "shift_l".
-import { command, write } from "../connection.js";
+import { atRest, command, refusedInPast, write } from "../connection.js";
 import { model } from "../model.js";
+import { live, lookByPackets } from "../past.js";
 import { settings } from "../settings.js";
 
 const BY_CODE = {
@@ -12,20 +13,42 @@ const BY_CODE = {
 };
 
 const ACTIONS = {
-  return: () => command("disable"),
-  kp_enter: () => command("disable"),
-  space: () => command("e_stop"),
+  return: seen("disable"),
+  kp_enter: seen("disable"),
+  space: seen("e_stop"),
   f5: () => command("toggle"),
-  f6: () => command("step", { packets: 1 }),
-  f8: () => command("attach", { attached: model.station.attached === false }),
-  f9: () => command("restart"),
+  f6: () => (model.past ? lookByPackets(1) : command("step", { packets: 1 })),
+  f8: () => seen("attach", { attached: model.station.attached === false })(),
+  f9: seen("restart"),
 };
 const REPEATING = new Set(["f6"]);
+
+// What a key does that cannot drive, too.
+const TAKEN = {
+  return: "disables the robot", kp_enter: "disables the robot", space: "is the emergency stop", f5: "pauses the robot",
+  f6: "steps by one packet", f8: "disconnects the driver station", f9: "restarts the robot", shift_l: "makes driving gentle",
+  shift_r: "makes driving gentle",
+};
+const OF_BROWSER = /^(f\d+|tab|escape|control|alt|altgraph|meta|capslock|contextmenu|dead|process|unidentified)$/;
 
 const held = new Set();
 const pressedAs = new Map(); // code: name at the time of the press
 let sent = {};
 let starts = null;
+
+// A command whose effect the person sees, also after a look at the past.
+function seen(name, fields) {
+  return () => {
+    live();
+    command(name, fields);
+  };
+}
+
+// What a key does that cannot be bound; "" for any other one.
+export function takenBy(name) {
+  if (model.hello.options.keyboard.enable_chord.includes(name)) return "enables the robot, with two others";
+  return TAKEN[name] ?? (OF_BROWSER.test(name) ? "belongs to the browser or the system" : "");
+}
 
 export function keyName(event) {
   if (BY_CODE[event.code]) return BY_CODE[event.code];
@@ -36,7 +59,8 @@ export function keyName(event) {
 // The bindings that are in force: those of the chosen layout, and the person's own.
 export function bindings() {
   const { layouts, chosen } = model.hello.options.keyboard;
-  const { chosen: own, own: added } = settings.get("keyboard");
+  const { chosen: own, own: saved } = settings.get("keyboard");
+  const added = saved.filter((one) => !takenBy(one.key));
   const layout = layouts.find((each) => each.name === (own ?? chosen)) ?? layouts[0];
   const axes = Object.fromEntries(Object.entries(layout.axes).map(([key, moves]) => [key, [...moves]]));
   const buttons = Object.fromEntries(Object.entries(model.hello.options.keyboard.button_keys).map(([key, button]) => [key, [[0, button]]]));
@@ -49,7 +73,7 @@ export function bindings() {
     if (one.kind === "axis") (axes[one.key] ??= []).push([one.stick, one.control, one.by]);
     else (buttons[one.key] ??= []).push([one.stick, one.control]);
   }
-  return { layout, axes, buttons };
+  return { layout, axes, buttons, added };
 }
 
 // What the joysticks' controls should be for the keys that are held: target: value.
@@ -78,7 +102,7 @@ function move() {
   const wanted = controls();
   const changed = {};
   for (const target of new Set([...Object.keys(wanted), ...Object.keys(sent)])) {
-    const rest = target.includes(".axes[") ? 0 : false;
+    const rest = atRest(target);
     const value = wanted[target] ?? rest;
     if (value !== (sent[target] ?? rest)) changed[target] = value;
   }
@@ -121,6 +145,8 @@ function down(event) {
   }
   if (event.repeat) return;
   const chord = model.hello.options.keyboard.enable_chord;
+  const { axes, buttons } = bindings();
+  if ((name in axes || name in buttons) && refusedInPast()) return event.preventDefault();
   const before = chord.every((key) => held.has(key));
   held.add(name);
   pressedAs.set(event.code, name);
@@ -154,6 +180,7 @@ export function startKeys() {
   addEventListener("blur", releaseAll);
   model.listen((changed) => {
     if (changed.has("hello") || (model.status.starts !== starts && model.status.state !== "starting")) again();
+    if (model.past && held.size) releaseAll();
     if (model.hint && changed.has("station") && model.station.enabled) model.set("hint", "");
   });
   document.addEventListener("focusin", (event) => isTyping(event.target) && releaseAll());

@@ -1,8 +1,9 @@
 // One row of the devices: its label, its value drawn by kind, and for inputs the control that sets it.
 import { write } from "../connection.js";
-import { numberText, plain, typedNumber, valueText } from "../format.js";
+import { numberText, plain, valueText } from "../format.js";
 import { model } from "../model.js";
 import { addToPlot, carryPath } from "../plotting.js";
+import { ValueBox } from "../value_box.js";
 import { Component, Icon, classes, createRef, html } from "../view.js";
 
 export class DeviceRow extends Component {
@@ -44,11 +45,6 @@ class Painted extends Component {
   componentDidUpdate() {
     this.props.row.paths.forEach((path, index) => this.paint(plain(model.shown.values.get(path)), index));
   }
-
-  text(value) {
-    const { row } = this.props;
-    return typeof value === "number" ? numberText(value, row.decimals) : valueText(value, row.decimals);
-  }
 }
 
 class Meter extends Painted {
@@ -61,7 +57,7 @@ class Meter extends Painted {
     fill.style.left = `${Math.min(zero, at) * 100}%`;
     fill.style.width = `${Math.abs(at - zero) * 100}%`;
     fill.classList.toggle("backwards", at < zero);
-    text.textContent = this.text(value);
+    text.textContent = typeof value === "number" ? numberText(value, this.props.row.decimals) : valueText(value);
   }
 
   render({ row }) {
@@ -143,8 +139,7 @@ class Leds extends Painted {
 
 class Text extends Painted {
   paint(value) {
-    this.element.current.textContent = this.text(value);
-    this.element.current.title = this.text(value);
+    this.element.current.textContent = this.element.current.title = valueText(value);
   }
 
   render() {
@@ -163,50 +158,23 @@ class Switch extends Painted {
   }
 }
 
-// A number that can be typed: while the person types, it is left alone.
-class NumberBox extends Painted {
-  paint(value) {
-    const box = this.element.current;
-    if (document.activeElement !== box) box.value = this.text(value);
-  }
-
-  render({ row, label }) {
-    return html`<span class="number-box"><input type="text" inputmode="decimal" class="number" ref=${this.element} aria-label=${label}
-      disabled=${model.readonly} onFocus=${(event) => event.target.select()} onKeyDown=${this.key} onBlur=${this.leave} /><span class="unit">${row.unit}</span></span>`;
-  }
-
-  key = (event) => typeNumber(event, this.props.row);
-
-  leave = (event) => {
-    event.target.value = this.text(plain(model.shown.values.get(this.props.row.paths[0])));
-  };
-}
-
-// Keys in a box for a number: Enter sets it, Escape leaves it as it was.
-function typeNumber(event, row) {
-  event.stopPropagation();
-  if (event.key === "Enter") {
-    const value = typedNumber(event.target.value);
-    if (value !== undefined) write({ [row.paths[0]]: value });
-    event.target.blur();
-  } else if (event.key === "Escape") event.target.blur();
+function NumberBox({ row, label }) {
+  return html`<span class="number-box"><${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${label} /><span class="unit">${row.unit}</span></span>`;
 }
 
 class Slider extends Painted {
   paint(value) {
-    const [slider, box] = this.element.current.querySelectorAll("input");
+    const slider = this.element.current.firstElementChild;
     if (!this.dragging) slider.value = String(value ?? 0);
     const { low, high } = this.props.row;
     slider.style.setProperty("--filled", `${((Number(slider.value) - low) / (high - low)) * 100}%`);
-    if (document.activeElement !== box) box.value = this.text(value);
   }
 
   render({ row, label }) {
     return html`<span class="slider" ref=${this.element}>
       <input type="range" min=${row.low} max=${row.high} step="any" aria-label=${label} disabled=${model.readonly}
         onPointerDown=${() => (this.dragging = true)} onPointerUp=${() => (this.dragging = false)} onInput=${this.slide} />
-      <input type="text" inputmode="decimal" class="number" aria-label=${`${label}, as a number`} disabled=${model.readonly}
-        onFocus=${(event) => event.target.select()} onKeyDown=${this.key} />
+      <${ValueBox} class="number" inputmode="decimal" path=${row.paths[0]} label=${`${label}, as a number`} />
       <span class="unit">${row.unit}</span></span>`;
   }
 
@@ -214,8 +182,6 @@ class Slider extends Painted {
     const { row } = this.props;
     write({ [row.paths[0]]: Number(Number(event.target.value).toFixed(row.decimals)) });
   };
-
-  key = (event) => typeNumber(event, this.props.row);
 }
 
 const KINDS = {

@@ -1,8 +1,8 @@
 // The keys that drive: the chosen layout, and the person's own bindings.
-import { bindings, keyName } from "../input/keys.js";
+import { bindings, keyName, takenBy } from "../input/keys.js";
 import { model } from "../model.js";
 import { settings } from "../settings.js";
-import { Icon, Live, html } from "../view.js";
+import { Icon, Live, createRef, html } from "../view.js";
 
 const STATION_KEYS = [
   ["[ ] \\ together, Ctrl+E", "enable"],
@@ -18,13 +18,13 @@ const NAMES = { left: "←", right: "→", up: "↑", down: "↓", bracketleft: 
 
 export class KeysPanel extends Live {
   parts = ["settings", "hello"];
-  state = { key: "", kind: "axis", stick: 0, control: 0, by: 1 };
+  state = { key: "", refused: "", kind: "axis", stick: 0, control: 0, by: 1 };
+  fields = createRef();
 
   render(_, state) {
     const { keyboard } = model.hello.options;
-    const saved = settings.get("keyboard");
-    const { layout, axes, buttons } = bindings();
-    const own = new Set(saved.own.map((each) => each.key));
+    const { layout, axes, buttons, added } = bindings();
+    const own = new Set(added.map((each) => each.key));
     return html`<div class="keys scroll form">
       <label>Keys that drive
         <select value=${layout.name} onChange=${(event) => change({ chosen: event.target.value })}>
@@ -35,20 +35,21 @@ export class KeysPanel extends Live {
         ${Object.entries(axes).map(([key, moves]) => html`<tr key=${`axis ${key}`}><td><kbd>${NAMES[key] ?? key.toUpperCase()}</kbd></td>
           <td>${moves.map(([stick, axis, by]) => `joystick ${stick} axis ${axis} ${by > 0 ? "+" : "−"}${Math.abs(by)}`).join(", ")}</td>
           <td>${own.has(key) && html`<${Remove} name=${key} />`}</td></tr>`)}
-        ${saved.own.filter((each) => each.kind === "button").map(({ key }) => html`<tr key=${`button ${key}`}><td><kbd>${NAMES[key] ?? key.toUpperCase()}</kbd></td>
+        ${added.filter((each) => each.kind === "button").map(({ key }) => html`<tr key=${`button ${key}`}><td><kbd>${NAMES[key] ?? key.toUpperCase()}</kbd></td>
           <td>${(buttons[key] ?? []).map(([stick, button]) => `joystick ${stick} button ${button}`).join(", ")}</td>
           <td><${Remove} name=${key} /></td></tr>`)}
       </tbody></table>
-      <fieldset disabled=${model.readonly}><legend>Add a key</legend>
+      <fieldset ref=${this.fields} disabled=${model.readonly}><legend>Add a key</legend>
         <div class="binding">
           <input type="text" readonly value=${state.key ? (NAMES[state.key] ?? state.key.toUpperCase()) : ""} placeholder="Press a key" aria-label="Key" onKeyDown=${this.takeKey} />
-          <select aria-label="Kind" value=${state.kind} onChange=${(event) => this.setState({ kind: event.target.value })}>
+          <select aria-label="Kind" value=${state.kind} onChange=${(event) => this.setState({ kind: event.target.value, control: event.target.value === "button" ? 1 : 0 })}>
             <option value="axis">axis</option><option value="button">button</option></select>
-          <label>joystick <input type="number" min="0" max="5" value=${state.stick} onInput=${(event) => this.setState({ stick: Number(event.target.value) })} /></label>
-          <label>number <input type="number" min="0" max="32" value=${state.control} onInput=${(event) => this.setState({ control: Number(event.target.value) })} /></label>
-          ${state.kind === "axis" && html`<label>by <input type="number" min="-1" max="1" step="0.1" value=${state.by} onInput=${(event) => this.setState({ by: Number(event.target.value) })} /></label>`}
+          <label>joystick <input type="number" required min="0" max="5" value=${state.stick} onInput=${(event) => this.setState({ stick: event.target.value })} /></label>
+          <label>number <input type="number" required min=${state.kind === "axis" ? 0 : 1} max=${state.kind === "axis" ? 11 : 32} value=${state.control} onInput=${(event) => this.setState({ control: event.target.value })} /></label>
+          ${state.kind === "axis" && html`<label>by <input type="number" required min="-1" max="1" step="any" value=${state.by} onInput=${(event) => this.setState({ by: event.target.value })} /></label>`}
           <button disabled=${!state.key} onClick=${this.add}>Add</button>
-        </div></fieldset>
+        </div>
+        ${state.refused && html`<p class="alert amber" role="alert"><${Icon} name="warning" />${state.refused}</p>`}</fieldset>
       <h4>The driver station</h4>
       <table><tbody>${STATION_KEYS.map(([key, what]) => html`<tr key=${key}><td><kbd>${key}</kbd></td><td>${what}</td></tr>`)}
         <tr><td><kbd>1</kbd> to <kbd>9</kbd>, <kbd>0</kbd></td><td>buttons 1 to 10 of joystick 0</td></tr></tbody></table>
@@ -59,13 +60,17 @@ export class KeysPanel extends Live {
     if (event.key === "Tab") return;
     event.preventDefault();
     event.stopPropagation();
-    this.setState({ key: keyName(event) });
+    const key = keyName(event);
+    const taken = takenBy(key);
+    this.setState(taken ? { key: "", refused: `${event.code || key} ${taken}. Choose another key.` } : { key, refused: "" });
   };
 
   add = () => {
-    const { key, kind, stick, control, by } = this.state;
+    const { key, kind, ...typed } = this.state;
+    if (![...this.fields.current.elements].every((box) => box.reportValidity())) return;
+    const [stick, control, by] = [typed.stick, typed.control, typed.by].map(Number);
     const others = settings.get("keyboard").own.filter((each) => each.key !== key);
-    change({ own: [...others, { key, kind, stick, control: kind === "button" ? Math.max(control, 1) : control, by }] });
+    change({ own: [...others, { key, kind, stick, control, by }] });
     this.setState({ key: "" });
   };
 }

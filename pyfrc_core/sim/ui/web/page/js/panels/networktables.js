@@ -1,8 +1,9 @@
 // NetworkTables as a tree. Numbers, texts, switches and lists can be edited; any value can be plotted.
 import { write } from "../connection.js";
-import { plain, shortNumber, typedNumber, valueText } from "../format.js";
+import { plain, valueText } from "../format.js";
 import { model } from "../model.js";
 import { addToPlot, carryPath } from "../plotting.js";
+import { ValueBox } from "../value_box.js";
 import { Component, Icon, Live, classes, createRef, html } from "../view.js";
 
 const START = "nt:/";
@@ -89,9 +90,7 @@ class Leaf extends Component {
     const control = this.element.current?.querySelector(".nt-value");
     if (!control) return;
     if (control.type === "checkbox") control.checked = Boolean(value);
-    else if (control.tagName === "INPUT") {
-      if (document.activeElement !== control) control.value = editText(value);
-    } else control.textContent = valueText(value);
+    else if (kind === "none") control.textContent = valueText(value);
   }
 
   componentDidUpdate() {
@@ -109,28 +108,10 @@ class Leaf extends Component {
             onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
         : kind === "none"
           ? html`<span class="nt-value faint"></span>`
-          : html`<input type="text" class=${`nt-value ${kind}`} aria-label=${name} spellcheck="false" disabled=${model.readonly}
-              onFocus=${(event) => event.target.select()} onKeyDown=${this.key} onBlur=${this.leave} />`}
+          : html`<${ValueBox} class=${`nt-value ${kind}`} path=${path} label=${name} />`}
       <span class="row-tools"><button class="tool" title="Plot this value" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span>
     </div>`;
   }
-
-  key = (event) => {
-    event.stopPropagation();
-    if (event.key === "Escape") event.target.blur();
-    if (event.key !== "Enter") return;
-    const { path } = this.props;
-    const value = parseAs(plain(model.shown.values.get(path)), event.target.value);
-    event.target.classList.toggle("wrong", value === undefined);
-    if (value === undefined) return;
-    write({ [path]: value });
-    event.target.blur();
-  };
-
-  leave = (event) => {
-    event.target.classList.remove("wrong");
-    event.target.value = editText(plain(model.shown.values.get(this.props.path)));
-  };
 }
 
 function controlOf(value) {
@@ -139,23 +120,4 @@ function controlOf(value) {
   if (typeof value === "string") return "text";
   const simple = (each) => ["number", "boolean", "string"].includes(typeof each);
   return Array.isArray(value) && value.every(simple) ? "list" : "none";
-}
-
-function editText(value) {
-  if (typeof value === "number") return shortNumber(value);
-  return Array.isArray(value) ? JSON.stringify(value.map((each) => (typeof each === "number" ? Number(shortNumber(each)) : each))) : String(value ?? "");
-}
-
-// What a typed text means for a value of this kind; undefined: it is wrong.
-function parseAs(before, text) {
-  if (typeof before === "string") return text;
-  if (typeof before === "number") {
-    return typedNumber(text);
-  }
-  try {
-    const list = JSON.parse(text);
-    return Array.isArray(list) && list.every((each) => typeof each === typeof (before[0] ?? each)) ? list : undefined;
-  } catch {
-    return undefined;
-  }
 }

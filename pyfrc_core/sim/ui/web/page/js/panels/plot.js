@@ -3,7 +3,7 @@ import uPlot from "../../vendor/uplot/uPlot.esm.js";
 import { ElementSize, font } from "../canvas.js";
 import { compared } from "../compare.js";
 import { ask } from "../connection.js";
-import { clockTick, valueText } from "../format.js";
+import { clockTick, shownNumber, valueText } from "../format.js";
 import { model } from "../model.js";
 import { nameOf } from "../names.js";
 import { length, look } from "../past.js";
@@ -91,7 +91,7 @@ export class PlotPanel extends Live {
   valueOf(path, t) {
     const detail = this.zoom && this.detail.get(path);
     const series = detail || this.watched.get(path);
-    return series && valueAt(series, t);
+    return series && t <= length() ? valueAt(series, t) : undefined;
   }
 
   watchCurves() {
@@ -116,10 +116,22 @@ export class PlotPanel extends Live {
     if (!this.plot) return this.drawBands();
     const [from, to] = this.range();
     this.plot.batch(() => {
-      this.plot.setData(aligned(this.lines.map((line) => this.seriesOf(line)), from, Math.min(to, length()), this.plot.width), false);
+      this.plot.setData(this.columns(this.plot.width), false);
       this.plot.setScale("x", { min: from, max: to });
     });
     this.drawBands();
+  }
+
+  // The columns for uPlot: the curves until now, and those of the branch until its end.
+  columns(width) {
+    const [from, to] = this.range();
+    const curves = this.lines.map((line) => ({ until: length(), ...this.seriesOf(line) }));
+    return aligned(curves, from, Math.min(to, this.end), width);
+  }
+
+  // The end of what there is.
+  get end() {
+    return Math.max(length(), compared.end);
   }
 
   seriesOf({ path, other }) {
@@ -130,7 +142,7 @@ export class PlotPanel extends Live {
   range() {
     if (this.zoom) return this.zoom;
     const { seconds } = this.config;
-    if (!seconds) return [0, Math.max(length(), 1)];
+    if (!seconds) return [0, Math.max(this.end, 1)];
     const end = Math.max(model.past?.t ?? model.t, seconds);
     return [end - seconds, end];
   }
@@ -139,10 +151,10 @@ export class PlotPanel extends Live {
     this.otherId = compared.id;
     this.others = new Map([...this.watched.keys()].map((path) => [path, { t: [], v: [] }]));
     if (compared.id === null || !this.watched.size) return;
-    const branch = model.branches.find((each) => each.id === compared.id);
-    const answer = await ask("plot", { paths: [...this.watched.keys()], from: 0, to: branch?.to ?? 0, points: 4000, branch: compared.id }).catch(() => null);
+    const until = compared.end;
+    const answer = await ask("plot", { paths: [...this.watched.keys()], from: 0, to: until, points: 4000, branch: compared.id }).catch(() => null);
     if (!answer || this.otherId !== compared.id) return;
-    this.others = new Map(Object.entries(answer.series).map(([path, one]) => [path, { ...one, until: branch?.to }]));
+    this.others = new Map(Object.entries(answer.series).map(([path, one]) => [path, { ...one, until }]));
     model.announce("series");
   }
 
@@ -185,7 +197,7 @@ export class PlotPanel extends Live {
           draw: [(plot) => this.drawMoment(plot)],
         },
       },
-      aligned(this.lines.map((line) => this.seriesOf(line)), this.range()[0], Math.min(this.range()[1], length()), width),
+      this.columns(width),
       this.area.current,
     );
     this.plot.over.addEventListener("wheel", this.wheel, { passive: false });
@@ -220,7 +232,7 @@ export class PlotPanel extends Live {
   };
 
   zoomTo(from, to) {
-    const end = Math.max(length(), 0.1);
+    const end = Math.max(this.end, 0.1);
     this.zoom = [Math.max(from, 0), Math.min(Math.max(to, from + 0.04), end)];
     clearTimeout(this.detailTimer);
     this.detailTimer = setTimeout(() => this.loadDetail(), 120);
@@ -293,7 +305,7 @@ export class PlotPanel extends Live {
 }
 
 function tickTexts(_, ticks) {
-  return ticks.map((tick) => (tick === null ? "" : String(Number(tick.toPrecision(6)))));
+  return ticks.map((tick) => (tick === null ? "" : shownNumber(tick)));
 }
 
 // How far apart numbers are on a vertical axis, in pixels: closer in a low plot, which has few of them.

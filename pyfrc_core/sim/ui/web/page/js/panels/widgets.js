@@ -1,9 +1,9 @@
 // What robot code has put on the dashboard: choosers, PID controllers, commands, alerts and single values, as cards.
 import { write } from "../connection.js";
-import { numberText, plain, shortNumber, typedNumber, valueText } from "../format.js";
+import { plain, valueText } from "../format.js";
 import { model } from "../model.js";
 import { addToPlot } from "../plotting.js";
-import { TextBox } from "../text_box.js";
+import { ValueBox } from "../value_box.js";
 import { Icon, Live, html } from "../view.js";
 import { Chooser } from "./match.js";
 
@@ -64,13 +64,6 @@ function ValuesCard({ folder, values }) {
 
 function ValueRow({ path, name, value }) {
   const number = typeof value === "number";
-  const set = (event) => {
-    event.stopPropagation();
-    if (event.key !== "Enter") return;
-    const typed = number ? typedNumber(event.target.value) : event.target.value;
-    if (typed !== undefined) write({ [path]: typed });
-    event.target.blur();
-  };
   const nudge = (by) => write({ [path]: Number((value + by).toPrecision(10)) });
   const step = number && value ? 10 ** Math.floor(Math.log10(Math.abs(value)) - 0.3) / (Math.abs(value) >= 1 ? 10 : 1) : 0.1;
   return html`<div class="row"><span class="row-label">${name}</span>
@@ -78,7 +71,7 @@ function ValueRow({ path, name, value }) {
       ? html`<label class="switch"><input type="checkbox" role="switch" aria-label=${name} checked=${value} disabled=${model.readonly} onChange=${(event) => write({ [path]: event.target.checked })} /><i></i></label>`
       : number || typeof value === "string"
         ? html`<span class="number-box">${number && html`<button class="tool always" aria-label=${`Less ${name}`} disabled=${model.readonly} onClick=${() => nudge(-step)}>−</button>`}
-            <${TextBox} class=${number ? "number" : ""} aria-label=${name} text=${number ? shortNumber(value) : value} title=${number ? numberText(value, 6) : value} disabled=${model.readonly} onKeyDown=${set} onFocus=${(event) => event.target.select()} />
+            <${ValueBox} class=${number ? "number" : ""} path=${path} label=${name} />
             ${number && html`<button class="tool always" aria-label=${`More ${name}`} disabled=${model.readonly} onClick=${() => nudge(step)}>+</button>`}</span>`
         : html`<span class="faint">${valueText(value)}</span>`}
     <span class="row-tools"><button class="tool" aria-label=${`Plot ${name}`} onClick=${() => addToPlot(path)}><${Icon} name="plus" /></button></span></div>`;
