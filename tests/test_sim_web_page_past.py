@@ -134,10 +134,10 @@ def test_a_key_with_another_use_cannot_drive(person: Seen) -> None:
         "[": "BracketLeft enables the robot, with two others.",
     }.items():
         box.press(key)
-        page.get_by_role("alert").filter(has_text=reason).wait_for()
+        page.locator(".notice", has_text=reason).wait_for()
         assert person.button("Add").is_disabled()
     box.press("n")
-    page.get_by_role("alert").wait_for(state="detached")
+    page.locator(".notice").wait_for(state="detached")
     page.get_by_role("spinbutton", name="joystick").fill("9")
     person.button("Add").click()  # the browser says why not
     assert page.get_by_role("spinbutton", name="joystick").evaluate("box => box.validationMessage")

@@ -18,7 +18,7 @@ const NAMES = { left: "←", right: "→", up: "↑", down: "↓", bracketleft: 
 
 export class KeysPanel extends Live {
   parts = ["settings", "hello"];
-  state = { key: "", refused: "", kind: "axis", stick: 0, control: 0, by: 1 };
+  state = { key: "", kind: "axis", stick: 0, control: 0, by: 1 };
   fields = createRef();
 
   render(_, state) {
@@ -48,8 +48,7 @@ export class KeysPanel extends Live {
           <label>number <input type="number" required min=${state.kind === "axis" ? 0 : 1} max=${state.kind === "axis" ? 11 : 32} value=${state.control} onInput=${(event) => this.setState({ control: event.target.value })} /></label>
           ${state.kind === "axis" && html`<label>by <input type="number" required min="-1" max="1" step="any" value=${state.by} onInput=${(event) => this.setState({ by: event.target.value })} /></label>`}
           <button disabled=${!state.key} onClick=${this.add}>Add</button>
-        </div>
-        ${state.refused && html`<p class="alert amber" role="alert"><${Icon} name="warning" />${state.refused}</p>`}</fieldset>
+        </div></fieldset>
       <h4>The driver station</h4>
       <table><tbody>${STATION_KEYS.map(([key, what]) => html`<tr key=${key}><td><kbd>${key}</kbd></td><td>${what}</td></tr>`)}
         <tr><td><kbd>1</kbd> to <kbd>9</kbd>, <kbd>0</kbd></td><td>buttons 1 to 10 of joystick 0</td></tr></tbody></table>
@@ -62,7 +61,10 @@ export class KeysPanel extends Live {
     event.stopPropagation();
     const key = keyName(event);
     const taken = takenBy(key);
-    this.setState(taken ? { key: "", refused: `${event.code || key} ${taken}. Choose another key.` } : { key, refused: "" });
+    const refused = taken && `${event.code || key} ${taken}. Choose another key.`;
+    if (refused || model.problem === this.refused) model.set("problem", refused);
+    this.refused = refused;
+    this.setState({ key: taken ? "" : key });
   };
 
   add = () => {
