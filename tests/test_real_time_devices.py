@@ -37,6 +37,11 @@ PHOENIX = """
     import hal
 
 
+    class ParentDevice:
+        def __init__(self, device_id, model, canbus):
+            pass
+
+
     class TalonFX:
         '''Like phoenix6's: a SimDevice for the motor, and one for its sensor, whose values differ in each run.'''
 
