@@ -54,6 +54,16 @@ def test_tab_and_a_click_elsewhere_write_what_was_typed_and_escape_does_not(pers
     assert written(person) == [2, 3]
 
 
+def test_a_number_is_edited_while_the_robot_is_paused(person: Seen) -> None:
+    person.tab("NetworkTables").click()
+    person.pause()
+    box = person.row(KP).locator("input")
+    box.click()
+    box.fill("4.5")
+    box.press("Tab")
+    person.shows(box, "4.5")
+
+
 def test_a_gain_in_a_card_is_as_small_as_it_was_typed(person: Seen) -> None:
     page = person.page
     person.choose("Layout", "Tuning")

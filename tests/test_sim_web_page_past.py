@@ -119,6 +119,8 @@ def test_a_curve_too_many_is_refused_in_words(person: Seen) -> None:
     page.evaluate(add, 13)
     page.locator(".notice", has_text="A plot has at most 12 curves. Remove one of them").wait_for()
     assert page.locator("[data-panel='plot:1'] .curve-name").count() == 12
+    person.button("Add value").click()
+    page.get_by_text("Only 60 values are listed: search for others.").wait_for()
 
 
 def test_a_key_with_another_use_cannot_drive(person: Seen) -> None:

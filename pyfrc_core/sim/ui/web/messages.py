@@ -11,8 +11,8 @@ from typing import Any, NoReturn
 _MOST_DEPTH, _MOST_DIGITS = 40, 32
 #: How much of a wrong value an error shows, in characters.
 _MOST_SHOWN = 60
-#: The most paths that a page may ask for at once.
-_MOST_PATHS = 64
+#: The most paths that a page may ask for at once: all curves of twenty full plots.
+_MOST_PATHS = 256
 #: The latest and the earliest moment that a page may name, in seconds: thirty years.
 _LATEST = 1e9
 

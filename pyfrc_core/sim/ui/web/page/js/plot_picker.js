@@ -39,6 +39,7 @@ export class PlotPicker extends Component {
           aria-label="Search all values" onInput=${(event) => this.setState({ search: event.target.value })} /></label>
         <ul>${found.map((path) => html`<li key=${path}><button title=${path} onClick=${() => this.add(path)}>
           <span>${nameOf(path)}</span><small>${valueText(valueAtPath(path)).slice(0, 24)}</small></button></li>`)}</ul>
+        ${found.length === MOST && html`<p class="faint">Only ${MOST} values are listed: search for others.</p>`}
         ${!found.length && html`<p class="faint">No value is called that.</p>`}
       </div>`}
     </div>`;
