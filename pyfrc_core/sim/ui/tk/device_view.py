@@ -172,7 +172,7 @@ class DeviceView:
             editor.bind(key, lambda event: self._entered())
         editor.bind("<Tab>", lambda event: self._end_editing())
         editor.bind("<FocusOut>", lambda event: self._end_editing(focused=False))
-        editor.bind("<Escape>", lambda event: self._close_editor())
+        editor.bind("<Escape>", lambda event: self._give_up_editing())
         editor.focus_set()
 
     def _entered(self) -> None:
@@ -198,6 +198,10 @@ class DeviceView:
         self._edited = item, text
         self._simulation.write({item.row.paths[0]: value})
         return True
+
+    def _give_up_editing(self) -> None:
+        self.problem = ""
+        self._close_editor()
 
     def _end_editing(self, focused: bool = True) -> None:
         """Set what was typed, if it is right.
