@@ -12,8 +12,8 @@ from pyfrc_core.errors import PyfrcError
 from .project_options import chosen_project, from_here, project_options
 from .verbosity import hint
 
-#: How many failures are listed.
-_MOST_FAILURES = 10
+#: How many failures are listed, and how much of the line of each.
+_MOST_FAILURES, _WIDTH = 10, 150
 
 
 @click.command("create-physics", context_settings={"help_option_names": ["-h", "--help"]})
@@ -24,8 +24,8 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
     The robot program is started on this computer, with simulated devices, to find its motors, encoders and gyros. Then
     each joystick axis is moved, to find the motors that drive the robot, and their directions. It takes about a second.
 
-    Then the project's tests are run with the new physics.py, in a copy of the project. If one fails, it is not put in
-    place.
+    Then the project's tests are run with the new physics.py, in a copy of the project. If one fails that did not fail
+    before, or that needs a physics.py, it is not put in place.
 
     Existing files are not changed. To write one again, move it away first.
 
@@ -50,16 +50,24 @@ def command(directory: Path | None, main: Path | None, robot_class: str | None) 
             click.secho(f"warning: the existing file is not valid: {mistake}", fg="yellow", err=True)
     for file in done.written:
         hint(f"wrote {from_here(file)}")
-    if done.proposal is not None and done.failures:
-        number = f"{len(done.failures)} of the project's tests fail" if len(done.failures) > 1 else "a test fails"
-        failed = "".join(f"\n  {line}" for line in done.failures[:_MOST_FAILURES])
-        rest = len(done.failures) - _MOST_FAILURES
+    new, old = (done.failures.new, done.failures.old) if done.failures else ([], [])
+    if done.proposal is not None:
+        number = f"{len(new)} of the project's tests fail" if len(new) > 1 else "a test fails"
         raise PyfrcError(
-            f"physics.py was not put in place, since {number} with it:{failed}"
-            + (f"\n  and {rest} more" if rest > 0 else ""),
-            remedy=f"Correct the numbers in {from_here(done.proposal)}, copy it beside robot.py, and run pyfrc test.",
+            f"physics.py was not put in place, since {number} with it:{_listed(new)}",
+            remedy=f"Correct the numbers in {from_here(done.proposal)} and answer its questions (TODO), copy it beside "
+            "robot.py, and run pyfrc test.",
         )
     if project.physics_file in done.written:
         physics = from_here(project.physics_file)
-        tested = "The project has no tests to run with it." if done.failures is None else "The project's tests pass."
-        hint(f"\n{tested} Change the numbers at the top of {physics} to your robot's; pyfrc test uses it from now on.")
+        tested = "The project has no tests to run with it. " if done.failures is None else "The project's tests pass. "
+        if old:
+            tested = f"Of the project's tests, those that fail now failed without it, too:{_listed(old)}\n\n"
+        hint(f"\n{tested}Change the numbers at the top of {physics} to your robot's; pyfrc test uses it from now on.")
+
+
+def _listed(failures: list[str]) -> str:
+    lines = [line if len(line) <= _WIDTH else f"{line[:_WIDTH]}..." for line in failures[:_MOST_FAILURES]]
+    if len(failures) > _MOST_FAILURES:
+        lines.append(f"and {len(failures) - _MOST_FAILURES} more")
+    return "".join(f"\n  {line}" for line in lines)

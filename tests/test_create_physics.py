@@ -277,12 +277,7 @@ def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
     assert project.run("init").code == 0
     (project.path / "physics.py").unlink()
     shutil.rmtree(project.path / "sim")
-    result = project.run("create-physics")  # the robot's own tests know its numbers
-    assert result.code == 1
-    assert "physics.py was not put in place, since a test fails with it:\n  tests/test_" in result.stderr
-    assert not (project.path / "physics.py").exists()
-    assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in result.stdout
-    shutil.copy(project.path / ".pyfrc/create-physics/physics.py", project.path)
+    assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in create(project)
     project.write(
         {
             "tests/test_physics.py": """
@@ -302,7 +297,7 @@ def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
         }
     )
     (project.path / "tests/test_drive.py").unlink()  # one of its tests turns an encoder itself
-    run_tests(project, "--", "-k", "not practice and not knows_where")  # the track has another width
+    run_tests(project, "--", "-k", "not practice")
     config = json.loads((project.path / "sim/config.json").read_text())
     assert config["pyfrc"]["pwm"]["3"] == "right_follower"
     assert config["pyfrc"]["dio"]["2"] == "right_encoder A"
@@ -311,6 +306,30 @@ def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
         "config", "schema"
     ).stdout.strip()
     assert project.run("config", "check").stdout == "sim/config.json: no mistakes\n"
+
+
+@pytest.mark.parametrize(
+    ("template", "says"),
+    [
+        ("timed", "The project's tests pass."),
+        ("command", "The project's tests pass."),
+        ("mecanum", "The project's tests pass."),
+        ("tank", "The project's tests pass."),
+        ("magic", "since a test fails with it:\n  tests/test_modes.py::test_autonomous_shoots"),  # the wheel's speed
+        ("swerve", "since 8 of the project's tests fail with it:\n  tests/test_drivetrain.py::test_every"),
+        ("elevator-arm", "those that fail now failed without it, too:\n  tests/test_mechanisms.py::test_a_button"),
+    ],
+)
+def test_the_templates(make_project: MakeProject, template: str, says: str) -> None:
+    """What is written passes the template's tests, or all that passed before; the rest are questions."""
+    project = make_project({})
+    assert project.run("init", "-t", template).code == 0
+    (project.path / "physics.py").unlink()
+    result = project.run("create-physics")
+    assert says in result.stdout + result.stderr
+    assert result.code == ("not put in place" in result.stderr)
+    assert (project.path / "physics.py").exists() == (result.code == 0)
+    assert (project.path / ".pyfrc/create-physics/physics.py").exists() == (result.code == 1)
 
 
 @pytest.mark.parametrize("robot", SAMPLES)
@@ -417,11 +436,67 @@ def test_a_lift_moves_its_encoder(make_project: MakeProject) -> None:
     printed = create(project)
     assert "no drivetrain recognised" in printed
     assert "four_motor_swerve_drivetrain" in printed
-    assert "PWM 4 (lift.motor) with lift.encoder (DIO 8, 9)" in printed
+    assert "PWM 4 (lift.motor) with lift.encoder (DIO 8, 9), which you need to complete\n" in printed
+    failed = "tests/test_lift.py::test_lift - robot.py:15: AssertionError: assert 0.0 == 2.0 ± 0.05"
+    assert f"those that fail now failed without it, too:\n  {failed}\n" in printed
     unknown = "Not simulated, since their purpose is unknown: PWM 5 (spare)."
     assert f"note: {unknown}" in printed
-    assert unknown in (project.path / "physics.py").read_text().replace("\n# ", " ")
+    physics = project.path / "physics.py"
+    text = physics.read_text()
+    assert unknown in text.replace("\n# ", " ")
+    assert "# TODO: how fast does PWM 4 (lift.motor) turn lift.encoder (DIO 8, 9)?\n" in text
+    physics.write_text(text.replace("LIFT_SPEED = 0.0\n", "LIFT_SPEED = 1.0\n"))
     run_tests(project)
+
+
+TANK = """
+import wpilib
+from wpimath.kinematics import DifferentialDriveKinematics
+
+class Drive:
+    {0}
+
+class MyRobot(wpilib.TimedRobot):
+    def robotInit(self):
+        self.left_motor, self.right_motor, self.drive = wpilib.Talon(0), wpilib.Talon(1), Drive()
+        self.left_encoder = wpilib.Encoder(0, 1)
+
+    def teleopPeriodic(self):
+        self.left_motor.set(0.5)
+"""
+
+
+def test_only_what_it_breaks_keeps_it_from_its_place(make_project: MakeProject) -> None:
+    still = """
+        def test_it_stands_still(control, robot):
+            control.set_operator_control(enabled=True)
+            control.run_test(lambda tm: tm < 1)
+            assert robot.left_encoder.getDistance() == 0
+        """
+    files = {"tests/test_it.py": still, "tests/test_other.py": "def test_other():\n    assert 1 == 2\n"}
+    project = make_project({"robot.py": TANK.format("pass"), **files})
+    result = project.run("create-physics")
+    assert result.code == 1
+    assert "since a test fails with it:\n  tests/test_it.py::test_it_stands_still - " in result.stderr
+    assert "test_other" not in result.stderr
+    (project.path / "tests/test_it.py").unlink()
+    assert "failed without it, too:\n  tests/test_other.py::test_other - " in create(project)
+
+
+@pytest.mark.parametrize(
+    ("code", "width"),
+    [
+        ("TRACK_WIDTH = 0.61", "0.61 * units.metre"),
+        ("kTrackwidth = 0.55", "0.55 * units.metre"),
+        ("kinematics = DifferentialDriveKinematics(0.7)", "0.7 * units.metre"),
+        ("TRACK_WIDTH = 24.0", "22 * units.inch"),
+        ("WIDTH = 0.61", "22 * units.inch"),
+    ],
+)
+def test_the_width_is_that_of_the_robots_code(make_project: MakeProject, code: str, width: str) -> None:
+    project = make_project({"robot.py": TANK.format(code)})
+    create(project)
+    assert f"TRACK_WIDTH = {width}  # from" in (project.path / "physics.py").read_text()
 
 
 def test_names_and_inversion_tell_where_no_stick_does(make_project: MakeProject) -> None:
@@ -775,8 +850,8 @@ def test_any_names_make_a_valid_file(make_project: MakeProject) -> None:
 
             class Gyro:
                 def __init__(self, number):
-                    self.device = hal.SimDevice("navX-Sensor", number)
-                    self.yaw = self.device.createDouble("Yaw", hal.SimDevice.Direction.kInput, 0.0)
+                    self.device = hal.SimDevice("CANGyro:Pigeon 2 (v6)", number)
+                    self.yaw = self.device.createDouble("rawYawInput", hal.SimDevice.Direction.kInput, 0.0)
 
                 def getDeviceId(self):
                     return 1
@@ -788,7 +863,7 @@ def test_any_names_make_a_valid_file(make_project: MakeProject) -> None:
     made = re.findall(r"^        self\.(\w+) = ", text.partition("class PhysicsEngine")[2], re.MULTILINE)
     assert len(made) == len(set(made))
     assert {"g_angle", "g_angle_2"} < set(made)
-    numbers = re.findall(r"^(\w+_SPEED) = ", text, re.MULTILINE)
+    numbers = re.findall(r"^(LIFT_\w+_SPEED) = ", text, re.MULTILINE)
     assert len(numbers) == len(set(numbers)) == 5
     run_tests(project, "--builtin", "--", "-k", "operator")
 

@@ -216,7 +216,7 @@ def test_tank_on_sparks_drives(make_project: MakeProject) -> None:
     assert "left: SPARK MAX [10]" in printed
     assert "mechanism: SPARK MAX [20] (container.arm.motor)" in printed
     text = (project.path / "physics.py").read_text()
-    assert "MOTORS_PER_SIDE = 2\n" in text
+    assert "WHEEL_MOTOR = DCMotor.NEO(1)  # on each motor controller\n" in text
     assert "ARM_GEARING = 80 " in text
     run_test(
         project,

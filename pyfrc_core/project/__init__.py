@@ -4,6 +4,6 @@ Imports no WPILib: `runtime.loading` imports the robot's code.
 """
 
 from .locate import find_project
-from .project import MAIN_FILE, TEST_FILES, Project
+from .project import MAIN_FILE, NO_PHYSICS, TEST_FILES, Project
 
-__all__ = ["MAIN_FILE", "TEST_FILES", "Project", "find_project"]
+__all__ = ["MAIN_FILE", "NO_PHYSICS", "TEST_FILES", "Project", "find_project"]

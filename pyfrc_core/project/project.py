@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from ..config.sim_file import LoadedSimConfig
 
 MAIN_FILE = "robot.py"
+#: The error of a test that needs a physics module where there is none.
+NO_PHYSICS = "there is no physics.py in this project"
 #: The names of files with tests, as pytest's own.
 TEST_FILES = ("test_*.py", "*_test.py")
 

@@ -21,7 +21,7 @@ from ..errors import ProjectError, PyfrcError, nearest
 from ..hal import HalData
 from ..invariants.load import Invariant, load_invariants
 from ..processes.lent_streams import lent_streams
-from ..project import Project
+from ..project import NO_PHYSICS, Project
 from ..runtime.cooperative import line_of_thread
 from ..runtime.crash_moment import CrashMoment
 from ..runtime.data_logs import TEST_LOGS, LogPlace
@@ -134,7 +134,7 @@ class PyFrcPlugin(WatchedTests):
     def physics_controller(self, _physics: Physics | None, robot: object) -> PhysicsInterface:
         """The object with which your ``physics.py`` moves the robot; it knows the robot's position on the field."""
         if _physics is None:
-            raise ProjectError("there is no physics.py in this project", where=self.project.root)
+            raise ProjectError(NO_PHYSICS, where=self.project.root)
         return _physics.controller
 
     @pytest.fixture

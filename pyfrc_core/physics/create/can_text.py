@@ -21,11 +21,6 @@ _FLYWHEEL_INERTIA = 0.002
 
 _WHEEL_DIAMETER, _DRIVE_GEARING, _STEER_GEARING = 0.1016, 6.75, 21.43
 
-#: The motors' names in `motor_cfgs`.
-_CONFIGS = {"NEO": "MOTOR_CFG_NEO", "neoVortex": "MOTOR_CFG_NEO_VORTEX", "krakenX60": "MOTOR_CFG_KRAKEN_X60"}
-
-_WHEEL = "WHEEL_CIRCUMFERENCE = 0.479  # metres\n"
-
 _SWERVE_NUMBERS = """
 # The swerve drive.
 DRIVE_MOTOR = DCMotor.{drive}({drives})
@@ -54,21 +49,16 @@ def controller(text: ModuleText, motor: CanMotor, model: str, gearing: str, zero
     return f"{motor.vendor}({', '.join([*parts, *([f'zero={zero}'] if zero else [])])})"
 
 
-def motor_config(motors: Sequence[Motor]) -> str:
-    """Return the name of the motors in `motor_cfgs`."""
-    return next((_CONFIGS[motor.model] for motor in motors if isinstance(motor, CanMotor)), "MOTOR_CFG_CIM")
-
-
-def wheel_numbers(motors: Sequence[Motor], *, in_units: bool) -> str:
-    """Return the numbers of a drivetrain that only motors on the CAN bus need.
-
-    :param in_units: whether its gearing and its wheels are defined elsewhere, with units
-    """
+def wheel_numbers(motors: Sequence[Motor]) -> str:
+    """Return the numbers of a drivetrain that only motors on the CAN bus need."""
     first = next((motor for motor in motors if isinstance(motor, CanMotor)), None)
     if first is None:
         return ""
-    text = f"WHEEL_MOTOR = DCMotor.{first.model}(1)  # on each motor controller\n"
-    return text if in_units else f"GEARING = 10.71  # turns of a motor for one turn of its wheel\n{text}{_WHEEL}"
+    return (
+        "GEARING = 10.71  # turns of a motor for one turn of its wheel\n"
+        f"WHEEL_MOTOR = DCMotor.{first.model}(1)  # on each motor controller\n"
+        "WHEEL_CIRCUMFERENCE = 0.479  # metres\n"
+    )
 
 
 def wheel_motors(text: ModuleText, motors: Sequence[Motor], wanted: str) -> tuple[str, list[str]]:

@@ -80,6 +80,7 @@ class DrivetrainLayout:
     :param mechanisms: the other motors with an encoder, each with its encoder
     :param can_mechanisms: the other motors on vendors' motor controllers, which have encoders of their own
     :param duty_cycle: the channels of absolute encoders, by the path of the motor that turns each
+    :param track_width: from the left wheels to the right ones in metres, if the robot's code has it
     :param undriven: motors and encoders whose purpose is unknown
     :param assumptions: sentences about assumptions
     """
@@ -90,13 +91,14 @@ class DrivetrainLayout:
     mechanisms: list[tuple[Motor, Encoder]] = field(default_factory=list)
     can_mechanisms: list[CanMotor] = field(default_factory=list)
     duty_cycle: dict[str, int] = field(default_factory=dict)
+    track_width: float | None = None
     undriven: list[Motor | Encoder] = field(default_factory=list)
     assumptions: list[str] = field(default_factory=list)
 
 
 def find_layout(found: Survey) -> DrivetrainLayout:
     """Identify the parts of the robot, as far as names and joysticks allow."""
-    layout = DrivetrainLayout(swerve=_swerve(found))
+    layout = DrivetrainLayout(swerve=_swerve(found), track_width=found.track_width)
     layout.assumptions += found.swerve.assumptions
     if layout.swerve is None and not any(motor.name.says_swerve for motor in found.motors):
         layout.drivetrain = _Finder(found, layout.assumptions).find()

@@ -13,7 +13,7 @@ from ...processes.call import run_in_subprocess
 from ...project import Project
 from ...text_files import write_whole
 from .proposal import SCHEMA_NAME, propose
-from .try_tests import failures_with
+from .try_tests import Failures, failures_with
 
 #: Where a ``physics.py`` is kept with which tests fail.
 PROPOSAL = Path(".pyfrc", "create-physics", "physics.py")
@@ -28,8 +28,8 @@ class Created:
     :param recognised: lines about the drivetrain, encoders and gyros; empty when the robot was not started
     :param notes: sentences about assumptions and remaining work
     :param problem: why the robot could not be driven, with the user's line
-    :param failures: the project's tests that fail with the proposed ``physics.py``, which is not written then; None if
-        no tests were run
+    :param failures: the project's tests that fail with the proposed ``physics.py``, which is not written if there are
+        new ones; None if no tests were run
     :param proposal: where the text is kept then
     """
 
@@ -38,14 +38,14 @@ class Created:
     recognised: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     problem: str | None = None
-    failures: list[str] | None = None
+    failures: Failures | None = None
     proposal: Path | None = None
 
 
 def create_physics(project: Project) -> Created:
     """Write ``physics.py`` and ``sim/config.json`` unless they exist; for that, start the robot program.
 
-    ``physics.py`` is put in place only if the project's tests pass with it.
+    ``physics.py`` is put in place only if no test of the project fails because of it.
 
     :raises RobotCodeError: when the robot's code fails before it can be driven, or ends its process; then nothing is
         written
@@ -71,7 +71,7 @@ def create_physics(project: Project) -> Created:
     new = {file: text for file, text in texts.items() if file not in done.unchanged}
     if physics in new:
         done.failures = failures_with(project, new)
-        if done.failures:
+        if done.failures and done.failures.new:
             done.proposal = project.root / PROPOSAL
             done.proposal.parent.mkdir(parents=True, exist_ok=True)
             texts = {done.proposal: texts.pop(physics), **texts}

@@ -9,9 +9,13 @@ from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 import wpilib
+from wpimath.kinematics import DifferentialDriveKinematics
 
 from ...hal.devices import encoder_channels
 from ...project.robot_files import RobotFiles
+
+#: In metres.
+_POSSIBLE_WIDTH = 0.3, 1.0
 
 #: The maximum number of attributes between the robot and a device, and of list elements that are searched.
 _DEPTH, _PARTS = 6, 64
@@ -158,6 +162,20 @@ def find_devices(objects: Iterable[Reached]) -> dict[Place, NamedDevice]:
     return found
 
 
+def find_track_width(objects: Iterable[Reached]) -> float | None:
+    """Return the distance from the left wheels to the right ones in metres, from kinematics or a number of that name.
+
+    A number that is not the width of a robot in metres has another unit, and is ignored.
+    """
+    for path, thing, _ in objects:
+        width = thing.trackWidth if isinstance(thing, DifferentialDriveKinematics) else thing
+        if not isinstance(width, float) or not _POSSIBLE_WIDTH[0] < width < _POSSIBLE_WIDTH[1]:
+            continue
+        if width is not thing or "trackwidth" in "".join(_words(path[-1])):
+            return width
+    return None
+
+
 def _reachable(robot: object, files: RobotFiles) -> Iterator[Reached]:
     modules = [
         module
@@ -170,6 +188,8 @@ def _reachable(robot: object, files: RobotFiles) -> Iterator[Reached]:
     while waiting:
         path, owner, expression = waiting.popleft()
         for name, value, access in _parts(owner, ours):
+            if isinstance(value, float):
+                yield Reached((*path, name), value, "")
             if id(value) in seen or isinstance(value, (str, bytes, int, float, type(None))):
                 continue
             seen.add(id(value))

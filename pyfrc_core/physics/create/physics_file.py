@@ -12,7 +12,7 @@ from .drivetrain import CORNERS, DrivetrainLayout, Mecanum, Tank
 from .module_text import ModuleText, quoted
 from .motors import Motor
 from .names import one_line
-from .report import listed, notes
+from .report import notes
 from .survey import Encoder, Gyro, Survey
 
 _HEAD = '''"""The physics of this robot: how its motors change its sensors and its position on the field.
@@ -23,43 +23,24 @@ robot: replace them with your own.
 """
 '''
 
-_TANK_NUMBERS = """
-# The drivetrain. Other motors are in pyfrc.physics.motor_cfgs too, such as MOTOR_CFG_NEO.
-MOTOR = motor_cfgs.{config}
-MOTORS_PER_SIDE = {per_side}
-GEARING = 10.71  # turns of a motor for one turn of the wheels
-MASS = 110 * units.lbs  # with battery and bumpers
-TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right ones
-WHEEL_DIAMETER = 6 * units.inch
-ROBOT_WIDTH = 27.5 * units.inch  # with bumpers
-ROBOT_LENGTH = 36.5 * units.inch
-"""
-
-_MECANUM_NUMBERS = """
+_DRIVETRAIN_NUMBERS = """
 # The drivetrain.
 TOP_SPEED = 10 * units.feet / units.second  # at full power
-TRACK_WIDTH = 22 * units.inch  # from the left wheels to the right ones
-WHEELBASE = 22 * units.inch  # from the front wheels to the rear ones
+TRACK_WIDTH = {track_width}  # from the left wheels to the right ones
 """
+_WHEELBASE = "WHEELBASE = 22 * units.inch  # from the front wheels to the rear ones\n"
 
-#: The comment on encoder units, by the unit of the drivetrain's model.
-_UNITS = {
-    "foot": """
-# The unit of the robot's setDistancePerPulse(), which is assumed: 0.3048 for metres, 1 for feet,
-# 12 for inches.
-ENCODER_UNITS = 0.3048
-""",
-    "metre": """
+_UNITS = """
 # The unit of the robot's setDistancePerPulse(), which is assumed: 1 for metres, 3.281 for feet,
 # 39.37 for inches.
 ENCODER_UNITS = 1.0
-""",
-}
+"""
 
 _COUNTS = """
 # The robot uses counts of some encoders: it does not call setDistancePerPulse().
 COUNTS_PER_TURN = 360  # of a wheel
-{diameter}ENCODER_COUNTS = COUNTS_PER_TURN / (math.pi * WHEEL_DIAMETER.m_as("{unit}"))
+WHEEL_DIAMETER = 6 * units.inch
+ENCODER_COUNTS = COUNTS_PER_TURN / (math.pi * WHEEL_DIAMETER.m_as("meter"))
 """
 
 _ENGINE = '''
@@ -82,10 +63,8 @@ def physics_text(found: Survey, layout: DrivetrainLayout) -> str:
     """
     text = ModuleText()
     drivetrain = layout.drivetrain
-    if isinstance(drivetrain, Tank):
-        _tank(text, drivetrain, layout, found.gyros)
-    elif isinstance(drivetrain, Mecanum):
-        _mecanum(text, drivetrain, layout, found.gyros)
+    if drivetrain is not None:
+        _drivetrain(text, drivetrain, layout, found.gyros)
     elif layout.swerve is not None and layout.swerve.modules:
         can_text.add_swerve(text, layout.swerve.modules)
         _gyros(text, found.gyros, "math.degrees(speeds.omega * tm_diff)")
@@ -151,77 +130,31 @@ def _indented(lines: list[str]) -> str:
 # -- drivetrains -------------------------------------------------------------------------------------------------
 
 
-def _tank(text: ModuleText, tank: Tank, layout: DrivetrainLayout, gyros: list[Gyro]) -> None:
-    text.imports |= {"from pyfrc.physics import motor_cfgs, tankmodel", "from pyfrc.physics.units import units"}
-    per_side = max(_count(tank.left.motors), _count(tank.right.motors))
-    text.numbers.append(_TANK_NUMBERS.format(per_side=per_side, config=can_text.motor_config(tank.motors)))
-    text.numbers.append(can_text.wheel_numbers(tank.motors, in_units=True))
-    outputs = {}
-    wheels: list[tuple[str, str, int]] = []
-    for side, group in (("left", tank.left), ("right", tank.right)):
-        text.setup += ["", f"# {side.capitalize()}: {listed(group.motors)}"]
-        if len(group.motors) > 1:
-            text.setup[-1] += ". Geared together, so one is enough."
-        output, names = can_text.wheel_motors(text, group.motors, f"{side}_motor")
-        outputs[side] = _signed(group.forward if side == "left" else -group.forward, output)
-        wheels += [(side, name, group.forward) for name in names]
-    text.setup += [
-        "",
-        "self.drivetrain = tankmodel.TankModel.theory(",
-        "    MOTOR,",
-        "    robot_mass=MASS,",
-        "    gearing=GEARING,",
-        "    nmotors=2 * MOTORS_PER_SIDE,  # theory() needs all of them to accelerate as the robot does",
-        "    x_wheelbase=TRACK_WIDTH,",
-        "    robot_width=ROBOT_WIDTH,",
-        "    robot_length=ROBOT_LENGTH,",
-        "    wheel_diameter=WHEEL_DIAMETER,",
-        ")",
-        "# With this moment of inertia the turn equals the encoders' difference: the wheels never slip.",
-        "self.drivetrain.inertia = MASS * TRACK_WIDTH**2 / 2",
-    ]
-    encoders = _wheel_encoders(text, layout)
-    text.update += [
-        *_about_signs("In the model, the left motor is forward at 1 and the right one at -1", *outputs.values()),
-        f"left = {outputs['left']}",
-        f"right = {outputs['right']}",
-        "moved = self.drivetrain.calculate(left, right, tm_diff)",
-        "self.physics_controller.move_robot(moved)",
-    ]
-    if encoders:
-        text.update += ["", "# In feet."]
-    for side, name in encoders:
-        model = f"self.drivetrain.{side[0]}"
-        text.update.append(f"self.{name}.turn_to({model}_position, {model}_velocity)")
-    if wheels:
-        text.update += ["", 'wheel = math.pi * WHEEL_DIAMETER.m_as("foot")  # from feet to turns of the wheels']
-    for side, name, sign in wheels:
-        turns, speed = (_signed(sign, f"self.drivetrain.{side[0]}_{what} / wheel") for what in ("position", "velocity"))
-        text.update.append(f"self.{name}.measure({turns}, {speed}, tm_diff)")
-    _gyros(text, gyros, "math.degrees(moved.rotation().radians())")
-
-
-def _count(motors: list[Motor]) -> int:
-    return sum(motor.count if isinstance(motor, CanMotor) else 1 for motor in motors)
-
-
-def _mecanum(text: ModuleText, mecanum: Mecanum, layout: DrivetrainLayout, gyros: list[Gyro]) -> None:
+def _drivetrain(text: ModuleText, drivetrain: Tank | Mecanum, layout: DrivetrainLayout, gyros: list[Gyro]) -> None:
     text.imports |= {"from pyfrc.physics import drivetrains", "from pyfrc.physics.units import units"}
-    text.numbers += [_MECANUM_NUMBERS, can_text.wheel_numbers(mecanum.motors, in_units=False)]
+    is_tank = isinstance(drivetrain, Tank)
+    width = f"{layout.track_width:.4g} * units.metre" if layout.track_width else "22 * units.inch"
+    wheels = {"left": drivetrain.left, "right": drivetrain.right} if isinstance(drivetrain, Tank) else drivetrain.wheels
+    text.numbers += [
+        _DRIVETRAIN_NUMBERS.format(track_width=width),
+        "" if is_tank else _WHEELBASE,
+        can_text.wheel_numbers(drivetrain.motors),
+    ]
     text.setup.append("")
-    if any(len(wheel.motors) > 1 for wheel in mecanum.wheels.values()):
+    if any(len(group.motors) > 1 for group in wheels.values()):
         text.setup.append("# Of motors that are geared together, one is enough.")
     values = []
     on_can: list[tuple[str, str, int]] = []
-    for corner in CORNERS:
-        wheel = mecanum.wheels[corner]
-        output, controllers = can_text.wheel_motors(text, wheel.motors, f"{corner}_motor")
-        on_can += [(corner, name, wheel.forward) for name in controllers]
-        names = [str(motor.name) for motor in wheel.motors if motor.name]
+    for wheel in ("left", "right") if is_tank else CORNERS:
+        group = wheels[wheel]
+        output, controllers = can_text.wheel_motors(text, group.motors, f"{wheel}_motor")
+        on_can += [(wheel, name, group.forward) for name in controllers]
+        names = [str(motor.name) for motor in group.motors if motor.name]
         if names:
             text.setup[-1] += f"  # {', '.join(names)}"
-        values.append(_signed(wheel.forward if corner.endswith("left") else -wheel.forward, output))
-    text.setup += ["", "self.drivetrain = drivetrains.MecanumDrivetrain(TRACK_WIDTH, WHEELBASE, TOP_SPEED)"]
+        values.append(_signed(group.forward if wheel.endswith("left") else -group.forward, output))
+    model = "TwoMotorDrivetrain(TRACK_WIDTH" if is_tank else "MecanumDrivetrain(TRACK_WIDTH, WHEELBASE"
+    text.setup += ["", f"self.drivetrain = drivetrains.{model}, TOP_SPEED)"]
     encoders = _wheel_encoders(text, layout)
     text.update += [
         *_about_signs("In the drivetrain, left motors are forward at 1 and right ones at -1", *values),
@@ -232,25 +165,25 @@ def _mecanum(text: ModuleText, mecanum: Mecanum, layout: DrivetrainLayout, gyros
     ]
     if encoders or on_can:
         text.update += ["", "wheels = self.drivetrain.wheelSpeeds  # in metres per second"]
-    for corner, name, sign in on_can:
+    for wheel, name, sign in on_can:
         turns = text.name(f"{name}_turns")
         text.setup.append(f"self.{turns} = 0.0")
-        speed = _signed(sign, f"{_wheel_speed(corner)} / WHEEL_CIRCUMFERENCE")
+        speed = _signed(sign, f"{_wheel_speed(wheel)} / WHEEL_CIRCUMFERENCE")
         text.update += [
             f"self.{turns} += {speed} * tm_diff",
             f"self.{name}.measure(self.{turns}, {speed}, tm_diff)",
         ]
-    for corner, name in encoders:
+    for wheel, name in encoders:
         distance = text.name(f"{name}_distance")
         text.setup.append(f"self.{distance} = 0.0")
-        speed = _wheel_speed(corner)
+        speed = _wheel_speed(wheel)
         text.update += [f"self.{distance} += {speed} * tm_diff", f"self.{name}.turn_to(self.{distance}, {speed})"]
     _gyros(text, gyros, "math.degrees(speeds.omega * tm_diff)")
 
 
-def _wheel_speed(corner: str) -> str:
-    end, side = corner.split("_")
-    return f"wheels.{end}{side.capitalize()}"
+def _wheel_speed(wheel: str) -> str:
+    first, *rest = wheel.split("_")
+    return "wheels." + first + "".join(map(str.capitalize, rest))
 
 
 def _wheel_encoders(text: ModuleText, layout: DrivetrainLayout) -> list[tuple[str, str]]:
@@ -258,12 +191,10 @@ def _wheel_encoders(text: ModuleText, layout: DrivetrainLayout) -> list[tuple[st
     found = [(wheel, encoder) for wheel, encoders in layout.encoders.items() for encoder in encoders]
     if not found:
         return []
-    unit = "foot" if isinstance(layout.drivetrain, Tank) else "metre"  # the unit of the drivetrain's model
     if any(not encoder.counts for _, encoder in found):
-        text.numbers.append(_UNITS[unit])
+        text.numbers.append(_UNITS)
     if any(encoder.counts for _, encoder in found):
-        diameter = "" if unit == "foot" else "WHEEL_DIAMETER = 6 * units.inch\n"  # otherwise it is defined above
-        text.numbers.append(_COUNTS.format(diameter=diameter, unit={"foot": "foot", "metre": "meter"}[unit]))
+        text.numbers.append(_COUNTS)
     text.setup.append("")
     return [
         (wheel, text.encoder(encoder, f"{wheel}_encoder", "ENCODER_COUNTS" if encoder.counts else "ENCODER_UNITS"))
@@ -324,9 +255,11 @@ def _mechanism(text: ModuleText, motor: Motor, encoder: Encoder) -> None:
     ]
     name = text.name("_".join(purpose) or "mechanism")
     number = name.upper()
-    speed, unit = ("720.0", "counts") if encoder.counts else ("1.0", "encoder units")
+    unit = "counts" if encoder.counts else "the units of its setDistancePerPulse()"
     text.numbers.append(
-        f"\n{number}_SPEED = {speed}  # at full power, in {unit} per second\n"
+        f"\n# TODO: how fast does {motor} turn {encoder}?\n"
+        f"# At full power, in {unit} per second. It stands still at 0.\n"
+        f"{number}_SPEED = 0.0\n"
         f"{number}_MIN, {number}_MAX = None, None  # its end stops; None if there are none\n"
     )
     text.setup += ["", f"# {motor} turns {encoder}"]

@@ -83,7 +83,7 @@ def summary(layout: DrivetrainLayout, found: Survey) -> list[str]:
     for wheel, encoders in layout.encoders.items():
         lines += [f"  {wheel.replace('_', ' ')} encoder: {encoder}" for encoder in encoders]
     lines += [f"gyro: {gyro}" for gyro in found.gyros]
-    lines += [f"{motor} with {encoder}" for motor, encoder in layout.mechanisms]
+    lines += [f"{motor} with {encoder}, which you need to complete" for motor, encoder in layout.mechanisms]
     lines += [f"mechanism: {motor}" for motor in layout.can_mechanisms]
     return lines
 

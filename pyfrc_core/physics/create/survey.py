@@ -24,7 +24,7 @@ from ...runtime.patches import patches
 from ...runtime.robot import RobotRun
 from .can_devices import CanDevices, CanMotor, find_can_devices
 from .motors import Motor
-from .names import Name, NamedDevice, Place, find_devices, find_objects, one_line
+from .names import Name, NamedDevice, Place, find_devices, find_objects, find_track_width, one_line
 from .sticks import Responses, try_sticks
 from .swerve_modules import SwerveSurvey, find_swerve
 
@@ -94,6 +94,8 @@ class Survey:
     swerve: SwerveSurvey = field(default_factory=lambda: SwerveSurvey([], []))
     #: Absolute encoders at a digital input, by name and channel.
     duty_cycle: list[tuple[Name, int]] = field(default_factory=list)
+    #: From the left wheels to the right ones, in metres; None if the robot's code does not say it.
+    track_width: float | None = None
     #: Devices without known physics, as text.
     others: list[str] = field(default_factory=list)
     #: The names of the channels of each kind, for ``sim/config.json``.
@@ -127,6 +129,7 @@ def survey(project: Project, log: CrashLog) -> Survey:
             objects = find_objects(run.robot, project.files)
             can = find_can_devices(objects)
             found = list_devices(run.hal_data, find_devices(objects), can)
+            found.track_width = find_track_width(objects)
             run.clock.before_packet.append(can.update)
             try:
                 found.swerve = find_swerve(run, can.motors, objects)

@@ -1,15 +1,17 @@
-"""Run a project's tests with a proposed ``physics.py``, in a copy of the project."""
+"""Run a project's tests with a proposed ``physics.py`` and without, in a copy of the project."""
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from ...project import Project
+from ...project import NO_PHYSICS, Project
 from ...project.environments import is_environment
 
 #: Directories that tests do not need.
@@ -18,12 +20,24 @@ _LEFT_OUT = {".git", ".hg", ".pyfrc", "__pycache__", "node_modules"}
 _FAILURE = re.compile(r"(?:FAILED|ERROR) (.+)")
 
 
-def failures_with(project: Project, texts: dict[Path, str]) -> list[str] | None:
-    """Return the tests that fail with these files, a line for each; None if the project has no tests.
+@dataclass(frozen=True)
+class Failures:
+    """The tests that fail with the proposed files, a line for each.
+
+    :param new: those that pass without the proposed ``physics.py``, or cannot run without one
+    :param old: those that fail without it, too
+    """
+
+    new: list[str]
+    old: list[str]
+
+
+def failures_with(project: Project, texts: dict[Path, str]) -> Failures | None:
+    """Return the tests that fail with these files; None if the project has no tests.
 
     The project itself is not changed.
 
-    :param texts: the contents of files of the project
+    :param texts: the contents of files of the project, ``physics.py`` among them
     """
     tests = project.find_tests()
     if tests is None:
@@ -40,18 +54,35 @@ def failures_with(project: Project, texts: dict[Path, str]) -> list[str] | None:
             target = copy / file.relative_to(base)
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(text, encoding="utf-8")
-        command = [sys.executable, "-m", "pyfrc", "test", "--main", project.main_file.name]
-        if project.class_name:
-            command += ["--robot-class", project.class_name]
-        done = subprocess.run(
-            [*command, "--", "-q", "-p", "no:cacheprovider"],
-            cwd=copy / project.root.name,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            encoding="utf-8",
-            errors="replace",
-            check=False,
-        )
+        failed = _failures(project, copy / project.root.name)
+        if not failed:
+            return Failures([], [])
+        (copy / project.physics_file.relative_to(base)).unlink()
+        before = _failures(project, copy / project.root.name)
+    old = {_test(line) for line in before if NO_PHYSICS not in line}
+    return Failures(
+        [line for line in failed if _test(line) not in old], [line for line in failed if _test(line) in old]
+    )
+
+
+def _test(line: str) -> str:
+    return line.partition(" - ")[0]
+
+
+def _failures(project: Project, root: Path) -> list[str]:
+    command = [sys.executable, "-m", "pyfrc", "test", "--main", project.main_file.name]
+    if project.class_name:
+        command += ["--robot-class", project.class_name]
+    done = subprocess.run(
+        [*command, "--", "-q", "-p", "no:cacheprovider"],
+        cwd=root,
+        env={**os.environ, "COLUMNS": "10000"},  # otherwise pytest cuts the lines
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        encoding="utf-8",
+        errors="replace",
+        check=False,
+    )
     if done.returncode == 0:
         return []
     lines = (done.stdout + done.stderr).splitlines()
