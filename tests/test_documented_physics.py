@@ -7,6 +7,8 @@ The misprints: a `PhysicsEngine` that uses `l_motor` without getting it (its TOD
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 ROBOT = """
@@ -171,3 +173,23 @@ def test_a_documented_example_runs(example: str, make_project) -> None:
     )
     result = project.run("test", "--", "-W", "error::DeprecationWarning:physics")
     assert result.code == 0, result.output
+
+
+@pytest.mark.parametrize("command", [("test", "--builtin"), ("sim", "--ui", "none", "--mode", "teleop")])
+@pytest.mark.parametrize("where", ["at the top", "in a method"])
+def test_the_successor_of_networktables_is_named(make_project, command: tuple[str, ...], where: str) -> None:
+    at_top = where == "at the top"
+    physics = f"""
+        {"import networktables" if at_top else ""}
+
+        class PhysicsEngine:
+            def __init__(self, physics_controller):
+                pass
+
+            def update_sim(self, hal_data, now, tm_diff):
+                {"pass" if at_top else "import networktables"}
+        """
+    project = make_project({"robot.py": ROBOT, "physics.py": physics})
+    result = project.run(*command)
+    assert result.code == 1
+    assert re.search(r"physics\.py:\d: there is no module networktables\n  Use ntcore instead\.", result.output)

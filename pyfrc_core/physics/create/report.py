@@ -54,7 +54,8 @@ def notes(found: Survey, layout: DrivetrainLayout) -> list[str]:
     sentences = list(layout.assumptions)
     if found.problem:
         sentences.append(f"The robot's joysticks could not be tested: {found.problem.splitlines()[0]}")
-    return sentences + advice(found, layout)
+    questions = [f"TODO: {sentence}" for sentence in _advice_for_driving(layout)]
+    return [*sentences, *questions, *_not_simulated(found, layout)]
 
 
 def summary(layout: DrivetrainLayout, found: Survey) -> list[str]:
