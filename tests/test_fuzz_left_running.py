@@ -49,7 +49,10 @@ def test_a_motor_that_autonomous_leaves_running_is_found(make_project: Any) -> N
         "no code has set it since"
     )
     assert f"{message}\n" in result.stdout
-    assert result.stdout.count("still runs at") == 1
+    # It is named when it is found, and once more with its script.
+    assert (
+        result.stdout.count("\nrobot.py:12: the motor still runs at") == result.stdout.count("found robot.py:12: ") == 1
+    )
     (file,) = (project.path / "tests/fuzz").iterdir()
     assert file.name == "motors_left_running-robot-autonomousinit.jsonl"
     writes = [value for step in load_script(file).steps for target, value in step.writes.items() if target == "mode"]

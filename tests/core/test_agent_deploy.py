@@ -134,9 +134,14 @@ def test_so_many_releases_are_kept(robot: AgentDisk) -> None:
     assert sorted(each.name for each in robot.places.own.iterdir()) == ["lock", "releases"]
 
 
+def note_run(records: Releases, number: int, ended: bool = False) -> None:
+    """Note that a watch has seen a release run."""
+    records.update_record(number, lambda record: {**record, "ran": True, "ended": ended})
+
+
 def test_the_newest_release_that_was_seen_to_run_is_kept(robot: AgentDisk) -> None:
     robot.deploy({"robot.py": "# 1\n"}, "# 1\n")
-    Releases(robot.places, None).record_start(1, ran=True, ended=False)  # type: ignore[arg-type]
+    note_run(Releases(robot.places, None), 1)  # type: ignore[arg-type]
     for number in range(2, 7):
         (*_, done) = robot.deploy({"robot.py": f"# {number}\n"}, f"# {number}\n")
     assert done["done"]["fallback"] == 1
@@ -368,7 +373,8 @@ def test_facts(robot: AgentDisk) -> None:
     assert found["command"].endswith("--main /home/lvuser/py/robot.py run\n")
     assert found["other_languages"] == []
     assert found["free"] > 0
-    about = {"main": "robot.py", "debug": False, "deploy": {"by": "Ada"}, "taken": False, "ran": False, "ended": False}
+    about = {"main": "robot.py", "debug": False, "deploy": {"by": "Ada"}, "taken": False}
+    about |= {"ran": False, "ended": False, "damaged": False}
     assert found["releases"] == [
         {"release": 1, "files": 3, "from": None, **about},
         {"release": 2, "files": 3, "from": 1, **about},
@@ -421,11 +427,13 @@ def test_a_rollback_goes_to_what_was_seen_to_run(robot: AgentDisk) -> None:
         robot.deploy({"robot.py": f"# {number}\n"}, f"# {number}\n")
     records = Releases(robot.places, None)  # type: ignore[arg-type]
     assert [records.fallback(number) for number in (None, 1, 2, 3)] == [3, None, 1, 2]
-    records.record_start(1, ran=True, ended=False)
+    note_run(records, 1)
     assert [records.fallback(number) for number in (None, 1, 2, 3)] == [1, None, 1, 1]
-    records.record_start(2, ran=True, ended=True)
+    note_run(records, 2, ended=True)
+    assert records.fallback(3) == 1, "the other one has ended"
+    note_run(records, 2)
     assert records.fallback(3) == 2
-    records.record_start(9, ran=True, ended=True)
+    note_run(records, 9)
     assert records.record(9) == {}
 
 
@@ -547,7 +555,7 @@ def test_going_back_keeps_both_programs_files(robot: AgentDisk) -> None:
 
 def test_in_place_overwrites_and_deletes_nothing(robot: AgentDisk) -> None:
     robot.deploy(ONE, *ONE.values())
-    Releases(robot.places, None).record_start(1, ran=True, ended=False)  # type: ignore[arg-type]
+    note_run(Releases(robot.places, None), 1)  # type: ignore[arg-type]
     *_, done = robot.deploy({"robot.py": "# two\n", "sub/new.py": "# new\n"}, "# two\n", "# new\n", in_place=True)
     assert done["done"] == {
         "release": 1, "previous": 1, "taken": None, "unchanged": False, "files": 2, "bytes": 12, "fallback": None

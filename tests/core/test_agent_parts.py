@@ -440,19 +440,29 @@ def test_a_watch_ends_when_the_laptop_wants_something_else(tmp_path: Path, monke
         assert ours.watch(Wire(source, io.BytesIO()), 60, 60)["verdict"] == "starting"
 
 
-def test_what_reports_its_start(tmp_path: Path) -> None:
-    (tmp_path / "robot.py").write_text("import wpilib\n")
-    assert program._reports_start(tmp_path / "robot.py")
-    assert program._reports_start(tmp_path / "none.py")
-    (tmp_path / "robot.py").write_text("import wpilib  # no longer a magicbot\n")
-    assert program._reports_start(tmp_path / "robot.py")
-    assert program._reports_start(None)
-    (tmp_path / "robot.py").write_text("import magicbot\n")
-    assert not program._reports_start(tmp_path / "robot.py")
-    (tmp_path / "robot.py").write_text("from bases.ours import Base\n")
+@pytest.mark.parametrize(
+    ("text", "reports"),
+    [
+        ("import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n", True),
+        ("class MyRobot(wpilib.TimedRobot):  # no longer a magicbot\n", True),
+        ("class MyRobot(commands2.TimedCommandRobot):\n", True),
+        ("import wpilib\n", False),
+        ("import magicbot\n\nclass MyRobot(wpilib.TimedRobot):\n", False),
+        ("class MyRobot(wpilib.TimedRobot):\n    def startCompetition(self):\n", False),
+    ],
+)
+def test_what_reports_its_start(tmp_path: Path, text: str, reports: bool) -> None:
+    (tmp_path / "robot.py").write_text(text)
+    assert program._reports_start(tmp_path / "robot.py") is reports
+    # The class may be in any module of the program.
+    (tmp_path / "robot.py").write_text("from bases.ours import MyRobot\n")
     (tmp_path / "bases").mkdir()
-    (tmp_path / "bases/ours.py").write_text("import wpilib\nfrom magicbot import MagicRobot\n")
-    assert not program._reports_start(tmp_path / "robot.py")
+    (tmp_path / "bases/ours.py").write_text(text)
+    assert program._reports_start(tmp_path / "robot.py") is reports
+
+
+def test_a_program_whose_main_file_is_unknown_reports_its_start() -> None:
+    assert program._reports_start(None)
 
 
 def output_of(*texts: str, before: str = "") -> list[str]:

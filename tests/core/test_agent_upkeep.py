@@ -11,7 +11,6 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
-from multiprocessing.connection import Listener
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +65,9 @@ def verdicts(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     monkeypatch.setattr(
         Program,
         "watch",
-        lambda self, wire, seconds, unheard: watched.append((seconds, unheard)) or {"verdict": found.pop(0)},
+        lambda self, wire, seconds, unheard: (
+            watched.append((seconds, unheard)) or {"verdict": found.pop(0), "age": 3.0}
+        ),
     )
     restarted.clear()
     watched.clear()
@@ -83,13 +84,13 @@ def test_a_restart_starts_the_current_release_and_its_watch_is_recorded(robot: A
     request = {"op": "deploy", "files": manifest(ONE), "main": "robot.py"}
     *_, restart, seen = robot.ask(request, contents(*ONE.values()), {"op": "restart"}, watch)
     assert restart == {"done": {"survived": False}}
-    assert seen == {"done": {"verdict": "ended"}}
+    assert seen == {"done": {"verdict": "ended", "age": 3.0}}
     assert restarted == [robot.places.code / "robot.py"]
     assert (record(robot, 1)["ran"], record(robot, 1)["ended"]) == (False, True)
     assert "carried" not in record(robot, 1)
     assert robot.ask({"op": "restart"}, {"op": "watch", "seconds": 5}) == [
         {"done": {"survived": True}},
-        {"done": {"verdict": "running"}},
+        {"done": {"verdict": "running", "age": 3.0}},
     ]
     assert (record(robot, 1)["ran"], record(robot, 1)["ended"]) == (True, False)
     robot.ask({"op": "restart"}, watch)
@@ -401,24 +402,25 @@ def test_compiled_forms_go_along(tmp_path: Path) -> None:
 
 def test_a_virtual_robots_program_is_asked_for_and_restarted() -> None:
     asked: list[str] = []
-    key = b"key".hex()
-    with Listener(("127.0.0.1", 0), authkey=bytes.fromhex(key)) as listener:
+    with socket.create_server(("127.0.0.1", 0)) as listener:
 
         def respond() -> None:
             for _ in range(5):
-                with listener.accept() as connection:
-                    asked.append(connection.recv())
-                    connection.send([3, 4])
+                connection, _ = listener.accept()
+                with connection, connection.makefile("rw") as stream:
+                    key, request = stream.readline().split()
+                    asked.append(f"{key}: {request}")
+                    stream.write("[3, 4]")
 
         thread = threading.Thread(target=respond, daemon=True)
         thread.start()
-        virtual = VirtualRobotClient("/robot", listener.address[1], key, 1)
+        virtual = VirtualRobotClient("/robot", listener.getsockname()[1], "key", 1)
         assert virtual.processes() == {3, 4}
         assert (virtual.is_running(3), virtual.is_running(5)) == (True, False)
         assert virtual.stop(start=True) is False
         assert virtual.stop(start=False) is False
         thread.join(60)
-    assert asked == ["processes"] * 3 + ["restart", "stop"]
+    assert asked == ["key: processes"] * 3 + ["key: restart", "key: stop"]
     assert virtual.has_kill_script()
     assert virtual.other_languages() == []
     assert virtual.serves_network_tables(3) is None
