@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from io import TextIOWrapper
@@ -50,19 +51,26 @@ def _lend(name: str) -> TextIO:
         descriptor = os.dup(stream.fileno())
     except (OSError, ValueError):  # not a file
         return stream
-    copy = open(  # noqa: SIM115, PTH123 - left open: handlers of `logging` may have kept it
-        descriptor,
-        "w",
-        buffering=1 if stream.line_buffering else -1,
+    # pytest's is written through, since its file is read at any time: nothing may wait when the process dies.
+    file = open(descriptor, "wb", 0 if stream.write_through else -1, closefd=False)  # noqa: SIM115
+    copy = TextIOWrapper(
+        file,
         encoding=stream.encoding,
         errors=stream.errors,
+        line_buffering=stream.line_buffering,
+        write_through=stream.write_through,
     )
-    # pytest's, of which it reads the file at any time
-    copy.reconfigure(write_through=stream.write_through)
+    # Handlers of `logging` may keep it: its descriptor is closed when nobody has it any more.
+    weakref.finalize(copy, _close, descriptor).atexit = False
     if stream is getattr(sys, f"__{name}__"):
         setattr(sys, f"__{name}__", copy)
     setattr(sys, name, copy)
     return copy
+
+
+def _close(descriptor: int) -> None:
+    with suppress(OSError):
+        os.close(descriptor)
 
 
 def print_error(text: str) -> None:
