@@ -284,7 +284,7 @@ class PyFrcPlugin(WatchedTests):
     @pytest.hookimpl(wrapper=True, trylast=True)
     def pytest_runtest_call(self) -> Generator[None, None, None]:
         with lent_streams():  # pytest has put its own in place again after the setup
-            return (yield)
+            return (yield from super().pytest_runtest_call())
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(
