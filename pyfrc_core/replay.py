@@ -57,7 +57,6 @@ class ReplayResult:
     starts: int = 1
 
 
-@lent_streams()
 def replay(project: Project, file: Path, *, until: float | None = None, trace: Path | None = None) -> ReplayResult:
     """Run the robot with the inputs of the script in `file`.
 
@@ -67,13 +66,21 @@ def replay(project: Project, file: Path, *, until: float | None = None, trace: P
     :raises InvariantError: when a rule cannot be called
     :raises RobotCodeError: when the robot's code, or a file with rules, cannot be imported
     """
-    from .fuzz.oracle import oracle_if_fuzzed
-
     script = load_inputs(file)
     if len(boots_of(script)) > 1:
         return _replay_boots(project, script, until, trace)
     if script.story and (ended := _process_failure(project, script)) is not None:
         return ReplayResult(script.end_us / 1_000_000, RobotCodeError(ended), "", None, None)
+    return _replay_here(project, script, file, until, trace)
+
+
+@lent_streams()  # not around other processes, which may have to be quiet
+def _replay_here(
+    project: Project, script: InputScript, file: Path, until: float | None, trace: Path | None
+) -> ReplayResult:
+    """Run the robot in this process."""
+    from .fuzz.oracle import oracle_if_fuzzed
+
     patches.install(project.files)
     robot_class = load_robot(project)
     rules = load_invariants(project)

@@ -100,3 +100,36 @@ def test_other_commands(make_project: MakeProject, what: str, command: list[str]
     assert result.code == 0, result.output
     assert "Traceback" not in result.output
     assert result.stdout.endswith(last)
+
+
+CAPTURED = """
+    import pytest
+
+    @pytest.fixture
+    def started(control):
+        with control.run_robot():
+            yield control
+
+    @pytest.mark.parametrize("name", ["capfd", "capsys"])
+    def test_before(request, name, control):
+        captured = request.getfixturevalue(name)
+        with control.run_robot():
+            control.step_timing(seconds=0.1, autonomous=False, enabled=True)
+            assert "printed in teleop\\n" in captured.readouterr().out
+
+    @pytest.mark.parametrize("name", ["capfd", "capsys"])
+    def test_after(request, name, started):
+        captured = request.getfixturevalue(name)
+        started.step_timing(seconds=0.1, autonomous=False, enabled=True)
+        assert "printed in teleop\\n" in captured.readouterr().out
+"""
+
+
+@pytest.mark.parametrize("options", [[], ["--no-isolation"]])
+def test_what_a_robot_prints_is_in_the_fixtures_of_pytest(make_project: MakeProject, options: list[str]) -> None:
+    robot = "import wpilib\n\nclass Robot(wpilib.TimedRobot):\n    def teleopInit(self):\n"
+    robot += "        print('printed in teleop')\n"
+    project = make_project({"robot.py": robot, "tests/test_captured.py": CAPTURED})
+    result = project.run("test", *options)
+    assert result.code == 0, result.output
+    assert "4 passed" in result.stdout
