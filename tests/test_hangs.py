@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import sys
 
@@ -243,7 +244,13 @@ def test_code_that_waits_for_ever_is_named_after_3_s_and_fails_after_10(make_pro
         place = project.place(file, line)
         assert blocks[test].startswith(f"{place}: {text}"), result.output
         name = test.rpartition(" ")[2]
-        assert f"{place}: no progress for 3 s in tests/test_it.py::{name} (robot time stands at" in result.output
+        told = re.search(
+            rf"^{place}: no progress for (\d+) s in tests/test_it.py::{name} \(robot time stands at",
+            result.output,
+            re.M,
+        )
+        assert told is not None, result.output
+        assert int(told[1]) >= 3  # a busy machine prints it later
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for one process")
