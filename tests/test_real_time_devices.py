@@ -289,12 +289,14 @@ MEETING = {
             raise AssertionError(f"{other} is not there")
 
 
-        def test_one(robot):
-            meet("one", "other")
+        def test_one(robot, control):
+            with control.run_robot():
+                meet("one", "other")
 
 
-        def test_other(robot):
-            meet("other", "one")
+        def test_other(robot, control):
+            with control.run_robot():
+                meet("other", "one")
         """
 }
 

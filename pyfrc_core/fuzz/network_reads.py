@@ -16,6 +16,7 @@ import ntcore
 import wpilib
 
 from ..compat.cpython_private import get_frame
+from ..compat.wpilib_private import SIMULATION_INIT, SIMULATION_PERIODIC
 from ..project.robot_files import RobotFiles
 from ..runtime.patch_table import Patch
 from .prepared_patches import PreparedPatches
@@ -41,7 +42,7 @@ _PREFERENCE_TYPES = {**_TYPES, "Int": "int", "Long": "int"}
 #: The library file that reads on behalf of robot code: MagicBot's tunables.
 _TUNABLES = "magic_tunable.py"
 #: The functions and the file that run in simulations only.
-_SIMULATING = ("simulationInit", "_simulationInit", "simulationPeriodic", "_simulationPeriodic")
+_SIMULATING = ("simulationInit", SIMULATION_INIT.name, "simulationPeriodic", SIMULATION_PERIODIC.name)
 _PHYSICS = "physics.py"
 
 

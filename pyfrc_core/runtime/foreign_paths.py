@@ -46,10 +46,13 @@ def find_foreign_paths(project: Project) -> list[CodeWarning]:
 
 
 def _in_file(file: Path, project: Project) -> Iterator[CodeWarning]:
-    source = file.read_bytes()
-    if not _MAY_OPEN.search(source):
+    try:
+        source = file.read_bytes()
+        if not _MAY_OPEN.search(source):
+            return
+        tree = ast.parse(source)
+    except (OSError, SyntaxError, ValueError):  # it was changed since it was imported
         return
-    tree = ast.parse(source)
     assigned = {
         target.id: node.value
         for node in tree.body
