@@ -88,5 +88,6 @@ def test_the_rest_of_a_packet_counts_and_a_long_one_leaves_nothing_to_catch_up_o
 
 def test_other_robots_wait_for_nothing(run: RobotRun, monkeypatch: pytest.MonkeyPatch) -> None:
     """As without the library."""
-    monkeypatch.delitem(sys.modules, "phoenix6", raising=False)
+    for name in ("phoenix6", "phoenix6.hardware"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
     assert slept(run, 100) == []
