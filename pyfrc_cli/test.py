@@ -131,7 +131,5 @@ def command(
             record_directory=record,
             only_changed=changed,
         )
-        if changed and options.isolation == "none":
-            raise click.UsageError("--changed needs a process for each test: it cannot be used without isolation.")
         status = run_tests(project, options, builtin=builtin, pytest_args=[*pytest_verbosity, *pytest_args])
     sys.exit(status or measured.status)

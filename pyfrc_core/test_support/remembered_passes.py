@@ -1,8 +1,9 @@
-"""The plugins that remember which tests have passed, and with ``--changed`` run only what a change can have reached."""
+"""Remembers which tests have passed; with ``--changed``, only tests run that a change can have reached."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,40 +11,15 @@ import pytest
 from ..compat.real_time_devices import real_time_libraries
 from ..passes.contents import loaded_from_elsewhere
 from ..passes.memory import Passes
-from ..passes.ran_functions import Place, RanFunctions
 from ..project import Project
-from ..project.loaded_modules import loaded_modules
 from ..wording import counted
 from .options import TestOptions
 
-#: The names under which pytest registers the plugins.
-RAN, PASSES = "pyfrc.ran", "pyfrc.passes"
-
-#: What a test's process has run: functions, the project's modules, and files from elsewhere.
-Ran = tuple[frozenset[Place], frozenset[str], frozenset[str]]
+#: The name under which pytest registers the plugin.
+PASSES = "pyfrc.passes"
 
 #: Arguments of pytest that change neither which tests run nor how they end.
 _HARMLESS = ("-v", "-q", "-s", "-x", "-r", "--tb", "--color", "--durations", "--junit")
-
-
-class RanPlugin:
-    """Observes what this process runs, and what it inherits from the process that it is forked from."""
-
-    __name__ = RAN
-
-    def __init__(self, project: Project) -> None:
-        self._project = project
-        self._functions = RanFunctions(project.files)
-        self._functions.start()
-
-    def ran_here(self) -> Ran:
-        """Return what has run in this process until now."""
-        files = (str(module.__file__) for module in loaded_modules.look())
-        modules = frozenset(filter(self._project.files.is_project_file, files))
-        return frozenset(self._functions.places), modules, frozenset(loaded_from_elsewhere(self._project))
-
-    def pytest_collection_finish(self) -> None:
-        loaded_modules.look()  # not in each fork again
 
 
 class RememberedPasses:
@@ -62,14 +38,12 @@ class RememberedPasses:
         self._passes = Passes(project, options.seed, builtin, written)
         self._runs_all = all(argument.startswith(_HARMLESS) for argument in args)
         self._valid = 0
-        self._ran: dict[str, Ran] = {}
+        #: The file of each test.
+        self._files: dict[str, Path] = {}
+        self._ran: set[str] = set()
         self._not_passed: set[str] = set()
         #: Why nothing of this run is remembered.
         self._why_not = ""
-
-    def record(self, item: pytest.Item, ran: Ran) -> None:
-        """Note what a test's process has run; the pass is kept if the test passes."""
-        self._ran[item.nodeid] = ran
 
     def record_real_time(self, libraries: Sequence[str]) -> None:
         """Note that a test's process has libraries that simulate devices in real time: its pass may be chance."""
@@ -81,8 +55,9 @@ class RememberedPasses:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        self._files = {item.nodeid: item.path for item in items}
         if self._only_changed:
-            left = [item for item in items if not self._passes.is_valid(item.nodeid)]
+            left = [item for item in items if not self._passes.is_valid(item.nodeid, item.path)]
             self._valid = len(items) - len(left)
             items[:] = left
 
@@ -90,6 +65,7 @@ class RememberedPasses:
         self._runs_all = False
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self._ran.add(report.nodeid)
         if report.outcome != "passed":
             self._not_passed.add(report.nodeid)
 
@@ -100,14 +76,14 @@ class RememberedPasses:
             self.record_real_time(libraries)
         for test in self._not_passed:
             self._passes.forget(test)
-        for test, ran in self._ran.items():
-            if test not in self._not_passed and not self._why_not:
-                self._passes.record(test, *ran)
+        for test in self._ran - self._not_passed:
+            if test in self._files and not self._why_not:
+                self._passes.record(test, self._files[test])
         if exitstatus != pytest.ExitCode.OK or self._why_not:
-            self._passes.set_green(None)
+            self._passes.set_green(False)
         elif self._runs_all:
-            self._passes.set_green(loaded_from_elsewhere(self._project))
-        if changed := self._passes.save():
+            self._passes.set_green(True)
+        if changed := self._passes.save(loaded_from_elsewhere(self._project)):
             self._why_not = f"{changed[0]} changed during the run"
 
     def pytest_terminal_summary(self, terminalreporter: Any) -> None:

@@ -17,7 +17,7 @@ from ..runtime.fork_obstacles import reasons_not_to_fork
 from .isolation.loop import IsolatedTests
 from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
-from .remembered_passes import RanPlugin, RememberedPasses
+from .remembered_passes import RememberedPasses
 from .summary import SummaryPlugin, warn_of_mistakes
 
 
@@ -62,7 +62,6 @@ def run_tests(
             directory.mkdir(parents=True, exist_ok=True)
 
     def session(imports_late: str = "") -> int:
-        ran = [RanPlugin(project)] if options.only_changed else []  # observes the import, too
         plugin = PyFrcPlugin(
             None, project.main_file, project.root, project=project, options=options, imports_late=imports_late
         )
@@ -81,7 +80,6 @@ def run_tests(
             SummaryPlugin(project, whole=not any(map(_selects, pytest_args))),
             _NoUnusedHypothesis(),
             passes,
-            *ran,
         ]
         return int(pytest.main(args, plugins=plugins))
 

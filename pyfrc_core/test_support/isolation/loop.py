@@ -233,8 +233,6 @@ class IsolatedTests:
             self._print(config, f"pyfrc: {text}")
 
     def _uses_robot(self, item: pytest.Item) -> bool:
-        if self._plugin.options.only_changed:
-            return True  # what one test runs is not to be taken for what another one runs
         if ROBOT_FIXTURES.intersection(getattr(item, "fixturenames", ())):
             return True
         module = getattr(item, "module", None)

@@ -14,7 +14,7 @@ import pytest
 from ...compat.pytest_private import run_test_protocol
 from ...compat.real_time_devices import real_time_libraries
 from ...processes.worker import Send
-from ..remembered_passes import PASSES, RAN
+from ..remembered_passes import PASSES
 
 Message = tuple[str, Any]
 
@@ -45,9 +45,6 @@ class ReportSender:
             self.send("stop", item.session.shouldstop)
         if libraries := real_time_libraries():
             self.send("real time", libraries)
-        ran: Any = item.config.pluginmanager.getplugin(RAN)
-        if ran is not None:
-            self.send("ran", ran.ran_here())
         self.send("done", None)
 
     def send(self, kind: str, content: object) -> None:
@@ -100,11 +97,8 @@ def replay(item: pytest.Item, message: Message) -> pytest.TestReport | None:
                 "location": location,
             }
         )
-    elif kind == "ran":
-        passes: Any = item.config.pluginmanager.getplugin(PASSES)
-        passes.record(item, content)
     elif kind == "real time":
-        passes = item.config.pluginmanager.getplugin(PASSES)
+        passes: Any = item.config.pluginmanager.getplugin(PASSES)
         if passes is not None:  # a plain `pytest` has none
             passes.record_real_time(content)
     elif kind == "exit":

@@ -70,10 +70,8 @@ def run_in_interpreter(job: TestJob, send: Send, log: CrashLog) -> int:
     measure_here()
     from ...project import Project
     from ..pytest_plugin import PyFrcPlugin
-    from ..remembered_passes import RanPlugin
 
     project = Project(job.main_file, job.class_name)
     _ = project.settings  # before pytest reads the same pyproject.toml, which may begin with a byte-order mark
     plugin = PyFrcPlugin(None, project.main_file, project.root, project=project, options=job.options)
-    ran = [RanPlugin(project)] if job.options.only_changed else []
-    return int(pytest.main(job.args, plugins=[plugin, OnlyOneTest(job, plugin, send, log), *ran]))
+    return int(pytest.main(job.args, plugins=[plugin, OnlyOneTest(job, plugin, send, log)]))
