@@ -65,7 +65,10 @@ class LoadedModules:
 
 
 def _file_of(module: object) -> str | None:
-    file = getattr(module, "__file__", None)
+    if not issubclass(type(module), ModuleType):  # an object may claim to be one
+        return None
+    # Not an attribute of its own: a module's `__getattr__` may do anything, such as import or make a device.
+    file = ModuleType.__getattribute__(module, "__dict__").get("__file__")
     return file if isinstance(file, str) and Path(file).is_absolute() else None
 
 
