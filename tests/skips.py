@@ -89,6 +89,12 @@ def require(tested: str, missing: Iterable[str]) -> None:
         pytest.skip(tested + _NEEDS + ", ".join(parts), allow_module_level=True)
 
 
+def requires(tested: str, missing: Iterable[str]) -> pytest.MarkDecorator:
+    """Return the same as a mark, for tests whose fixtures need the parts, too."""
+    parts = list(missing)
+    return pytest.mark.skipif(bool(parts), reason=tested + _NEEDS + ", ".join(parts))
+
+
 def _remedies(parts: set[str]) -> Iterator[str]:
     """Yield what brings these parts: one command, where commands can."""
     commands = []

@@ -206,7 +206,7 @@ def test_their_passes_are_not_remembered(with_phoenix: PhoenixProject) -> None:
             assert "passed before" not in output
             assert "not remembered, because phoenix6 simulates devices in real time" in output
     passes = json.loads((with_phoenix.path / ".pyfrc/passes.json").read_text())
-    assert (passes["tests"], passes["green"]) == ({}, None)
+    assert (passes["tests"], passes["green"]) == ({}, "")
 
 
 def test_their_values_are_no_inputs(with_phoenix: PhoenixProject) -> None:

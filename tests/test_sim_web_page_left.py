@@ -16,9 +16,10 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`
     shared_server,
 )
 from sim_robots import FILES, PATIENCE
+from skips import requires
 from web_pages import Served, served
 
-BROWSER = pytest.mark.skipif(bool(missing_browser()), reason="no browser")
+BROWSER = requires("the page of pyfrc sim in a browser", missing_browser())
 
 
 def motor(served_or_seen: Any) -> float:

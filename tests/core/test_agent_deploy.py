@@ -287,8 +287,8 @@ def test_errors_of_the_disk_and_of_the_agent(robot: AgentDisk, monkeypatch: pyte
     full = failing(OSError(28, "No space left on device"))
     assert (full["error"], full["free"]) == ("space", 1234)
     assert full["message"] == "the robot's disk is full: 1,234 bytes are free"
-    mode = failing(PermissionError(13, "Permission denied", "/home/lvuser/py"))
-    assert (mode["error"], mode["message"]) == ("disk", "/home/lvuser/py: Permission denied")
+    mode = failing(PermissionError(13, "Permission denied", str(robot.home / "py")))
+    assert (mode["error"], mode["message"]) == ("disk", f"{robot.home / 'py'}: Permission denied")
     assert failing(OSError(5, "Input/output error"))["message"] == "the robot: Input/output error"
     assert failing(shutil.SpecialFileError("`x` is a named pipe"))["message"] == "the robot: `x` is a named pipe"
     assert failing(OSError())["message"] == "the robot: OSError"
