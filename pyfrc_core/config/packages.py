@@ -93,7 +93,7 @@ def robot_line(package: str, pyproject: Path) -> str:
     try:
         wanted = load_robot_packages(pyproject)
     except (SettingsError, OSError):
-        return ""  # reported by whoever needs it
+        return ""  # reported where the settings are needed
     component = component_of(package)
     if package in {each.name for each in wanted.requires} or component in wanted.components:
         return ""

@@ -60,7 +60,7 @@ def _lend(name: str) -> TextIO:
         line_buffering=stream.line_buffering,
         write_through=stream.write_through,
     )
-    # Handlers of `logging` may keep it: its descriptor is closed when nobody has it any more.
+    # Handlers of `logging` may keep it: its descriptor is closed with the last reference.
     weakref.finalize(copy, _close, descriptor).atexit = False
     if stream is getattr(sys, f"__{name}__"):
         setattr(sys, f"__{name}__", copy)

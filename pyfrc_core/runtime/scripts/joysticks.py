@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 #: A control of a joystick: its port, its sort, its number.
 CONTROL = re.compile(r"joysticks\[([0-5])\]\.(axes|buttons|povs)\[(\d+)\]")
-#: The values of controls that nobody touches.
+#: The values of controls that are not touched.
 NEUTRAL: dict[str, object] = {"axes": 0.0, "buttons": False, "povs": -1}
 
 

@@ -9,7 +9,7 @@ from ...runtime.scripts.joysticks import releases
 from .commands import Command, Write
 from .controls import Controls
 
-#: Held while somebody comes or leaves: of two that leave, one is the last.
+#: Held while a driver comes or leaves: of two that leave, one is the last.
 _coming_or_leaving = threading.Lock()
 
 
@@ -28,7 +28,7 @@ class Driver(Controls):
             drivers.add(self)
 
     def leave(self) -> None:
-        """Release what is held, and disable the robot if nobody else drives it."""
+        """Release what is held, and disable the robot if no other driver is left."""
         if self._releases:
             self.write(self._releases)
         with _coming_or_leaving:

@@ -14,7 +14,7 @@ from .snapshot import Snapshot
 
 
 def releases_after(recording: Recording) -> tuple[Command, ...]:
-    """Return the commands that release the joysticks at a recording's end: nobody holds them in another run."""
+    """Return the commands that release the joysticks at a recording's end: they are not held in another run."""
     held = releases({**_values_after(recording.past.steps), **recording.station.sticks})
     return (Write(held),) if held else ()
 
