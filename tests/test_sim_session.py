@@ -582,12 +582,19 @@ def test_other_computers_reach_networktables_only_if_they_are_shared(shared: boo
     port = lasting_port()
     with Simulation(project, replace(STILL, nt_port=port, nt_shared=shared)) as simulation:
         settle(simulation)
-        socket.create_connection(("127.0.0.1", port), PATIENCE).close()
-        if shared:
-            socket.create_connection(("127.0.0.2", port), PATIENCE).close()
-        else:
-            with pytest.raises(ConnectionRefusedError):
-                socket.create_connection(("127.0.0.2", port), PATIENCE)
+
+        def listens() -> bool:  # its server does so in a thread of its own, a moment later
+            simulation.step()
+            return answers("127.0.0.1", port)
+
+        wait(simulation, listens)
+        assert answers("127.0.0.2", port) == shared
+
+
+def answers(address: str, port: int) -> bool:
+    """Return whether someone listens there."""
+    with socket.socket() as connection:
+        return connection.connect_ex((address, port)) == 0
 
 
 def stands(simulation: Simulation) -> bool:
