@@ -32,7 +32,16 @@ def start_bare_thread(call: Callable[[], object]) -> None:
 
     `Thread.start` waits for the new thread, and needs half a millisecond in a process that was just forked.
     """
-    _thread.start_new_thread(call, ())
+
+    def run() -> None:
+        bare_threads.add(_thread.get_native_id())
+        call()
+
+    _thread.start_new_thread(run, ())
+
+
+#: The system's numbers of the threads that `start_bare_thread` has started.
+bare_threads: set[int] = set()
 
 
 PYTHON_RLOCK = PrivateName(

@@ -8,7 +8,6 @@ from typing import Any
 from ..hal import HalData, devices_exist
 from ..invariants.load import Invariant, load_invariants
 from ..project import Project
-from ..runtime.deferred_imports import deferred_imports
 from ..runtime.loading import load_robot
 from ..runtime.patches import patches
 from .lines import RobotLines
@@ -52,13 +51,13 @@ def invariants_of(project: Project) -> tuple[Invariant, ...]:
 
 
 @lru_cache(maxsize=1)
-def imported_devices(project: Project) -> bool | None:
-    """Return whether importing the robot has created devices in the HAL; None if more is imported when a run begins.
+def imported_devices(project: Project) -> bool:
+    """Return whether importing the robot has created devices in the HAL.
 
     The first call must come before a robot runs in this process.
     """
     load(project)
-    return devices_exist() if not deferred_imports.waiting else None
+    return devices_exist()
 
 
 @lru_cache(maxsize=1)

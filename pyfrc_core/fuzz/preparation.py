@@ -14,7 +14,6 @@ from ..compat.wpilib_private import NETWORK_LOG
 from ..errors import PyfrcError
 from ..hal import HalData, devices_exist
 from ..project import Project
-from ..runtime.deferred_imports import deferred_imports
 from ..runtime.module_files import resolve_module_files
 from ..runtime.patch_table import PatchTable
 from .asked_controls import prepare_control_watch
@@ -58,10 +57,9 @@ class Preparation:
         self._watch(is_match, is_match or (isinstance(task, ReplayTask) and task.use_oracle))
 
     def _watch(self, drivers: bool, motors: bool) -> None:
-        complete = self._is_imported and not deferred_imports.waiting  # with all classes of motors
-        prepare_control_watch(complete and drivers)
-        prepare_network_watch(self._project.files, complete and drivers)
-        prepare_motor_watch(complete and motors)
+        prepare_control_watch(self._is_imported and drivers)
+        prepare_network_watch(self._project.files, self._is_imported and drivers)
+        prepare_motor_watch(self._is_imported and motors)
 
     def close(self) -> None:
         """Undo what would be noticed in this process."""

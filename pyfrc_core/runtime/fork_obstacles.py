@@ -2,13 +2,44 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import threading
+from pathlib import Path
 
-from ..compat.cpython_private import target_of
+from ..compat.cpython_private import bare_threads, target_of
 from ..hal import devices_exist, existing_devices
+from ..wording import counted
 from .cooperative import threads_of_the_project
 
 _NAMED_DEVICES = 3
+
+
+class _LibraryThreads:
+    """The threads of libraries that Python does not know, such as those of phoenix6's bus and of urcl's notifier."""
+
+    def __init__(self) -> None:
+        self._before: set[int] | None = None
+
+    def begin(self) -> None:
+        """Look at them before the project's code is imported."""
+        if self._before is None:
+            # Numpy's would be among them, as many as there are processors. They come again in a fork.
+            os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+            self._before = self._now()
+
+    def count(self) -> int:
+        """Return how many have been started since then."""
+        return 0 if self._before is None else len(self._now() - self._before)
+
+    def _now(self) -> set[int]:
+        if sys.platform != "linux":  # nowhere else are processes forked
+            return set()
+        known = {thread.native_id for thread in threading.enumerate()} | bare_threads
+        return {int(task.name) for task in Path("/proc/self/task").iterdir()} - known
+
+
+library_threads = _LibraryThreads()
 
 
 def reasons_not_to_fork() -> list[str]:
@@ -18,6 +49,8 @@ def reasons_not_to_fork() -> list[str]:
         devices = existing_devices()
         more = f" and {len(devices) - _NAMED_DEVICES} more" if len(devices) > _NAMED_DEVICES else ""
         reasons.append(f"devices are made: {', '.join(devices[:_NAMED_DEVICES])}{more}")
+    if not reasons and (count := library_threads.count()) > 0:
+        reasons.append(f"libraries start {counted(count, 'thread')}")
     return reasons
 
 

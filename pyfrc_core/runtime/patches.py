@@ -40,8 +40,8 @@ from . import (
 )
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
-from .deferred_imports import deferred_imports
 from .exceptions import TestEnded
+from .fork_obstacles import library_threads
 from .loop_watchdog import Watchdog
 from .notifier import Notifier
 from .patch_table import Patch, PatchTable
@@ -85,13 +85,12 @@ class Patches:
         resets.announced = True
         replace_chance()
         robot_stack.show_robots_lines(lambda: self._files)
-        deferred_imports.install()
+        library_threads.begin()
 
     def uninstall(self) -> None:
         """Restore the original names."""
         self._table.undo()
         resets.announced = False
-        deferred_imports.uninstall()
         cooperative.scope.forget_project()
         robot_stack.show_all_lines()
 

@@ -27,7 +27,6 @@ from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
 from .construction import missing_super_init, without_first_alarm
 from .data_logs import DataLogs, LogPlace
-from .deferred_imports import deferred_imports
 from .exceptions import TestEnded, TestFroze, WrongThread
 from .loop_watchdog import LoopOverruns
 from .motor_safety import MotorSafetyCheck
@@ -147,7 +146,6 @@ class RobotRun:
 
     def open(self) -> None:
         """Acquire the HAL: time at 0, a robot that has just booted, no packet delivered yet."""
-        deferred_imports.import_all()
         restart_numbers()
         self._closing.enter_context(active_run.set_to(self))
         # Values that robot code publishes stay in this process: no server, no port, no file.
