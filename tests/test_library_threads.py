@@ -34,6 +34,13 @@ LIBRARY = """
         return answers.get(timeout=5)
 """
 
+#: As the real one, it makes a notifier when it is imported.
+URCL = """
+    import hal
+
+    notifier = hal.initializeNotifier()[0]
+"""
+
 ROBOT = """
     import os
 
@@ -59,7 +66,7 @@ def run(project: RobotProject, *args: str, library: str = LIBRARY) -> tuple[list
     """Run a command with the library at hand; return what pyfrc explains, and the output."""
     others = project.path.parent / "others"
     others.mkdir(exist_ok=True)
-    RobotProject(others, others).write({"bus/__init__.py": library})
+    RobotProject(others, others).write({"bus/__init__.py": library, "urcl/__init__.py": URCL})
     result = project.run(*args, env={"PYTHONPATH": str(others)})
     assert result.code == 0, result.output
     return [line for line in result.output.splitlines() if line.startswith("pyfrc: ")], result.output
@@ -69,6 +76,13 @@ def test_each_test_imports_a_robot_whose_import_starts_a_librarys_thread(make_pr
     explained, output = run(make_project({"robot.py": ROBOT, "tests/test_a.py": TESTS}), "test")
     assert "1 passed" in output
     assert "libraries start 1 thread" in explained[0]
+
+
+def test_a_robot_with_urcl_is_told_where_to_import_it(make_project: MakeProject) -> None:
+    robot = ROBOT.replace("    bus.start()\n", "    import urcl\n").replace("assert bus.ask(1) == 2", "pass")
+    explained, output = run(make_project({"robot.py": robot, "tests/test_a.py": TESTS}), "test")
+    assert "1 passed" in output
+    assert "`import urcl` makes a notifier. Do that in robotInit." in explained[0]
 
 
 def test_fuzz_imports_such_a_robot_in_each_match(make_project: MakeProject) -> None:

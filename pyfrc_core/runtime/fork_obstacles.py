@@ -45,7 +45,9 @@ library_threads = _LibraryThreads()
 def reasons_not_to_fork() -> list[str]:
     """Return what the project's code has made in this process and a fork of it would lack: threads and devices."""
     reasons = [f"{line} starts {_described(thread)}" for thread, line in threads_of_the_project()]
-    if devices_exist():
+    if devices_exist() and "urcl" in sys.modules:
+        reasons.append("`import urcl` makes a notifier")
+    elif devices_exist():
         devices = existing_devices()
         more = f" and {len(devices) - _NAMED_DEVICES} more" if len(devices) > _NAMED_DEVICES else ""
         reasons.append(f"devices are made: {', '.join(devices[:_NAMED_DEVICES])}{more}")

@@ -1,7 +1,6 @@
 """The competition robot: swerve drive, intake, elevator, shooter, climber."""
 
 import commands2
-import urcl
 import wpilib
 
 from constants import CanIds
@@ -13,6 +12,8 @@ class MyRobot(commands2.TimedCommandRobot):
 
     def robotInit(self) -> None:
         """Create everything."""
+        import urcl  # it starts a thread: here, pyfrc imports the robot only once
+
         wpilib.DataLogManager.start()
         wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog())
         urcl.URCL.start(CanIds.NAMES)
