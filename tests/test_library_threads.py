@@ -34,11 +34,14 @@ LIBRARY = """
         return answers.get(timeout=5)
 """
 
-#: As the real one, it makes a notifier when it is imported.
+#: As the real one, it makes a notifier, with a thread, when it is imported.
 URCL = """
+    import threading
+
     import hal
 
     notifier = hal.initializeNotifier()[0]
+    threading.Thread(target=hal.waitForNotifierAlarm, args=(notifier,), daemon=True).start()
 """
 
 ROBOT = """
