@@ -1,7 +1,12 @@
 """What is left on a robot when `pyfrc deploy` is interrupted: link cut, laptop or agent killed, power pulled.
 
 Run it as root on Linux with ``python benchmarks/deploy_interrupted.py [CUTS [KILLS]]``, from an environment with
-pyfrc's development requirements; README.md beside it says what is measured, and how.
+pyfrc's development requirements.
+
+CUTS times (300 by default) the link is cut while new contents are deployed over a program that runs, at points that are
+spread over all bytes in both directions. KILLS times (100), at random points, the laptop's process or the agent is
+killed, or the robot's power is pulled. After each, the program that the robot would start must be the old or the new
+one, complete, and the next deploy must work without help. It fails at the first that does not.
 """
 
 from __future__ import annotations

@@ -1,7 +1,12 @@
 """How `pyfrc deploy` copes with 5,000 files, 60 MB, to a look-alike of a roboRIO over a field's radio.
 
 Run it as root on Linux with ``python benchmarks/deploy_large.py``, from an environment with pyfrc's development
-requirements; README.md beside it says what is measured, and how.
+requirements. It takes three minutes.
+
+4,889 Python files (10 MB), 10 networks of random bytes (40 MB) and 100 paths as JSON (10 MB). Printed are the time of
+the first deploy, to the time that the link needs for the bytes that were sent (compressed, with agent, SSH and
+manifest); the time for one changed file; and the most memory of the agent and of its compiler. All files are compared
+after each deploy.
 """
 
 from __future__ import annotations

@@ -1,7 +1,12 @@
 """How fast `pyfrc deploy` is, against today's upload tool, to the same look-alike of a roboRIO over a field's radio.
 
 Run it as root on Linux with ``python benchmarks/deploy_speed.py``, from an environment with pyfrc's development
-requirements; README.md beside it says what is measured, and how.
+requirements, on a machine that does nothing else: laptop and robot are one machine here.
+
+Whole commands (`pyfrc deploy --skip-tests`, `python -m robotpy deploy --skip-tests --no-install`), to a look-alike with
+a real SSH server (tests/roborio), through a proxy with round trips of 20 ms and 4 Mbit/s. It prints round trips and
+bytes, too. All files are compared after each deploy. Ours waits until the program has reported its start; today's does
+not.
 """
 
 from __future__ import annotations
@@ -162,9 +167,9 @@ def make_cases(sides: list[Side], stack: ExitStack, ours: Environment, todays: E
         )
 
     return [
-        case(1, f"first deploy, {FILES} files", Side.first, 0.1),
-        case(2, "unchanged redeploy", Side.unchanged, 0.05),
-        case(3, "one changed file", Side.changed, 0.05),
+        case(1, f"first deploy, {FILES} files", Side.first, 0.15),
+        case(2, "unchanged redeploy", Side.unchanged, 0.08),
+        case(3, "one changed file", Side.changed, 0.15),
     ]
 
 

@@ -33,7 +33,7 @@ from pyfrc_core.project import find_project
 
 CORES = 2
 #: The targets: matches a second on the first robot, and the ratio on the others.
-MATCHES, RATIO = 60, 1.5
+MATCHES, RATIO = 60, 2.5
 
 
 def main() -> None:

@@ -2,7 +2,12 @@
 
     python benchmarks/sim_page.py [--robot tests/robots/competition/rev_swerve]
 
-Needs Chromium, and pyfrc's development requirements. README.md beside it says what is measured, and how.
+Needs Chromium, and pyfrc's development requirements.
+
+The robot is a copy that has one motor more, which follows a key at once. In real time: from the key to the end of the
+frame that paints the motor's number, 40 times; frames a second for 5 s while 8 values are plotted and the robot drives;
+meanwhile, the processor time of the server's process. Then, after 150 s of a match at speed 0: from choosing a moment
+to the end of the frame that paints its values in every panel, 60 times.
 """
 
 from __future__ import annotations

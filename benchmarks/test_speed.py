@@ -1,7 +1,13 @@
 """How fast pyfrc is, against the pyfrc of the 2026 season, side by side on this machine.
 
-Run it with ``python benchmarks/test_speed.py``; README.md beside it says what is measured, and how. For all its name
-this holds no tests: it prints figures, and says of each target whether it was met.
+Run it with ``python benchmarks/test_speed.py``. For all its name this holds no tests: it prints figures, and says of
+each target whether it was met.
+
+The robot is a `TimedRobot` with one PWM motor and one joystick. Each side has a virtual environment of its own
+(comparison.py); ours is installed anew from this checkout. Each case runs each side once to warm up, then both in turn;
+the table has the medians. In cases 1 and 2 both sides run the four ready-made tests; ours isolates them in both cases.
+Case 3 (loop_speed.py) is 150 simulated seconds of the enabled robot, in our loop and in WPILib's own, which another
+thread steps: it needs a second core that is idle.
 """
 
 from __future__ import annotations

@@ -306,3 +306,30 @@ def test_links_lead_somewhere(document: str) -> None:
     for target in re.findall(r"\]\(([^)#]+)[^)]*\)", text):
         if not target.startswith("http"):
             assert ((ROOT / document).parent / target).exists(), target
+
+
+def test_the_modules_in_the_map_exist() -> None:
+    """Those with a room before them, such as `runtime.clock`; a name after a module's is one of the module's own."""
+    text = (ROOT / "docs/architecture.md").read_text("utf-8")
+    rooms = {path.parent.name for path in (ROOT / "pyfrc_core").glob("*/__init__.py")} | {"pyfrc_cli"}
+    named = [name for name in re.findall(r"`([a-z_]+(?:[.][A-Za-z_]+)+)`", text) if name.partition(".")[0] in rooms]
+    assert len(named) >= 30
+    for name in named:
+        path, parts = ROOT if name.startswith("pyfrc_cli") else ROOT / "pyfrc_core", name.split(".")
+        while parts and (path / parts[0]).is_dir():
+            path /= parts.pop(0)
+        module = path / f"{parts.pop(0)}.py" if parts else path / "__init__.py"
+        assert module.is_file(), name
+        assert all(
+            re.search(rf"^(?:class|def) {part}\b", module.read_text("utf-8"), re.MULTILINE) for part in parts[:1]
+        ), name
+
+
+@pytest.mark.parametrize(("document", "most"), [("docs/architecture.md", 12_000), ("benchmarks/README.md", 6_000)])
+def test_a_page_to_read_at_once_stays_short(document: str, most: int) -> None:
+    assert len((ROOT / document).read_bytes()) <= most
+
+
+def test_every_room_says_what_it_is_for() -> None:
+    for file in (ROOT / "pyfrc_core").rglob("__init__.py"):
+        assert file.read_text("utf-8").startswith('"""'), file

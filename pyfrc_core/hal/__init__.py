@@ -1,7 +1,14 @@
 """`hal_data`: the robot's inputs and outputs as one tree, live over WPILib's simulated HAL.
 
+In: the HAL of this process. Out: `HalData`, dicts and lists that read and write the HAL itself. They store no value
+that the HAL has, so no two users of a run can see different values. Paths into it, such as ``joysticks[0].axes[1]``,
+are also the language of input scripts and traces (`paths`). Each device is a row of a table (`devices`).
+
 This is the only package that names simulated devices. Importing it does not change the HAL, and imports WPILib only
 when the tree is used: the simulator's window needs paths and no tree.
+
+Where the simulated HAL differs from the hardware, this room does what the hardware does: a connection to the driver
+station that can be lost (`ds_connection`), outputs that are off while the robot is disabled (`output_gate`).
 """
 
 from __future__ import annotations

@@ -1,6 +1,8 @@
 """The robot project of a command: where its robot.py is, which files belong to it, and its settings.
 
-Imports no WPILib: `runtime.loading` imports the robot's code.
+In: a directory, and options that name a file or class. Out: a `Project`. Which files are the project's decides much
+elsewhere: they get robot time, and their lines come first in a failure (`robot_files`). Imports no WPILib, so that
+commands find mistakes before they start a robot: `runtime.loading` imports the robot's code.
 """
 
 from .locate import find_project

@@ -1,7 +1,7 @@
 """What a season fixes: dates, match lengths, field, controller, packages.
 
-Adding a season is a module such as `season_2026`, and its record in `SEASONS`. docs/architecture.md says what else
-a new season needs.
+All of it is one `record.Season`; other rooms ask `CURRENT`. Of earlier seasons only the field is known, for
+`field.season` in sim/config.json. CONTRIBUTING.md says how to add a season.
 """
 
 from .earlier_fields import EARLIER_FIELDS
