@@ -302,10 +302,18 @@ def test_the_fuzzing_guide_lists_every_check() -> None:
     ],
 )
 def test_links_lead_somewhere(document: str) -> None:
-    text = (ROOT / document).read_text("utf-8")
-    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", text):
+    for target in re.findall(r"\]\(([^)\s]+)\)", (ROOT / document).read_text("utf-8")):
         if not target.startswith("http"):
-            assert ((ROOT / document).parent / target).exists(), target
+            name, _, heading = target.partition("#")
+            file = ROOT / document if not name else (ROOT / document).parent / name
+            assert file.exists(), target
+            assert not heading or heading in headings(file), target
+
+
+def headings(file: Path) -> list[str]:
+    """Return the names by which links lead to headings of a page."""
+    titles = re.findall(r"^#+ (.*)$", file.read_text("utf-8"), re.MULTILINE)
+    return [re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles]
 
 
 def test_the_modules_in_the_map_exist() -> None:
