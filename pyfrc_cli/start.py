@@ -1,8 +1,8 @@
 """Entry point of the `pyfrc` command: fix Python's hash seed, then run the command line.
 
 Python orders sets of strings by a random number, drawn at each start. A robot that iterates over such a set repeats
-itself only when that number is fixed, so commands that run robots restart Python with a fixed one. This happens before
-other modules are imported, so it costs only some hundredths of a second.
+itself only when that number is fixed, so commands that run robots restart Python with a fixed one, before
+other modules are imported.
 """
 
 from __future__ import annotations

@@ -11,9 +11,8 @@ from contextlib import contextmanager
 def collector_paused() -> Iterator[None]:
     """Pause the collector during the ``with`` block, for imports of many modules.
 
-    What they allocate stays. The collector would look at it again and again: during the imports, later, and at the end
-    of the process, which takes a tenth of the time of the imports. It does not look at anything from before the end of
-    the block again.
+    What they allocate stays, so the collector would look at it again and again in vain. It does not look at anything
+    from before the end of the block again.
     """
     was_enabled = gc.isenabled()
     gc.disable()

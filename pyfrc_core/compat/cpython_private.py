@@ -30,7 +30,7 @@ RLockType = _thread.RLock
 def start_bare_thread(call: Callable[[], object]) -> None:
     """Call a function in a thread of its own, which nothing waits for.
 
-    `Thread.start` waits for the new thread, and needs half a millisecond in a process that was just forked.
+    `Thread.start` waits until the new thread runs.
     """
 
     def run() -> None:

@@ -159,7 +159,7 @@ def load_settings(pyproject: Path) -> Settings:
 
 @functools.cache
 def _validator() -> TypeAdapter[Settings]:
-    """Built once, since a command may read the settings more than once, and building takes longer than reading."""
+    """Return the validator, which is built once: a command may read the settings more than once."""
     import pydantic
 
     return pydantic.TypeAdapter(Settings)

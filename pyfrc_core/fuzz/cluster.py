@@ -163,8 +163,7 @@ def _connected(address: str) -> Iterator[DaskClient]:
 
 
 def _check_address(address: str) -> None:
-    """Check that something listens at a scheduler's address, before Dask is imported, which takes half a second: Dask
-    tries to connect for long, also where nothing does.
+    """Check that something listens at a scheduler's address: Dask tries to connect for long, also where nothing does.
 
     :raises UsageError: when the address is not valid
     :raises ClusterError: when nothing listens there

@@ -32,7 +32,7 @@ class HalReports:
     def __init__(self, file: IO[bytes]) -> None:
         self._descriptor = file.fileno()
         self._read = 0
-        #: A look at it takes a tenth of the time of a call of the system.
+        #: Its content as memory, which is looked at in each packet without a call of the system.
         self._map: mmap.mmap | None = None
         if hasattr(os, "pread"):
             file.truncate(_MAPPED)
@@ -44,7 +44,7 @@ class HalReports:
         if self._map is not None and self._map[begin : begin + len(_NOTHING)] == _NOTHING:
             return None
         descriptor = self._descriptor
-        # All writers share the position of this file with standard error, and it costs less than the file's size.
+        # All writers share the position of this file with standard error.
         size = os.lseek(descriptor, 0, os.SEEK_CUR)
         if size == begin:
             return None

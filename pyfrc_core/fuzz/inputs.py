@@ -194,7 +194,7 @@ def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN, has_mod
     """Return what the robot's sensors measure; outputs of SimDevices are left out.
 
     :param constants: tells what the robot's code asks its controller for
-    :param has_modules: whether there may be modules on the CAN bus: the search for each kind takes a while
+    :param has_modules: whether there may be modules on the CAN bus; if not, they are not searched
     """
     for function, (target, kind) in _ASKED.items():
         if constants.asks(function):

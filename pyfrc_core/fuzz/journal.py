@@ -1,7 +1,6 @@
 """The inputs of a running match, kept where they survive the end of its process.
 
-They are in memory that is mapped to a file, as in a crash log: that needs no call of the system for each step, which
-took longer than the step itself.
+They are in memory that is mapped to a file, as in a crash log: each step is kept at once, without a call of the system.
 """
 
 from __future__ import annotations

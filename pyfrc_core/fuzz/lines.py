@@ -1,7 +1,7 @@
 """Observe which of the robot's lines and branches a match is the first to reach. This guides a campaign.
 
 `coverage` measures whole processes for reports. Here only what no match has reached yet is of interest, and when it was
-reached; known lines cost nothing. Only code in functions counts: all other code runs on import.
+reached; known lines are not observed. Only code in functions counts: all other code runs on import.
 """
 
 from __future__ import annotations

@@ -170,7 +170,7 @@ def play(project: Project, log: CrashLog, task: Task) -> MatchResult:
         played = _fuzz(project, log, None, task, start)
     if task.returns_inputs or played.failure is not None or played.noted:
         return played
-    return replace(played, script=replace(played.script, steps=()), inputs={})  # to send them takes milliseconds
+    return replace(played, script=replace(played.script, steps=()), inputs={})  # they are not needed
 
 
 def match_seconds(project: Project, schedule: SeedSchedule) -> float:

@@ -1,7 +1,6 @@
 """Prepare matches in the process from which theirs are forked.
 
-A match of a simple robot takes some 40 ms of processor time. What each would make in the same way, or read from the
-disk, is made here once; a fork finds it, and has less memory to copy.
+What each match would make in the same way, or read from the disk, is made here once; a fork finds it.
 """
 
 from __future__ import annotations

@@ -93,7 +93,7 @@ def hash_of_file(file: Path) -> str:
 def version_of_file(file: Path) -> str:
     """Return the size of a file outside the project and the time of its last change, as of an installed package.
 
-    These are many files where pyfrc itself is installed as an editable package: reading them takes longer than a test.
+    Not its hash: these may be hundreds of files, where pyfrc itself is installed as an editable package.
     """
     try:
         status = file.stat()

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pint import Quantity
 
 
-# Converts to metres in the call that creates the object, which takes most of the time of `calculate`.
+# Bound once: `calculate` is called in each step of physics.
 _chassis_speeds = ChassisSpeeds.fromFeet
 
 
@@ -231,7 +231,7 @@ class MecanumDrivetrain:
         return self.speed / (2 * (self.x_wheelbase + self.y_wheelbase))
 
     def _outputs(self, lf: float, lr: float, rf: float, rr: float) -> tuple[float, float, float, float]:
-        # Compared here, since four function calls would cost as much as all the rest.
+        # The usual case first, without a call for each motor.
         if not -1.0 <= lf <= 1.0 or not -1.0 <= lr <= 1.0 or not -1.0 <= rf <= 1.0 or not -1.0 <= rr <= 1.0:
             lf, lr = within_full_power(lf, "lf_motor"), within_full_power(lr, "lr_motor")
             rf, rr = within_full_power(rf, "rf_motor"), within_full_power(rr, "rr_motor")

@@ -1,7 +1,7 @@
 """Convert physical quantities of users, with or without a unit, to the plain numbers of our calculations.
 
-Calculating with pint's quantities would take a hundred times as long, so each is converted once. pint is imported only
-when the user passes a quantity.
+Each is converted once, when it is passed: all later calculations are with plain numbers. pint is imported only when the
+user passes a quantity.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Build the unit registry from pint's definitions, cached on disk: parsing them takes as long as importing pint.
+"""Build the unit registry from pint's definitions, cached on disk.
 
 The registry is built on import: Python's import lock ensures that there is only one.
 """
@@ -73,7 +73,7 @@ def cache_folder() -> Path | None:
 def build(folder: Path | None) -> UnitRegistry:
     """Return a registry with our units, from the definitions in `folder`; write them there if they are missing.
 
-    Without a usable folder the registry is built from the source definitions, which only takes longer.
+    Without a usable folder the registry is built from the source definitions.
     """
     registry: UnitRegistry | None = None
     if folder is not None:

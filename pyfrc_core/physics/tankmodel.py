@@ -24,7 +24,7 @@ __all__ = ["MotorModel", "TankModel"]
 
 logger = logging.getLogger("pyfrc.physics")
 
-#: Converts feet and radians in one call, in a third of the time of a `Rotation2d` and a `Transform2d`.
+#: Converts feet and radians in one call.
 _transform = Transform2d.fromFeet
 
 MOST_TURN_SQUARED, MOST_BEND_SQUARED = MOST_TURN**2, MOST_BEND**2
@@ -252,9 +252,9 @@ class TankModel:
         :returns: feet forward, feet to the right, both relative to the robot's previous pose, and radians clockwise
         :raises ParameterError: for NaN, or a negative time
         """
-        # Physics spends most of its time here. The function is not split, because every call and every attribute costs
-        # as much as several operations. A motor's value and the length of a step are mostly the same as in the previous
-        # step: values that depend on them are stored, and computed again only after a change. NaN counts as a change.
+        # Physics spends most of its time here, so the function is not split. A motor's value and the length of a step
+        # are mostly the same as in the previous step: values that depend on them are stored, and computed again only
+        # after a change. NaN counts as a change.
         if l_motor != self._l_motor:
             self._lmotor.apply(-l_motor, "l_motor")
             self._l_motor = l_motor

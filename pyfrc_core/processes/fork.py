@@ -135,7 +135,7 @@ class Fork:
 
 def wait_for_any(descriptors: Sequence[int]) -> None:
     """Return when one of these has something to read, or a short while has passed."""
-    # Where there is `poll`, it needs no descriptor, which would take a while to close.
+    # `poll`, where there is one, needs no descriptor of its own.
     with getattr(selectors, "PollSelector", selectors.DefaultSelector)() as selector:
         for descriptor in descriptors:
             selector.register(descriptor, selectors.EVENT_READ)

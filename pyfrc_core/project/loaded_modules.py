@@ -23,8 +23,8 @@ _FEW = 64
 class LoadedModules:
     """Those modules: the project's own, its tests, libraries beside it, and an editable pyfrc.
 
-    A process has imported some 2,000 modules. A fork that asks each of them for its file copies the memory of all,
-    which takes longer than many a test. Each look therefore goes only through those imported since the last one.
+    A process has imported some 2,000 modules, and a fork that asks each of them for its file copies the memory of all.
+    Each look therefore goes only through those imported since the last one.
     """
 
     def __init__(self) -> None:

@@ -123,7 +123,7 @@ class Clock:
         outer, self.call = self.call, object()
         try:
             while queue[0][0] <= end:  # there always is a next packet
-                # As `_run_next` and `_move_to`: calling them would take as long as the rest.
+                # As `_run_next` and `_move_to`, written out: everything in a run is called from here.
                 due_us, _, _, action = heappop(self._queue)
                 if due_us > self.now_us:
                     step_us(due_us - self.now_us)

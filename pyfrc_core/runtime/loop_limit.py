@@ -1,8 +1,8 @@
 """The limit to how long a periodic function may wait.
 
 A robot's loop is one thread: a `teleopPeriodic` that waits for a button with `time.sleep` has stopped the robot, since
-nothing else of it runs until then. Robot time counts, which passes in a function only while it waits; so a loop that
-never waits costs nothing here.
+nothing else of it runs until then. Robot time counts, which passes in a function only while it waits: so only a loop
+that waits is looked at.
 """
 
 from __future__ import annotations

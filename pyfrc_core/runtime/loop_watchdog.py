@@ -1,7 +1,7 @@
 """WPILib's watchdogs in robot time: the one that watches the robot's loop, and those that code makes for itself.
 
-WPILib has one C++ thread for all of them, which each turn of a loop wakes twice; at our speed that costs a quarter of
-the time, and what it has to say comes whenever the machine lets it. So it is ended, and what it did is done here.
+WPILib has one C++ thread for all of them, which follows the wall clock: what it has to say comes whenever the machine
+lets it. So it is ended, and what it did is done here.
 """
 
 from __future__ import annotations

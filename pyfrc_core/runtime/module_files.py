@@ -1,7 +1,7 @@
 """The files of all modules, resolved before processes are forked.
 
 commands2 asks `inspect` for the lines where a command is composed. At the first question in a process, `inspect`
-resolves the files of all modules, which takes 30 ms with WPILib's and pytest's: in each test, and in each match.
+resolves the files of all modules, WPILib's and pytest's among them: in each test, and in each match.
 """
 
 from __future__ import annotations

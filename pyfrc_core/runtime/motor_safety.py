@@ -1,9 +1,9 @@
 """Check WPILib's motor safety in robot time.
 
 WPILib checks it on a C++ thread that every driver-station packet wakes, in wall time. At our speed it would find a
-motor "not updated often enough" whenever the machine is busy between two of the thread's instructions, and waking the
-thread takes about as long as the robot's whole loop. So that thread is unsubscribed from packets, and WPILib's check is
-called here: on every fourth packet while the robot is enabled, as the thread does on a robot.
+motor "not updated often enough" whenever the machine is busy between two of the thread's instructions. So that thread
+is unsubscribed from packets, and WPILib's check is called here: on every fourth packet while the robot is enabled, as
+the thread does on a robot.
 """
 
 from __future__ import annotations

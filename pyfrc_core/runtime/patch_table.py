@@ -1,6 +1,6 @@
 """Tables of replaced names of classes and modules: every monkeypatch of pyfrc is in one, and is undone by it.
 
-`unittest.mock.patch` does the same for one name; robots must not pay for its import, which takes longer than theirs.
+`unittest.mock.patch` does the same for one name. It would import much that a robot does not need.
 """
 
 from __future__ import annotations

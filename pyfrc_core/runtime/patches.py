@@ -138,7 +138,7 @@ class Patches:
                 seconds = index(seconds)  # refuses what the real one refuses, as Decimal and numpy's float32
             if seconds < 0:
                 raise ValueError("sleep length must be non-negative")
-            # A loop of sleep(0) lets other threads, and so time, go on; on a computer too that takes its microseconds.
+            # A loop of sleep(0) lets other threads, and so time, go on.
             return threads.sleep_until(threads.clock.now_us + max(1, to_us(seconds)))
 
         def waits_in_threading() -> float:

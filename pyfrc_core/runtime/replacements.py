@@ -1,8 +1,8 @@
 """What makes a replacement behave as the name that it replaces.
 
 Robot code and libraries use names of the standard library for more than calling them: in annotations, as class
-attributes, with `isinstance`, `copy` and `pickle`, as specifications of mocks. wrapt's proxies stand for one object and
-add a Python call to each use; these forward to nothing and cost nothing when they are called.
+attributes, with `isinstance`, `copy` and `pickle`, as specifications of mocks. wrapt's proxies forward each
+use to one object; these are functions and classes themselves.
 """
 
 from __future__ import annotations

@@ -93,7 +93,7 @@ class RobotRun:
     The thread that creates this drives the clock. The HAL is one per process, so only one run at a time can be.
 
     :param logs: where the data logs that robot code starts are written; None: they are not kept
-    :param has_devices: whether devices exist in the HAL, if the caller knows: the search takes a millisecond
+    :param has_devices: whether devices exist in the HAL, if the caller knows; None: they are searched
     :param start_us: the robot time at which it begins
     :param tree: the tree for `hal_data`, made without defaults, which no run has used
     """

@@ -1,8 +1,8 @@
 """The loop of a `wpilib.TimedRobot`, in place: its loop body and periodic callbacks, called as they fall due.
 
-WPILib's own loop blocks in C++ until the next alarm; stepped from another thread, each loop costs two hand-offs
-between threads, many times what the loop itself does. Here the clock calls the body on whichever thread moves the
-time. A robot that overrides `startCompetition` and calls `super().startCompetition()` gets `run_blocking` instead.
+WPILib's own loop blocks in C++ until the next alarm, so it would need a thread of its own, and two hand-offs between
+threads for each loop. Here the clock calls the body on whichever thread moves the time. A robot that overrides
+`startCompetition` and calls `super().startCompetition()` gets `run_blocking` instead.
 """
 
 from __future__ import annotations

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
 
 FORMAT = "pyfrc-trace 2"
 
-#: How many packets' changes are kept before their lines are made. Between two packets, the robot's code uses the
-#: processor's caches, so that ten lines at once take half of the time of one after the other.
+#: How many packets' changes are kept before their lines are made.
 _BATCH = 10
 
 

@@ -1,7 +1,7 @@
 """The lines of a trace: JSON, one line for each packet that changed something.
 
-pydantic_core writes them, in a fifth of the time of `json`: a trace has hundreds of megabytes an hour. Both write the
-shortest digits of a number, though not always in the same form: 0.00001 is 1e-05 with `json`.
+pydantic_core writes them, since a trace has hundreds of megabytes an hour. It writes the shortest digits of a number,
+as `json` does, though not always in the same form: 0.00001 is 1e-05 with `json`.
 """
 
 from __future__ import annotations

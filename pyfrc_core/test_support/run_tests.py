@@ -25,7 +25,7 @@ class NoTestsError(PyfrcError):
     """The project has no tests."""
 
 
-#: Plugins of libraries that pyfrc depends on: importing them takes a fifth of the time of a small robot's tests.
+#: Plugins of libraries that pyfrc depends on, and that robots' tests do not use.
 _UNUSED_PLUGINS = ("anyio", "platformdirs")
 
 

@@ -281,7 +281,7 @@ class _Network:
     def skip_later(self) -> None:
         """Skip with one of the next calls. Call `skip` before `look`.
 
-        After many of these calls, nothing is heard until then: to hear each value takes longer than to get all once.
+        After many of these calls, nothing is heard until then: `skip` gets all current values.
         """
         self._waiting += 1
         if self._waiting == _PACKETS_HEARD:

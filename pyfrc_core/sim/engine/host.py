@@ -27,8 +27,7 @@ from ...processes.worker import work_and_exit
 from .commands import Quit
 
 _LOOK_SECONDS = 0.2
-#: Wall seconds in which a robot's process may complete its data logs: that takes some 0.05 on an idle machine, and many
-#: times as long on a busy one. Only a robot that is stuck in C++ uses them up.
+#: Wall seconds in which a robot's process may complete its data logs. Only a robot that is stuck in C++ uses them up.
 CLOSING_SECONDS = 10.0
 
 #: Libraries that are known to start no threads when they are imported.

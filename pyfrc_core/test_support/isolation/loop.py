@@ -1,8 +1,8 @@
 """Each test that uses the robot in a process of its own, several at a time, reported in order.
 
 WPILib's HAL, and robots that keep devices in classes and modules, do not survive a second robot in one process.
-The process that collects the tests has imported everything already, the robot's modules too; forking it takes a few
-milliseconds where a new interpreter takes half a second. Where processes cannot be forked, it starts new interpreters.
+The process that collects the tests has imported everything already, the robot's modules too, so each test is a fork of
+it. Where processes cannot be forked, each is a new interpreter.
 
 Fixtures wider than one test (of a class, a module, the session) are set up here, before the fork, once, and torn down
 here, as everywhere in pytest.

@@ -84,7 +84,7 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
                 if job.wpilog is not None:
                     closing.enter_context(_logged(run, job.wpilog))
                 run.construct(robot_class)
-                gc.freeze()  # a collection of all modules takes as long as hundreds of packets
+                gc.freeze()  # or a collection of all modules would hold up the loop
 
             def ready() -> Ready:
                 tags = tags_of(project.sim_config) if job.tags is None else job.tags

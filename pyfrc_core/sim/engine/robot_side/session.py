@@ -33,7 +33,7 @@ from .traces import Traces
 from .user_renderer import UserRenderer
 
 #: Above real time, the shortest interval of updates, in wall seconds; otherwise each packet has one. Unrecorded
-#: simulations run unattended, and each update takes as long as dozens of packets.
+#: simulations run unattended, and need fewer.
 _UPDATE_SECONDS, _UNRECORDED_UPDATE_SECONDS = 0.02, 0.1
 #: How often to report how far a replay has come, in wall seconds.
 _REPLAY_SECONDS = 0.05

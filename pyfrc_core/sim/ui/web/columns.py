@@ -1,4 +1,4 @@
-"""Every change of one value over some packets, as arrays: 12 bytes for each change of a number."""
+"""Every change of one value over some packets, as arrays."""
 
 from __future__ import annotations
 

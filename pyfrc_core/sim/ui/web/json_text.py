@@ -18,7 +18,7 @@ def json_text(message: object) -> str:
 
 
 def _plain(value: object) -> object:
-    # Most are of this type, which is compared more quickly than an abstract one.
+    # Most are of this type.
     return dict(value) if type(value) is MappingProxyType or isinstance(value, Mapping) else str(value)
 
 

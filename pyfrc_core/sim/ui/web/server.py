@@ -97,7 +97,7 @@ class Server:
             proxy_headers=False,  # any client can send them
             server_header=False,
             ws_max_size=_MOST_MESSAGE,
-            ws_per_message_deflate=False,  # takes longer than sending it on the same computer
+            ws_per_message_deflate=False,  # most pages are on the same computer
             # A page that does not respond has gone: what it held is released, and a robot without a driver is disabled.
             ws_ping_interval=_PING_SECONDS,
             ws_ping_timeout=_GONE_SECONDS,

@@ -1,4 +1,4 @@
-// The state of the simulation, as the server has told it, and the moment that the panels show.
+// The state of the simulation, as the server has sent it, and the moment that the panels show.
 //
 // `model.values` and its neighbours are the present. `model.shown` is what panels draw: the present, or a moment of
 // the past while `model.past` is set. Changes are announced once per frame of the screen.
