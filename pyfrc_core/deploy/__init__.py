@@ -6,8 +6,8 @@ WPILib: the program is imported, and tested, in other processes (`local_checks`)
 
 - The robot's files are changed by `agent`, which runs on the robot and is always the laptop's version: the robot needs
   nothing but its Python. A cut at any moment leaves a complete program.
-- A deploy on a field waits for round trips more than for data. So there is one connection, and the robot is searched
-  while the project is read (`early_connection`).
+- A deploy on a field waits for round trips more than for data. So there is one connection, and one request for
+  the whole deploy, which includes the restart.
 - Host keys are pinned in the project (`host_keys`), not in the user's `~/.ssh/known_hosts`: at the end of a USB cable,
   every team's robot has the same address.
 - Nothing that the robot sends is trusted: `agent_stream` limits its time and size, `responses` checks each field, and
