@@ -1,4 +1,4 @@
-"""Only `pyfrc_core.compat` uses private names of WPILib, pytest, paramiko and CPython.
+"""Only `pyfrc_core.compat` uses private names of WPILib, pytest and CPython.
 
 An attribute is found by its name, unless pyfrc gives one of its own the same name.
 """
@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pyfrc_core
 from pyfrc_core.collector import collector_paused
-from pyfrc_core.compat import cpython_private, paramiko_private, pytest_private, wpilib_private
+from pyfrc_core.compat import cpython_private, pytest_private, wpilib_private
 
 ROOT = Path(pyfrc_core.__file__).parents[1]
 FILES = [file for package in ("pyfrc", "pyfrc_cli", "pyfrc_core") for file in sorted((ROOT / package).rglob("*.py"))]
@@ -29,7 +29,6 @@ NAMED = {
     for names in (
         cpython_private.NAMES,
         cpython_private.THREAD_NAMES,
-        paramiko_private.NAMES,
         pytest_private.NAMES,
         pytest_private.ATTRIBUTES,
         wpilib_private.NAMES,

@@ -22,7 +22,7 @@ from pyfrc_core.deploy.agent import serve, wire
 from pyfrc_core.deploy.agent.host import RoboRio
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
-from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError, StoppedError
+from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError, StoppedError
 from pyfrc_core.deploy.manifest import Manifest
 from pyfrc_core.deploy.progress import DeployProgress, Phase, UserInterface
 from pyfrc_core.deploy.recovery_hints import explain_interruption
@@ -121,6 +121,30 @@ def test_of_a_first_release_there_is_no_way_back(
         interrupt_after(do, agent, project)
     assert "release 1" in caught.value.message
     assert "--rollback" not in str(caught.value.remedy)
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [(ConnectionFailedError("the connection to the robot was lost"), 4), (KeyboardInterrupt(), 2)],
+    ids=["connection", "Ctrl-C"],
+)
+def test_an_end_before_the_robots_list_arrives_may_come_after_the_switch(
+    error: BaseException, code: int, robot: LocalRobot, agents: Agents, project: Manifest
+) -> None:
+    """The robot needs no contents of an unchanged project: it switches and restarts without waiting."""
+    robot.deploy(agents, project)
+    with contextlib.closing(robot.start(agents)) as session:
+
+        def read_message(parse: object) -> None:
+            session._stream.read_response(lambda fields: None, lambda fields: None)  # until the robot has switched
+            raise error
+
+        session._stream.read_message = read_message  # type: ignore[method-assign,assignment]
+        with pytest.raises(DeployError) as caught, explain_interruption(session):
+            session.deploy(project, DeployRequest("robot.py", {}, restart=True))
+    assert caught.value.exit_code == code
+    assert "the robot may have switched to the new release" in caught.value.message
+    assert "it may already run the new one" in caught.value.message
 
 
 @pytest.mark.parametrize(

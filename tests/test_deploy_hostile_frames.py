@@ -17,7 +17,6 @@ from roborio.local import project_of
 from pyfrc_core.deploy import agent_stream
 from pyfrc_core.deploy.agent import wire
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
-from pyfrc_core.deploy.agent_package import agent_hash
 from pyfrc_core.deploy.agent_stream import TimeLimits
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
 from pyfrc_core.deploy.manifest import Manifest
@@ -101,8 +100,7 @@ class FakeRobot:
         return self
 
     def sendall(self, data: bytes) -> None:
-        if data != agent_hash():  # to which an agent that was kept says nothing
-            self._buffer += next(self._scripts, b"")
+        self._buffer += next(self._scripts, b"")
 
     def recv(self, count: int) -> bytes:
         self._buffer = self._buffer or next(self._then, b"")
@@ -408,12 +406,6 @@ def test_a_frame_that_drips_for_ever() -> None:
         AgentClient.start(
             FakeRobot(struct.pack(">Ic", 1 << 22, wire.MESSAGE), then=drips), limits=TimeLimits(frame=0.1)
         )
-
-
-def test_a_robot_that_requests_the_agent_for_ever() -> None:
-    need = wire.message_frame({"need": "agent"})
-    assert "it sent a message that is not a response" in protocol_error(FakeRobot(need, need, need, need))
-    assert "it sent a message that is not a response" in protocol_error(FakeRobot(wire.message_frame({"need": "me"})))
 
 
 def test_the_connection_is_closed_afterwards() -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from ..file_hash import open_file
 from . import recovery_hints
 from .agent import start_monitor, wire
-from .agent_package import COMMAND, agent_hash, agent_package
+from .agent_package import COMMAND, agent_package
 from .agent_stream import AgentStream, Channel, TimeLimits
 from .errors import ConnectionFailedError, DeployError, OtherComputerError
 from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
@@ -28,10 +28,6 @@ __all__ = ["AgentClient", "DeployRequest", "Deployed", "Plan", "RobotFacts", "Ro
 
 #: Placeholder for a start command written by this deploy.
 _ANY = "any"
-#: The maximum number of files in the first message, whose response has a short time limit.
-_MOST_FILES_AT_ONCE = 1000
-#: The maximum size of the contents that follow a request immediately, in bytes: less than a frame.
-_MOST_BYTES_AT_ONCE = 16_000
 #: Characters of a program's output that a watch keeps.
 _OUTPUT_KEPT = 1 << 16
 
@@ -56,10 +52,6 @@ class AgentClient:
 
     def __init__(self, stream: AgentStream) -> None:
         self._stream = stream
-        self._planned: Manifest | None = None
-        #: The files of the first message that the current release lacks, according to its record.
-        self._new: tuple[str, ...] = ()
-        self._has_sent_package = False
         #: Whether the robot restarts the program without another request.
         self._is_restarting = False
         #: Whether the old program survived the kill script at the last restart, and was ended by a signal.
@@ -84,47 +76,16 @@ class AgentClient:
         :param hello: fields for the first message: ``modules`` to look for in the robot's Python; in tests, ``root``,
             the directory with the robot's files
         """
-        client = cls.open(connection, limits)
-        client.begin(hello)
-        return client
-
-    @classmethod
-    def open(cls, connection: CommandRunner, limits: TimeLimits | None = None) -> AgentClient:
-        """Start the agent on the robot, without waiting for it. `begin` must follow."""
         client = cls(AgentStream(connection.open(COMMAND), str(connection.address), limits or TimeLimits()))
+        first = wire.message_frame({"who": _user_and_host(), **(hello or {})})
         try:
-            client._stream.start(agent_hash())
+            client._stream.start(agent_package() + first)
+            client.facts = client._stream.read_response(RobotFacts.of, silence=client._stream.limits.start)
         except BaseException:
             client.close()
             raise
+        client._current, client._command = client.facts.current, client.facts.command
         return client
-
-    def begin(self, hello: Mapping[str, Any] | None = None, manifest: Manifest | None = None) -> None:
-        """Send the agent if the robot has not kept it, and read the robot's facts.
-
-        :param hello: see `start`
-        :param manifest: the files of the deploy that follows, which then need not be sent later
-        """
-        if manifest is not None and len(manifest.entries) <= _MOST_FILES_AT_ONCE:
-            hello, self._planned = {**(hello or {}), "files": _as_lists(manifest)}, manifest
-        first = wire.message_frame({"who": _user_and_host(), **(hello or {})})
-        try:
-            self._stream.start(b"%08d" % len(first) + first)
-            self.facts, self._new = self._stream.read_response(
-                lambda fields: (RobotFacts.of(fields), fields.texts("new") if "new" in fields else ()),
-                self._send_package,
-                silence=self._stream.limits.start,
-            )
-            self._current, self._command = self.facts.current, self.facts.command
-        except BaseException:
-            self.close()
-            raise
-
-    def _send_package(self, message: Fields) -> None:
-        if self._has_sent_package or "need" not in message or message.text("need") != "agent":
-            raise ResponseError("it sent a message that is not a response")
-        self._has_sent_package = True
-        self._stream.start(agent_package())
 
     def close(self) -> None:
         """Close the connection to the agent, which then ends."""
@@ -137,9 +98,7 @@ class AgentClient:
     def plan(self, manifest: Manifest, on_progress: OnProgress | None = None) -> Plan:
         """Return what a deploy of these files would do. Nothing is written on the robot."""
         with self._reporting(on_progress):
-            plan = self._request(Plan.of, "plan", files=_as_lists(manifest))
-        self._planned = manifest
-        return plan
+            return self._request(Plan.of, "plan", files=_as_lists(manifest))
 
     def deploy(self, manifest: Manifest, request: DeployRequest, on_progress: OnProgress | None = None) -> Deployed:
         """Make these files the robot's current release, or leave the robot unchanged.
@@ -150,9 +109,6 @@ class AgentClient:
             completed steps, and the total (0 if unknown). The steps of ``receive`` are bytes. Until the robot's first
             report, which comes after one second, the phase ``send`` counts the sent bytes.
         """
-        # The agent keeps the manifest of the last plan.
-        files = {} if manifest is self._planned else {"files": _as_lists(manifest)}
-        at_once = [] if request.in_place else self._at_once(manifest)
         before, has_begun = self.recovery_hint, False
         # The robot switches as soon as it has all contents, and its report of this may be lost or not read. Without the
         # list of the contents that it needs, it may have all of them.
@@ -170,9 +126,7 @@ class AgentClient:
         with self._reporting(on_progress), self._tracking_changes():
             try:
                 self.recovery_hint = unknown
-                self._send("deploy", **asdict(request), **files, sent=[each.path for each in at_once])
-                if at_once:
-                    self._send_contents(at_once, on_progress, unknown)
+                self._send("deploy", **asdict(request), files=_as_lists(manifest))
                 needed = self._stream.read_message(lambda fields: _needed(fields, manifest))
                 if needed:
                     self.recovery_hint = before  # it waits for the last of them
@@ -191,12 +145,6 @@ class AgentClient:
         else:
             self.recovery_hint = recovery_hints.deployed(deployed.release, deployed.previous)
         return deployed
-
-    def _at_once(self, manifest: Manifest) -> list[Entry]:
-        """Return the files that the robot will probably need, if they are small: sending them saves a round trip."""
-        new, self._new = frozenset(self._new), ()
-        entries = [each for each in manifest.entries if each.path in new]
-        return entries if sum(each.size for each in entries) <= _MOST_BYTES_AT_ONCE else []
 
     def restart(self) -> bool:
         """Restart the program, or wait for the restart that a deploy has requested.

@@ -5,15 +5,13 @@ from __future__ import annotations
 import contextlib
 import logging
 import socket
-import sys
 import threading
 from collections.abc import Callable
 from functools import partial
+from importlib import import_module
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from .._version import __version__
-from ..collector import collector_paused
 from .credentials import NONE_OFFERED, Credentials
 from .discovery import CONNECT_SECONDS, Address
 from .errors import ConnectionFailedError, DeployError
@@ -35,57 +33,13 @@ _LOST_SECONDS = 20
 #: The maximum output of a command, in bytes.
 _MAX_OUTPUT_BYTES = 100_000
 
-#: This client's greeting in the SSH protocol.
-_GREETING = f"SSH-2.0-pyfrc_{__version__}".partition("+")[0]
-
 _CHECK_LINK = "Check the link (radio, cable, power of the robot) and run the command again."
 
 
-def load_in_background() -> threading.Thread:
-    """Import paramiko, which takes 0.1 s, in a background thread. Return the thread."""
+def load_in_background() -> None:
+    """Import paramiko, which takes 0.2 s, in a background thread."""
     # Not a daemon thread: Python crashes if it exits during an import.
-    loading = threading.Thread(target=_load)
-    loading.start()
-    return loading
-
-
-def _load() -> None:
-    # paramiko imports invoke if it is installed, for ~/.ssh/config, which is not read here. This saves another 0.1 s.
-    absent = "invoke" not in sys.modules
-    if absent:
-        sys.modules["invoke"] = None  # type: ignore[assignment]
-    try:
-        with collector_paused():
-            import paramiko  # noqa: F401
-    finally:
-        if absent:
-            del sys.modules["invoke"]
-
-
-class GreetedSocket:
-    """A socket for `paramiko.Transport`, over which this client's greeting is sent immediately.
-
-    The robot's response is then under way while paramiko is imported. What the transport sends first, the same
-    greeting, is not sent again.
-
-    :param connected: a connected socket
-    :param greeting: without the end of its line
-    :raises OSError: if the connection is lost
-    """
-
-    def __init__(self, connected: socket.socket, greeting: str = _GREETING) -> None:
-        self._connected = connected
-        self._sent = f"{greeting}\r\n".encode()
-        connected.sendall(self._sent)
-
-    def send(self, data: bytes) -> int:
-        if data == self._sent:
-            self._sent = b""
-            return len(data)
-        return self._connected.send(data)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._connected, name)
+    threading.Thread(target=import_module, args=["paramiko"]).start()
 
 
 class Connection:
@@ -211,13 +165,11 @@ def connect(
         if connected is None:
             connected = socket.create_connection((address.host, address.port), timeout=CONNECT_SECONDS)
         _set_socket_options(connected)
-        greeted: Any = GreetedSocket(connected)
     except OSError as error:
         raise _not_let_in(address, error) from error
     import paramiko
 
-    transport = paramiko.Transport(greeted)
-    transport.local_version = _GREETING
+    transport = paramiko.Transport(connected)
     try:
         key = _greet(transport, keys)
         keys.check(key, accepted_key, robot_name, pin=False)
@@ -263,11 +215,9 @@ def _kind_of_key(algorithm: str) -> str:
 def _log_in(transport: paramiko.Transport, address: Address, user: str, credentials: Credentials) -> None:
     import paramiko
 
-    from ..compat.paramiko_private import log_in_as
-
     try:
         # Robots have no passwords and accept these users without authentication.
-        log_in_as(transport, user)
+        transport.auth_none(user)
         return
     except paramiko.BadAuthenticationType as refused:
         allowed = refused.allowed_types

@@ -27,13 +27,10 @@ from .robot_setup import other_languages_notice
 from .target_connection import (
     RobotChoice,
     choose_target,
-    connect_early,
     connected,
     connected_agent,
-    connected_early,
     console_address,
     find,
-    running_agent,
 )
 
 if TYPE_CHECKING:
@@ -76,50 +73,47 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     :raises DeployError: if the deploy fails; the robot still has a complete program
     :raises ProgramDiedError: if the program was deployed and ended during the watch
     """
-    loading = load_in_background()
+    load_in_background()
     progress = talk.progress
     refuse_other_main_files(project, options.nonstandard)
     _ask_about_private_files(project, options, talk)
     target = choose_target(project, options.choice, talk.ask)
     checked = _Checked() if options.dry_run else _check_program(project, options, talk)
-    with connect_early(project, target, options.choice) as early:
-        loading.join()  # the login begins then; the following runs while the robot responds
-        from .manifest import build_manifest
-        from .robot_checks import MemorySaver, refuse_unfit_robot
-        from .robot_packages import ImportSearch, check_packages
-        from .starting import start
+    from .manifest import build_manifest
+    from .robot_checks import MemorySaver, refuse_unfit_robot
+    from .robot_packages import ImportSearch, check_packages
+    from .starting import start
 
-        with progress.phase("files") as phase:
-            manifest = build_manifest(project.root, project.settings.deploy.exclude, options.large)
-            phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
-        if checked.tested is not None:
-            refuse_untested(checked.tested, manifest, progress)
-        packages = load_robot_packages(project.pyproject)
-        imports = ImportSearch(manifest, project.root, project.main_file.name)
-        connection = connected_early(early, progress)
-        with running_agent(connection, progress, imports.modules(), early.agent, manifest) as robot:
-            if robot.facts.other_languages:
-                progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
-            _note_unfit_releases(robot.facts, progress)
-            refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
-            check_packages(imports, packages, robot.facts, talk, dry_run=options.dry_run, refuse=options.check_versions)
-            if checked.importing is not None:
-                _refuse_unimportable(checked.importing, talk)
-            if options.dry_run:
-                with progress.phase("compare") as phase:
-                    plan = robot.plan(manifest, phase.work)
-                progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), requested=True)
-                return connection.address
-            memory = MemorySaver(robot.facts, connection)
-            deployed = _upload(robot, project, manifest, options, talk, imports.program())
-            verdict = None
-            try:
-                if not options.in_place:
-                    verdict = start(robot, talk, deployed.fallback, options.auto_rollback)
-            finally:
-                _replace_bad_kill_script(robot, connection, progress)
-                memory.report(progress)  # last, since a failing login as administrator may take half a minute
-            _report_deployed(deployed, verdict, connection, options, talk)
+    with progress.phase("files") as phase:
+        manifest = build_manifest(project.root, project.settings.deploy.exclude, options.large)
+        phase.detail = f"{counted(len(manifest.entries), 'file')}, {_size(manifest.total_bytes)}"
+    if checked.tested is not None:
+        refuse_untested(checked.tested, manifest, progress)
+    packages = load_robot_packages(project.pyproject)
+    imports = ImportSearch(manifest, project.root, project.main_file.name)
+    with connected_agent(project, target, options.choice, progress, imports.modules) as (connection, robot):
+        if robot.facts.other_languages:
+            progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
+        _note_unfit_releases(robot.facts, progress)
+        refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
+        check_packages(imports, packages, robot.facts, talk, dry_run=options.dry_run, refuse=options.check_versions)
+        if checked.importing is not None:
+            _refuse_unimportable(checked.importing, talk)
+        if options.dry_run:
+            with progress.phase("compare") as phase:
+                plan = robot.plan(manifest, phase.work)
+            progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), requested=True)
+            return connection.address
+        memory = MemorySaver(robot.facts, connection)
+        deployed = _upload(robot, project, manifest, options, talk, imports.program())
+        verdict = None
+        try:
+            if not options.in_place:
+                verdict = start(robot, talk, deployed.fallback, options.auto_rollback)
+        finally:
+            _replace_bad_kill_script(robot, connection, progress)
+            memory.report(progress)  # last, since a failing login as administrator may take half a minute
+        _report_deployed(deployed, verdict, connection, options, talk)
     return connection.address
 
 

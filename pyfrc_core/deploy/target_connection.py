@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 from ..errors import UsageError
@@ -13,7 +12,6 @@ from ..project import Project
 from .connection import Connection, connect, load_in_background
 from .credentials import NONE_OFFERED, Credentials
 from .discovery import Address, FoundRobot, addresses_of, find_robot, parse_address
-from .early_connection import EarlyConnection
 from .errors import NoPythonError
 from .host_keys import HostKeys, RobotKeys
 from .progress import DeployProgress, Questions
@@ -22,7 +20,6 @@ from .team import RobotTarget, find_target, team_of_project
 
 if TYPE_CHECKING:
     from .agent_client import AgentClient
-    from .manifest import Manifest
 
 
 @dataclass(frozen=True)
@@ -66,6 +63,14 @@ def choose_target(project: Project | None, choice: RobotChoice, ask: Questions |
     return target
 
 
+def find(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> FoundRobot:
+    """Do the same as `locate`, as a phase of the command."""
+    with progress.phase("find") as phase:
+        found = locate(target, choice)
+        phase.detail = f"{found.address} ({found.kind})"
+    return found
+
+
 def locate(target: RobotTarget, choice: RobotChoice) -> FoundRobot:
     """Find the robot, and return it with an open socket.
 
@@ -79,18 +84,6 @@ def locate(target: RobotTarget, choice: RobotChoice) -> FoundRobot:
     assert target.team is not None
     whose = f"team {target.team} (by {target.source})"
     return find_robot(addresses_of(target.team, choice.resolve), whose)
-
-
-def find(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> FoundRobot:
-    """Do the same as `locate`, as a phase of the command."""
-    return _show_found(lambda: locate(target, choice), progress)
-
-
-def _show_found(find: Callable[[], FoundRobot], progress: DeployProgress) -> FoundRobot:
-    with progress.phase("find") as phase:
-        found = find()
-        phase.detail = f"{found.address} ({found.kind})"
-    return found
 
 
 def load_robot_keys(project: Project | None, target: RobotTarget, found: FoundRobot) -> RobotKeys:
@@ -124,80 +117,56 @@ def connected(
     project: Project | None, target: RobotTarget, found: FoundRobot, choice: RobotChoice, progress: DeployProgress
 ) -> Iterator[Connection]:
     """Log in to the robot that was found, and disconnect after the ``with`` block; see `log_in`."""
-    with _show_connected(lambda: log_in(project, target, choice, found), progress) as connection:
-        yield connection
-
-
-def _show_connected(connect: Callable[[], Connection], progress: DeployProgress) -> Connection:
     with progress.phase("connect") as phase:
-        connection = connect()
+        connection = log_in(project, target, choice, found)
         recognized = connection.recognized
         phase.detail = "its key is known"
         if recognized.new_for is not None:
             phase.detail = f"a new key, now pinned for {recognized.new_for}"
         if recognized.name:
             phase.detail += f" ({recognized.name})"
-    if recognized.new_for is not None:
-        progress.note(f"  its key: {connection.key.fingerprint} ({connection.key.kind})")
-    return connection
-
-
-def connect_early(project: Project | None, target: RobotTarget, choice: RobotChoice) -> EarlyConnection:
-    """Begin to connect to the robot in the background. `connected_early` must follow."""
-    return EarlyConnection(partial(locate, target, choice), partial(log_in, project, target, choice))
-
-
-def connected_early(early: EarlyConnection, progress: DeployProgress) -> Connection:
-    """Wait for the login that was begun in the background."""
-    _show_found(early.found, progress)
-    return _show_connected(early.connection, progress)
+    with connection:
+        if recognized.new_for is not None:
+            progress.note(f"  its key: {connection.key.fingerprint} ({connection.key.kind})")
+        yield connection
 
 
 @contextmanager
-def running_agent(
-    connection: Connection,
+def connected_agent(
+    project: Project | None,
+    target: RobotTarget,
+    choice: RobotChoice,
     progress: DeployProgress,
-    modules: Sequence[str] = (),
-    start: Callable[[], AgentClient] | None = None,
-    manifest: Manifest | None = None,
-) -> Iterator[AgentClient]:
-    """Start the agent on the robot, and end it after the ``with`` block.
+    modules: Callable[[], Sequence[str]] = tuple,
+) -> Iterator[tuple[Connection, AgentClient]]:
+    """Find the robot, connect to it and start the agent. The agent ends after the ``with`` block.
 
-    :param modules: modules to look for in the robot's Python
-    :param start: returns an agent that was started before
-    :param manifest: the files of the deploy that follows, if it is known
+    :param modules: returns the modules to look for in the robot's Python
     :raises RefusedError: if there is no Python on the robot
     """
+    found = find(target, choice, progress)
+    with connected(project, target, found, choice, progress) as connection:
+        robot = _start_agent(connection, progress, modules())
+        try:
+            with explain_interruption(robot):
+                yield connection, robot
+        finally:
+            robot.close()
+
+
+def _start_agent(connection: Connection, progress: DeployProgress, modules: Sequence[str]) -> AgentClient:
     from .agent_client import AgentClient
 
     with progress.phase("look") as phase:
         try:
-            robot = AgentClient.open(connection) if start is None else start()
-            robot.begin({"modules": modules} if modules else None, manifest)
+            robot = AgentClient.start(connection, hello={"modules": modules} if modules else None)
         except NoPythonError as error:
             from .without_python import RobotWithoutPython  # not before, since it is rare
 
             raise RobotWithoutPython(connection).refusal(error) from error
         facts = robot.facts
         phase.detail = f"wpilib {facts.wpilib or 'missing'}, image {facts.image or 'unknown'}"
-    try:
-        with explain_interruption(robot):
-            yield robot
-    finally:
-        robot.close()
-
-
-@contextmanager
-def connected_agent(
-    project: Project | None, target: RobotTarget, choice: RobotChoice, progress: DeployProgress
-) -> Iterator[tuple[Connection, AgentClient]]:
-    """Find the robot, connect to it and start the agent."""
-    found = find(target, choice, progress)
-    with (
-        connected(project, target, found, choice, progress) as connection,
-        running_agent(connection, progress) as robot,
-    ):
-        yield connection, robot
+    return robot
 
 
 def console_address(target: RobotTarget, choice: RobotChoice, progress: DeployProgress) -> Address:

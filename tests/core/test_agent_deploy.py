@@ -343,9 +343,10 @@ def test_a_plan_writes_nothing(robot: AgentDisk) -> None:
     assert robot.ask({"op": "plan", "files": manifest(files)}) == [
         {"done": {"added": ["new.py"], "changed": ["robot.py"], "removed": ["data/path.json"], "files": 1, "bytes": 8}}
     ]
-    # A deploy that brings no files is of those.
     (_, need, *_) = robot.ask(
-        {"op": "plan", "files": manifest(files)}, {"op": "deploy", "main": "robot.py"}, contents("# other\n")
+        {"op": "plan", "files": manifest(files)},
+        {"op": "deploy", "files": manifest(files), "main": "robot.py"},
+        contents("# other\n"),
     )
     assert need["need"] == ["robot.py"]
     assert robot.startable() == "py/robot.py: # other"
@@ -588,7 +589,7 @@ def test_in_place_nothing_is_deleted_for_a_file_of_another_kind(robot: AgentDisk
 def test_the_debris_of_a_deploy_that_was_cut_is_cleared_up(robot: AgentDisk) -> None:
     robot.deploy(ONE, *ONE.values())
     own = robot.places.own
-    for debris in ("incoming/robot.py", "trash-1/robot.py", "carried", "agent-7", "releases/.1.json.new"):
+    for debris in ("incoming/robot.py", "trash-1/robot.py", "carried", "releases/.1.json.new"):
         (own / debris).parent.mkdir(parents=True, exist_ok=True)
         (own / debris).write_text("")
     (own / "releases/8.json").write_text("{}")

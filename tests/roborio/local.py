@@ -20,7 +20,7 @@ from pathlib import Path
 from types import TracebackType
 
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
-from pyfrc_core.deploy.agent_package import COMMAND, agent_hash
+from pyfrc_core.deploy.agent_package import COMMAND, agent_package
 from pyfrc_core.deploy.manifest import Manifest, build_manifest
 
 #: Names with their kind, permissions and content, and which are hard links to one file.
@@ -176,15 +176,10 @@ class LocalRobot:
         links = (tuple(sorted(each)) for each in names.values() if len(each) > 1)
         return frozenset(entries), frozenset(links)
 
-    def start(self, agents: Agents, manifest: Manifest | None = None, **options: int | bool | None) -> AgentClient:
-        """An agent on it; for the options see `Agents.channel`.
-
-        :param manifest: the files of the first message
-        """
+    def start(self, agents: Agents, **options: int | bool | None) -> AgentClient:
+        """An agent on it; for the options see `Agents.channel`."""
         self._agents, self._options = agents, options
-        client = AgentClient.open(self)
-        client.begin({"root": str(self.root)}, manifest)
-        return client
+        return AgentClient.start(self, hello={"root": str(self.root)})
 
     def open(self, command: str) -> LocalChannel:
         """What a connection does: run the agent."""
@@ -204,7 +199,7 @@ class LocalRobot:
         **options: int | bool | None,
     ) -> Deployed:
         """Deploy and hang up."""
-        robot = self.start(agents, project, **options)
+        robot = self.start(agents, **options)
         try:
             return robot.deploy(project, DeployRequest(main, {"deploy-user": "somebody"}, debug, in_place))
         finally:
@@ -295,7 +290,7 @@ def _link_wpilib(directory: Path) -> None:
 
 def _skip_bootstrap(channel: LocalChannel) -> None:
     """Such an agent has its modules already: what its bootstrap would read is left out of what is sent to it."""
-    left = len(agent_hash()) + len(b"%08d" % 0)
+    left = len(agent_package())
     send = channel.sendall
 
     def sendall(data: bytes) -> None:

@@ -25,7 +25,6 @@ from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link
 _KEPT = 3
 _TRASH, _CARRIED = "trash-", "carried"
 _RECORD, _UNFINISHED_RECORD = re.compile(r"\d+\.json"), re.compile(r"\.\d+\.json\.new")
-_KEPT_AGENT = re.compile(r"agent-\d+")  # see `kept`
 _DIRECT = HOME + "/.pyfrc/releases"
 
 
@@ -108,10 +107,6 @@ class Releases:
         if self._records.get(number, ((), {}))[0] != identity:
             self._records[number] = identity, parse_record(text_of(file) or "")
         return dict(self._records[number][1])
-
-    def contents(self, number: int | None) -> set[str]:
-        """Return the hashes of a release's files, according to its record."""
-        return set() if number is None else set(self.record(number).get("files", {}).values())
 
     def write_record(self, number: int, record: Record) -> None:
         """Write the record of a release."""
@@ -277,7 +272,7 @@ class Releases:
         for each in self.paths.own.iterdir():
             if re.fullmatch(rf"{_TRASH}\d+", each.name):
                 self.remove(each, if_possible=True)
-            elif each.name in (self.paths.incoming.name, "py", _CARRIED) or _KEPT_AGENT.fullmatch(each.name):
+            elif each.name in (self.paths.incoming.name, "py", _CARRIED):
                 self.remove(each)
         startable = self._startable()
         for each in self.paths.releases.iterdir() if self.paths.releases.is_dir() else ():
@@ -298,7 +293,6 @@ class Releases:
         for number in self.numbers():
             self.discard(number)
         self._remove_remains()
-        remove(self.paths.agent)
         with suppress(OSError):  # the program has written to it
             self.paths.releases.rmdir()
 

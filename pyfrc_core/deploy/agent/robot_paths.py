@@ -50,8 +50,6 @@ class RobotPaths:
         #: Where the next release is assembled.
         self.incoming = self.own / "incoming"
         self.lock = self.own / "lock"
-        #: The agent's compiled code, see `kept`.
-        self.agent = self.own / "agent"
         self.debug_flag = self.of("/tmp/frcdebug")
 
     def of(self, path: str) -> Path:

@@ -8,8 +8,6 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
-from importlib import import_module
-from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -19,7 +17,6 @@ from .disk import disk_problem, files_below, free_bytes, remove, text_of
 from .host import Host, RoboRio, age_of
 from .imports import look_up
 from .inventory import IMAGE_FILE, image_in
-from .kept import keep
 from .program import Program
 from .release_record import after_watch, now
 from .releases import Releases
@@ -28,22 +25,16 @@ from .start_monitor import ENDED, RUNNING, UNHEARD
 from .system import become, is_root, user
 from .transaction import RESERVE, Deploy, plan
 from .virtual import VirtualRobotClient
-from .wire import EndedError, Message, OutputPipe, Wire, WireError, parse_message, read_frame
+from .wire import EndedError, Message, OutputPipe, Wire, WireError
 
 _USER = "lvuser"
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
-#: Modules that only later requests need. They are imported after the first response, while the laptop reads it.
-_NEEDED_LATER = ("ctypes", "shutil", "socket", "subprocess", "tempfile")
 
 
-def main(source: BinaryIO, first: bytes = b"", code: bytes = b"") -> None:
-    """Run the agent. Requests come from `source`; responses go to standard output.
-
-    :param first: the frame of the laptop's first message, if it was already read
-    :param code: the agent's code for `keep`
-    """
+def main(source: BinaryIO) -> None:
+    """Run the agent. Requests come from `source`; responses go to standard output."""
     wire = Wire(source, OutputPipe(os.dup(1)))
-    hello = parse_message(*read_frame(BytesIO(first).read)) if first else wire.receive()
+    hello = wire.receive()
     host: Host | None = VirtualRobotClient.from_environment()
     if host is None:
         root = hello.get("root")
@@ -54,8 +45,6 @@ def main(source: BinaryIO, first: bytes = b"", code: bytes = b"") -> None:
         Agent(wire, host, hello).serve()
     except (WireError, ConnectionError):
         sys.exit(1)  # the laptop has disconnected
-    if host.paths.root == Path("/"):  # where the next one looks for it
-        keep(host.paths, code)
 
 
 class Agent:
@@ -79,10 +68,8 @@ class Agent:
         self._started: int | None = None
         #: The release that a deploy has just compared with the laptop's files, if it was seen to run before.
         self._has_run: int | None = None
-        #: The manifest of the first message or of the last plan: a deploy without a manifest uses it.
-        self._files: list[Any] = hello.get("files") or []
         self._requests: dict[str, Callable[[Message], Message]] = {
-            "plan": self._plan,
+            "plan": lambda request: plan(self._releases, request["files"]),
             "deploy": self._deploy,
             "restart": lambda request: self._restart(),
             "watch": self._watch,
@@ -94,8 +81,6 @@ class Agent:
     def serve(self) -> None:
         """Respond to requests until the laptop disconnects."""
         self._respond(self.facts, self._hello)
-        for name in _NEEDED_LATER:
-            import_module(name)
         while True:
             # Without the lock, the laptop may be waiting for its user, or still run the tests.
             self._wire.limits_silence = self._lock is not None
@@ -145,11 +130,8 @@ class Agent:
         releases, python = self._releases, look_up(request.get("modules") or ())
         program = self._host.processes()
         self._review(program)
-        known = releases.contents(releases.current())
         return {
             **python,
-            # At the first deploy, all of them would make a long message.
-            "new": [path for path, _, sha256, _ in request.get("files") or () if known and sha256 not in known],
             "wpilib": python["packages"].get("wpilib"),
             "python": ".".join(map(str, sys.version_info[:3])),
             "image": image_in(text_of(self._paths.of(IMAGE_FILE)) or ""),
@@ -201,12 +183,7 @@ class Agent:
             if keep:
                 self._lock = lock.pop_all()
 
-    def _plan(self, request: Message) -> Message:
-        self._files = request["files"]
-        return plan(self._releases, self._files)
-
     def _deploy(self, request: Message) -> Message:
-        request.setdefault("files", self._files)
         with self._transaction(keep=not request.get("in_place")):
             self._recover()
             try:

@@ -91,9 +91,6 @@ class Deploy:
         #: Whether a restart follows, which removes old releases.
         self._restarts = bool(request.get("restart"))
         self._program = frozenset(request.get("program") or ())
-        #: The files whose contents follow the request immediately, in the manifest's order. They are not linked, since
-        #: they are written even if another release has them.
-        self._sent = frozenset(request.get("sent") or ())
         self._commands = start_commands(self._main)
 
     def run(self) -> Message:
@@ -108,15 +105,13 @@ class Deploy:
         else:
             wanted = self._wanted
         at_hand = self._check_disk_space(wanted, at_hand)
-        sent = [each for each in wanted if each.path in self._sent]
-        received = {each.sha256 for each in sent}
-        missing = [each for each in at_hand.missing(wanted) if each.sha256 not in received]
+        missing = at_hand.missing(wanted)
         self._wire.send(need=[each.path for each in missing], bytes=sum(each.size for each in missing))
         current = self._releases.current()
         if not (self._in_place and code is not None) and current is not None and self._is_current(current, at_hand):
             return self._redeploy(current)
-        self._fill_incoming(wanted, sent, missing, at_hand)
-        amount = {"files": len(sent + missing), "bytes": sum(each.size for each in sent + missing)}
+        self._fill_incoming(wanted, missing, at_hand)
+        amount = {"files": len(missing), "bytes": sum(each.size for each in missing)}
         if self._in_place and code is not None:
             return {**self._overwrite(code, wanted), **amount}
         return {**self._release(), **amount}
@@ -168,23 +163,20 @@ class Deploy:
             )
         return at_hand
 
-    def _fill_incoming(
-        self, wanted: list[WantedFile], sent: list[WantedFile], missing: list[WantedFile], at_hand: ContentIndex
-    ) -> None:
+    def _fill_incoming(self, wanted: list[WantedFile], missing: list[WantedFile], at_hand: ContentIndex) -> None:
         """Write and compile the wanted files in the incoming directory.
 
-        :param sent: files whose contents are received first
         :param missing: files whose contents were requested
         """
         incoming, activity = self._paths.incoming, self._activity
         incoming.mkdir(parents=True)
         for directory in sorted({each.path.rpartition("/")[0] for each in wanted}):
             (incoming / directory).mkdir(parents=True, exist_ok=True)
-        linked = self._link([each for each in wanted if each.path not in self._sent], at_hand)
-        first = {each.sha256: each for each in sent + missing}
+        linked = self._link(wanted, at_hand)
+        first = {each.sha256: each for each in missing}
         copied = [each for each in wanted if each.path not in linked and first.get(each.sha256) != each]
         at_once = [name for name, is_compiled in linked.items() if not is_compiled and name.endswith(".py")]
-        sources = at_once + [each.path for each in (*sent, *missing, *copied) if each.path.endswith(".py")]
+        sources = at_once + [each.path for each in (*missing, *copied) if each.path.endswith(".py")]
         with Compiler(incoming, sources, self._debug, self._program) as compiler:
 
             def complete(each: WantedFile) -> None:
@@ -194,10 +186,10 @@ class Deploy:
 
             for _ in at_once:
                 compiler.add_next()
-            activity.begin("receive", sum(each.size for each in sent + missing))
-            for batch in filter(None, (sent, missing)):
+            activity.begin("receive", sum(each.size for each in missing))
+            if missing:
                 contents = ContentReader(self._wire, activity)
-                for each in batch:
+                for each in missing:
                     contents.write(each, incoming / each.path)
                     complete(each)
                 contents.end()
