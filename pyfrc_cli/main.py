@@ -151,6 +151,8 @@ def _remedy(error: click.ClickException) -> str:
     command = error.ctx.info_name if isinstance(error, click.UsageError) and error.ctx is not None else None
     if isinstance(error, click.NoSuchOption) and command == "test":
         return "Write options of pytest after --, for example: pyfrc test -- -k drive"
+    if isinstance(error, click.NoSuchOption) and command == "sim" and "gui" in error.option_name:
+        return "Write: pyfrc sim, for the simulator's page, or: pyfrc sim --ui none --mode practice"
     if command is not None and re.search(r"unexpected extra arguments? \(.*\.py\b", error.message):
         return "pyfrc finds the robot's file. Use --main FILE if it is not called robot.py."
     if command in ("deploy", "deploy-info", "undeploy", "console"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from conftest import MakeProject, Result
 
 ROBOT = """
@@ -180,10 +181,154 @@ def test_nan_and_a_can_id_used_twice_are_named(make_project: MakeProject) -> Non
     arm, claw = project.place("robot.py", "self.arm"), project.place("robot.py", "self.claw")
     assert f"{claw}: CAN ID 5 is used already, since {arm}, by a device of the same kind." in result.stdout
     assert f"{project.place('robot.py', 'nan')}: set() gets NaN" in result.stdout
-    assert result.stdout.count("UserWarning") == 2
+    section, _, warnings = result.stdout.partition("= mistakes without an error =")[2].partition("warnings summary")
+    assert section.count("self.claw") == 0
+    assert "CAN ID 5" in section
+    assert "CAN ID 5" not in warnings
 
 
 def test_a_fixture_that_does_not_exist(make_project: MakeProject) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_it.py": "def test_it(contrl):\n    pass\n"})
     (block,) = blocks_of(project.run("test"))
     assert block[:2] == ["tests/test_it.py:1: there is no fixture 'contrl'", "  did you mean 'control'?"]
+
+
+BOUND = """
+    import commands2
+    import commands2.button
+    import wpilib
+
+
+    class Arm(commands2.Subsystem):
+        def up(self):
+            return self.run(print)
+
+        def down(self):
+            self.run(print)
+
+
+    class Raise(commands2.Command):
+        pass
+
+
+    class MyRobot(commands2.TimedCommandRobot):
+        def robotInit(self):
+            self.arm = Arm()
+            commands2.button.Trigger(wpilib.DriverStation.isTeleopEnabled).onTrue({})
+"""
+
+IN_TELEOP = """
+    def test_it(control, robot):
+        with control.run_robot():
+            control.step_timing(seconds=1, autonomous=False, enabled=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("bound", "text", "remedy"),
+    [
+        ("self.arm.down()", "None, from self.arm.down()", "Write return before the command in down() (robot.py:10)."),
+        ("self.arm.up", "the function self.arm.up, and no command", "Write self.arm.up(), which returns the command."),
+        (
+            "self.arm.down",
+            "the function self.arm.down, and no",
+            "Write commands2.cmd.runOnce(self.arm.down, SUBSYSTEM)",
+        ),
+        (
+            "lambda: print(1)",
+            "the function lambda: print(1)",
+            "Write commands2.cmd.runOnce(lambda: print(1), SUBSYSTEM)",
+        ),
+        ("Raise", "the class Raise, and no command", "Write Raise(...), with what its __init__ needs (robot.py:14)."),
+    ],
+    ids=["none", "factory", "function", "lambda", "class"],
+)
+def test_what_is_bound_to_a_trigger_and_is_no_command(
+    make_project: MakeProject, bound: str, text: str, remedy: str
+) -> None:
+    project = make_project({"robot.py": BOUND.format(bound), "tests/test_it.py": IN_TELEOP})
+    (block,) = blocks_of(project.run("test"))
+    assert block[0].startswith(f"{project.place('robot.py', 'onTrue(')}: onTrue() got {text}")
+    assert block[1].strip().startswith(remedy)
+
+
+STATES = """
+    import magicbot
+    import wpilib
+
+
+    class Shots(magicbot.StateMachine):
+        @magicbot.state(first=True)
+        def spin_up(self):
+            self.next_state("psh")
+
+        @magicbot.state
+        def push(self):
+            pass
+
+
+    class MyRobot(magicbot.MagicRobot):
+        shots: Shots
+
+        def {}(self):
+            pass
+
+        def teleopPeriodic(self):
+            self.shots.engage()
+"""
+
+
+def test_a_state_that_does_not_exist(make_project: MakeProject) -> None:
+    project = make_project({"robot.py": STATES.format("createObjects"), "tests/test_it.py": IN_TELEOP})
+    (block,) = blocks_of(project.run("test"))
+    assert block[0] == f"{project.place('robot.py', 'psh')}: class Shots has no state psh"
+    assert block[1] == "  Did you mean 'push'?"
+
+
+def test_a_magic_robot_with_robot_init(make_project: MakeProject) -> None:
+    tests = {"tests/test_a.py": IN_TELEOP, "tests/test_b.py": READY_MADE}
+    project = make_project({"robot.py": STATES.format("robotInit"), **tests})
+    blocks = blocks_of(project.run("test", "--", "-k", "it or autonomous"))
+    place = project.place("robot.py", "def robotInit")
+    assert {block[0].partition(", ")[0] for block in blocks} == {
+        f"{place}: class MyRobot has a robotInit()",
+        f"{place}: the same as in test_it",
+    }
+
+
+def test_a_failed_assertion_is_at_the_tests_line(make_project: MakeProject) -> None:
+    test = "def test_it(control, robot):\n    control.run_test(lambda now: now < 0.1)\n    assert robot is None\n"
+    project = make_project({"robot.py": ROBOT, "tests/test_it.py": test})
+    (block,) = blocks_of(project.run("test"))
+    assert block[0].startswith("tests/test_it.py:3: AssertionError: assert ")
+
+
+def test_a_subsystem_that_is_not_registered(make_project: MakeProject) -> None:
+    init = "class Arm(commands2.Subsystem):\n        def __init__(self):\n            {}\n\n"
+    robot = COMMANDS.replace("self.both = commands2.cmd.parallel(self.arm.up(), self.arm.up())", "")
+    test = {"tests/test_it.py": IN_TELEOP}
+    wrong = make_project(
+        {"robot.py": robot.replace("class Arm(commands2.Subsystem):\n", init.format("self.x = 1"))} | test
+    )
+    place = wrong.place("robot.py", "def __init__")
+    assert f"{place}: Arm.__init__ does not call super().__init__(): commands2 never calls" in wrong.run("test").stdout
+
+
+def test_a_module_that_only_pyfrc_imports_is_missing_here_too(make_project: MakeProject) -> None:
+    robot = f"{ROBOT.rstrip()}\n    DRIVE = wpilib.drive.DifferentialDrive\n"
+    result = make_project({"robot.py": robot, "tests/test_it.py": READY_MADE}).run("test", cold=True)
+    assert "module 'wpilib' has no attribute 'drive'" in result.first_error
+    assert "Is this line missing at the top: import wpilib.drive" in result.stderr
+
+
+def test_a_test_file_with_another_name_is_named_where_it_is_the_only_one(make_project: MakeProject) -> None:
+    result = make_project({"robot.py": ROBOT, "tests/arm_tests.py": "def test_it():\n    pass\n"}).run("test")
+    assert result.code == 1
+    assert "  tests/arm_tests.py: its tests are not run, since" in result.stderr
+    assert "Rename it to test_arm.py." in result.stderr
+
+
+def test_an_option_of_another_simulator(make_project: MakeProject) -> None:
+    result = make_project({"robot.py": ROBOT}).run("sim", "--nogui")
+    assert result.code == 2
+    assert "pyfrc sim --ui none --mode practice" in result.stderr

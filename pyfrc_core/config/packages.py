@@ -17,10 +17,10 @@ PACKAGES = {
     "commands2": "robotpy-commands-v2",
     "cscore": "robotpy-cscore",
     "cv2": "opencv-python",
-    "grapplefrc": "libgrapplefrc-py",
     "hal": "robotpy-hal",
     "halsim_gui": "robotpy-halsim-gui",
     "hypothesis": "hypothesis",
+    "libgrapplefrc": "libgrapplefrc-py",
     "magicbot": "robotpy-wpilib-utilities",
     "navx": "robotpy-navx",
     "ntcore": "pyntcore",
@@ -31,12 +31,16 @@ PACKAGES = {
     "photonlibpy": "photonlibpy",
     "playingwithfusion": "robotpy-playingwithfusion",
     "pykit": "robotpy-pykit",
+    "requests": "requests",
     "rev": "robotpy-rev",
     "robotpy_apriltag": "robotpy-apriltag",
     "robotpy_ext": "robotpy-wpilib-utilities",
     "romi": "robotpy-romi",
     "scipy": "scipy",
+    "serial": "pyserial",
+    "simple_pid": "simple-pid",
     "urcl": "robotpy-urcl",
+    "usb": "pyusb",
     "wpilib": "wpilib",
     "wpimath": "robotpy-wpimath",
     "wpinet": "robotpy-wpinet",
@@ -45,10 +49,13 @@ PACKAGES = {
     "yaml": "PyYAML",
 }
 
-#: Modules of earlier seasons, or under a name that is often written: what to import instead.
+#: Modules of earlier seasons, or under a name that is often written: what to import instead, and how to write what has
+#: changed more than its name.
 SUCCESSORS = {
-    "ctre": "phoenix6 (Talon FX, CANcoder, Pigeon 2) or phoenix5 (Talon SRX, Victor SPX)",
-    "networktables": "ntcore",
+    "ctre": "from phoenix6.hardware import TalonFX, CANcoder, Pigeon2; or for a Talon SRX or Victor SPX: "
+    "from phoenix5 import WPI_TalonSRX, WPI_VictorSPX",
+    "grapplefrc": "libgrapplefrc",
+    "networktables": 'import ntcore, and ntcore.NetworkTableInstance.getDefault().getTable("SmartDashboard")',
     "photonvision": "photonlibpy",
     "wpilib.command": "commands2",
     "wpilib.buttons": "commands2.button",

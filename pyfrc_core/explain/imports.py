@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import linecache
 import pkgutil
 import re
 import sys
 from collections.abc import Iterable
 from difflib import get_close_matches
+from importlib.util import find_spec
 from pathlib import Path
 
 from ..config.packages import PACKAGES, SUCCESSORS, how_to_install
@@ -14,7 +16,7 @@ from ..errors import nearest
 from ..project.hidden_libraries import LIBRARIES
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
-from .places import frames_of
+from .places import frames_of, users_frame
 
 _REMOVE_IMPORT = (
     "Move what both need into a third file. If the name is for a type annotation only: write from __future__ import "
@@ -27,7 +29,9 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return circle
     if isinstance(error, ModuleNotFoundError) and error.name:
         return _missing(error.name, Path(files.root))
-    if isinstance(error, NameError) and error.name in {*LIBRARIES, *sys.stdlib_module_names}:
+    if isinstance(error, ImportError) and "relative import" in str(error):
+        return _relative(error, files)
+    if isinstance(error, NameError) and error.name in {*LIBRARIES, *sys.stdlib_module_names} - {"this"}:  # Java's self
         return Explanation(remedy=f"Is this line missing at the top: import {error.name}")
     return None
 
@@ -49,6 +53,19 @@ def _circle(error: ImportError | AttributeError, files: RobotFiles) -> Explanati
         f"a circle of imports: {other} imports {one}, which is importing {other}{way} and does not have {name} yet",
         _REMOVE_IMPORT,
     )
+
+
+def _relative(error: ImportError, files: RobotFiles) -> Explanation | None:
+    """Explain ``from .arm import Arm`` in a file that is in no package, such as robot.py."""
+    where = users_frame(error, files)
+    if where is None:
+        return None
+    line = linecache.getline(where[0].f_code.co_filename, where[1]).strip()
+    found = re.match(r"from (\.+)(\w*(?:\.\w+)*) ?(import .*)", line)
+    text = f"a dot before a module's name means: of the same package, and this file is in none\n    {line}"
+    if found is None:
+        return Explanation(text, "Write the module's name without the dot.")
+    return Explanation(text, f"Write: {f'from {found[2]} ' if found[2] else ''}{found[3]}")
 
 
 def imported_name(error: ImportError) -> str:
@@ -86,14 +103,14 @@ def _in_requirements(names: set[str], file: Path) -> bool:
         words = re.findall(r"^[\w.-]+", file.read_text("utf-8", "replace").lower(), re.MULTILINE)
     except OSError:
         return False
-    return not names.isdisjoint(words)
+    # To pip, simple-pid and simple_pid are one name.
+    return not {each.lower().replace("_", "-") for each in names}.isdisjoint(each.replace("_", "-") for each in words)
 
 
 def _use_instead(successor: str, root: Path) -> str:
-    remedy = f"Use {successor} instead."
-    modules = [each for each in PACKAGES if each in successor.replace(".", " ").split()]
-    wanted = [PACKAGES[each] for each in modules if each not in sys.modules]
-    return f"{remedy} {how_to_install(wanted[0], root / 'pyproject.toml')}" if wanted and len(modules) == 1 else remedy
+    modules = [each for each in PACKAGES if each in re.findall(r"\w+", successor)]
+    wanted = [PACKAGES[each] for each in modules if find_spec(each) is None]
+    return "\n  ".join([f"Instead: {successor}", *(how_to_install(each, root / "pyproject.toml") for each in wanted)])
 
 
 def _in_other_case(module: str, root: Path) -> str:

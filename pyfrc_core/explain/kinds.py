@@ -13,11 +13,13 @@ Kind = Callable[[BaseException, RobotFiles], Explanation | None]
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     """Return what an error means, or None if it is not one of those that are known."""
-    from . import arguments, imports, libraries, names, syntax
+    from . import arguments, calls, commands, imports, libraries, names, syntax
 
     kinds: tuple[Kind, ...] = (
         syntax.explain,
         imports.explain,
+        commands.explain,
+        calls.explain,
         libraries.explain,
         arguments.explain,
         names.explain,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from ..errors import text_of
+from ..errors import nearest, text_of
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
 from .places import class_named, frames_of, line_of_class, users_class
@@ -93,6 +93,13 @@ ROWS = (
         r"ValueError: Component (?P<name>\w+) \(.*\) must have a method named 'execute'",
         "class {cls} has no execute()",
         "magicbot calls it in each loop: add def execute(self): to the class, with pass if there is nothing to do.",
+    ),
+    Row(
+        r"AttributeError: '(?P<name>\w+)' object has no attribute 'watchdog'",
+        "class {cls} has a robotInit(), which replaces that of MagicRobot",
+        "Rename it to createObjects: there, a MagicRobot makes its devices.",
+        at="robotInit",
+        in_robot=True,
     ),
     Row(
         r"MagicInjectError: (?P<kind>Component|Autonomous mode) (?P<component>.+?) has variable (?P<name>\w+) "
@@ -231,11 +238,24 @@ ROWS = (
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     text = text_of(error)
+    if isinstance(error, KeyError) and (explained := _unknown_state(error)):
+        return explained
     for row in ROWS:
         found = re.match(row.pattern, text, re.DOTALL)
         if found is not None:
             return _explained(row, found, error, files)
     return None
+
+
+def _unknown_state(error: KeyError) -> Explanation | None:
+    """Explain a next_state() of magicbot that names no state."""
+    frame = frames_of(error)[-1]
+    if not frame.f_globals.get("__name__", "").startswith("magicbot.state_machine") or not error.args:
+        return None
+    machine = frame.f_locals.get("self")
+    known = [each for each in dir(machine) if not each.startswith("_") and each not in dir(type(machine).__base__)]
+    text = f"class {type(machine).__name__} has no state {error.args[0]}"
+    return Explanation(text, f"{nearest(str(error.args[0]), known).capitalize()}")
 
 
 def _explained(row: Row, found: re.Match[str], error: BaseException, files: RobotFiles) -> Explanation:

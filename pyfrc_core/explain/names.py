@@ -5,12 +5,23 @@ from __future__ import annotations
 import builtins
 import sys
 from difflib import get_close_matches
+from importlib.util import find_spec
 
 from ..project.hidden_libraries import LIBRARIES
 from ..project.robot_files import RobotFiles
 from .explanation import Explanation
 from .imports import imported_name
-from .places import users_frame
+from .places import place_of_assignment, users_frame
+
+
+def _spark(setting: str) -> str:
+    """Return how a motor controller of REV is set up: all settings at once."""
+    once = "MOTOR.configure(config, rev.ResetMode.kResetSafeParameters, rev.PersistMode.kPersistParameters)"
+    return f"config = rev.SparkMaxConfig(); config.{setting}; and once, with all settings: {once}"
+
+
+#: Names of other languages: what Python calls them.
+_ELSEWHERE = {"true": "True", "false": "False", "null": "None", "nil": "None", "NULL": "None", "this": "self"}
 
 #: Names of earlier seasons: what to write instead.
 GONE = {
@@ -32,6 +43,8 @@ GONE = {
     "Filesystem": "wpilib.getDeployDirectory() and wpilib.getOperatingDirectory()",
     "command": "the package commands2",
     "Hand": "getLeftX(), getRightX(), getLeftY() and getRightY()",
+    "getX": "getLeftX() or getRightX()",
+    "getY": "getLeftY() or getRightY()",
     "hasPeriodPassed": "hasElapsed(seconds), or advanceIfElapsed(seconds) for something that repeats",
     "getInstance": "the methods of the class itself, such as wpilib.DriverStation.isEnabled()",
     "isOperatorControl": "isTeleop",
@@ -71,10 +84,10 @@ GONE = {
     "SparkMaxPIDController": "rev.SparkClosedLoopController",
     "SparkPIDController": "rev.SparkClosedLoopController",
     "getPIDController": "getClosedLoopController",
-    "setSmartCurrentLimit": "SparkMaxConfig().smartCurrentLimit(amperes), and configure()",
-    "setIdleMode": "SparkMaxConfig().setIdleMode(mode), and configure()",
-    "restoreFactoryDefaults": "configure() with rev.ResetMode.kResetSafeParameters",
-    "burnFlash": "configure() with rev.PersistMode.kPersistParameters",
+    "setSmartCurrentLimit": _spark("smartCurrentLimit(40)"),
+    "setIdleMode": _spark("setIdleMode(rev.SparkMaxConfig.IdleMode.kBrake)"),
+    "restoreFactoryDefaults": _spark("inverted(False)"),
+    "burnFlash": _spark("inverted(False)"),
     "AHRS_SPI": "navx.AHRS.create_spi()",
     "WPI_TalonFX": "phoenix6.hardware.TalonFX",
     "NetworkTables": "ntcore.NetworkTableInstance.getDefault()",
@@ -86,10 +99,12 @@ _KNOWN = ("wpilib", "commands2", "rev", "phoenix6", "phoenix5", "navx", "ntcore"
 
 def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     if isinstance(error, AttributeError) and error.name:
-        return _attribute(error, error.name)
+        return _attribute(error, error.name, files)
     if isinstance(error, ImportError) and error.name and (wanted := imported_name(error)):
         return _import(wanted, error.name)
     if isinstance(error, NameError) and error.name:
+        if error.name in _ELSEWHERE:
+            return Explanation(remedy=f"Did you mean {_ELSEWHERE[error.name]}?")
         frame = users_frame(error, files)
         known = [*frame[0].f_locals, *frame[0].f_globals, *dir(builtins), *LIBRARIES] if frame else []
         if close := get_close_matches(error.name, known, n=1, cutoff=0.75):
@@ -100,7 +115,7 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
     return None
 
 
-def _attribute(error: AttributeError, name: str) -> Explanation | None:
+def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanation | None:
     obj = error.obj
     owner = obj if isinstance(obj, type) else type(obj)
     module = getattr(obj, "__name__", "") if owner.__module__ == "builtins" else owner.__module__
@@ -110,11 +125,20 @@ def _attribute(error: AttributeError, name: str) -> Explanation | None:
     if is_library and name in GONE:
         what = module if owner.__module__ == "builtins" else owner.__name__
         return Explanation(f"{what} has no {name} any more", f"Instead: {GONE[name]}.")
+    if module in _KNOWN and owner.__module__ == "builtins" and find_spec(f"{module}.{name}") is not None:
+        return Explanation(remedy=f"Is this line missing at the top: import {module}.{name}")
     meant = _nearest(name, [each for each in dir(obj) if not each.startswith("__")])
     if meant:
         return Explanation(remedy=f"Did you mean {meant}?")
     if owner.__module__.partition(".")[0] not in ("builtins", *_KNOWN) and not isinstance(obj, type):
-        return Explanation(remedy=f"Nothing has set {name} yet: is that line missing, or does it run later?")
+        place, target = place_of_assignment(owner, files, name)
+        if target == name:
+            return Explanation(
+                remedy=f"Write self.{name} = ... in {place}: without self, the name is known there only."
+            )
+        if place:
+            return Explanation(remedy=f"{place} sets {name}, but has not run yet: move it to __init__ or robotInit.")
+        return Explanation(remedy=f"Nothing has set {name}: is the line missing, or is the name misspelt?")
     return None
 
 

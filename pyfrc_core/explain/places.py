@@ -25,11 +25,13 @@ def _all_frames(error: BaseException) -> list[FrameType]:
     return found
 
 
-def _called_by_pyfrc(error: BaseException) -> list[FrameType]:
+def _called_by_pyfrc(error: BaseException, files: RobotFiles) -> list[FrameType]:
     """Return the frames of what pyfrc has called last: the robot's and its libraries', and none of the test's."""
     frames = _all_frames(error)
     ours = [at for at, frame in enumerate(frames) if is_pyfrc(frame.f_code.co_filename)]
-    return frames[ours[-1] + 1 :] if ours else []
+    called = frames[ours[-1] + 1 :] if ours else []
+    # What a test calls itself, or asserts, is at the test's line: the robot among its variables says nothing.
+    return [] if any(files.is_project_file(frame.f_code.co_filename) for frame in called) else called
 
 
 def users_class(error: BaseException, files: RobotFiles) -> type[Any] | None:
@@ -37,7 +39,7 @@ def users_class(error: BaseException, files: RobotFiles) -> type[Any] | None:
 
     The innermost function's come first; `self` comes last in each, since it is often the robot.
     """
-    for frame in reversed(_called_by_pyfrc(error)):
+    for frame in reversed(_called_by_pyfrc(error, files)):
         variables = dict(frame.f_locals)
         own = variables.pop("self", None)
         for value in (*variables.values(), own):
@@ -65,7 +67,7 @@ def line_of_class(cls: type[Any], files: RobotFiles, name: str = "") -> str:
     file = file_of(cls, files)
     if file is None:
         return ""
-    for node in ast.walk(_parsed(file)):
+    for node in ast.walk(parsed(file)):
         if isinstance(node, ast.ClassDef) and node.name == cls.__name__:
             line = next(_lines_of_name(node, name), node.lineno) if name else node.lineno
             return f"{files.relative(file)}:{line}"
@@ -84,9 +86,30 @@ def users_frame(error: BaseException, files: RobotFiles) -> tuple[FrameType, int
     return found.get(True) or found.get(False)
 
 
+def statement_at(frame: FrameType, line: int) -> ast.AST:
+    """Return the innermost statement at a line of a file, or the expression of an if, while or return."""
+    found: ast.AST = ast.Module([], [])
+    for node in ast.walk(parsed(frame.f_code.co_filename)):
+        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or 0):
+            found = node  # the inner ones come later
+    test = getattr(found, "test", None)
+    return test if isinstance(test, ast.expr) else found
+
+
+def place_of_assignment(cls: type[Any], files: RobotFiles, name: str) -> tuple[str, str]:
+    """Return where a method of a class assigns a name, and what it assigns to: ``self.arm`` or ``arm``."""
+    file = file_of(cls, files)
+    classes = [each for each in ast.walk(parsed(file)) if isinstance(each, ast.ClassDef)] if file is not None else []
+    for node in (each for found in classes if found.name == cls.__name__ for each in ast.walk(found)):
+        for target in node.targets if isinstance(node, ast.Assign) else []:
+            if last_name(target) == name and file is not None:
+                return f"{files.relative(file)}:{target.lineno}", ast.unparse(target)
+    return "", ""
+
+
 def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
     """Return the calls of a function or class, by its last name, in the statement at a line of a file."""
-    calls = [node for node in ast.walk(_parsed(frame.f_code.co_filename)) if isinstance(node, ast.Call)]
+    calls = [node for node in ast.walk(parsed(frame.f_code.co_filename)) if isinstance(node, ast.Call)]
     return [
         call for call in calls if call.lineno <= line <= (call.end_lineno or 0) and name in ("", last_name(call.func))
     ]
@@ -106,11 +129,13 @@ def _lines_of_name(node: ast.ClassDef, name: str) -> Iterator[int]:
         else:
             names = [last_name(each.target)] if isinstance(each, ast.AnnAssign) else []
             names += [each.arg] if isinstance(each, ast.arg) else []
+            names += [each.name] if isinstance(each, ast.FunctionDef) else []
         if name in names and isinstance(each, (ast.stmt, ast.arg)):
             yield each.lineno
 
 
-def _parsed(file: str) -> ast.Module:
+def parsed(file: str) -> ast.Module:
+    """Return a file's syntax tree; an empty one if it cannot be read."""
     try:
         with open(file, "rb") as source:  # noqa: PTH123
             return ast.parse(source.read())

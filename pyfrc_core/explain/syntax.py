@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import keyword
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..project.robot_files import RobotFiles
@@ -21,6 +23,67 @@ _LOOK_ALIKES = {
     **dict.fromkeys("\uff1a", (":", "colon")),
     **dict.fromkeys("\uff0c", (",", "comma")),
 }
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A mistake and its remedy, in which ``{0}`` is the first group of `line`.
+
+    :param message: what Python's message contains
+    :param line: what the user's line contains
+    """
+
+    message: str
+    line: str
+    remedy: str
+
+
+_UNREADABLE = "^invalid syntax$|^expected ':'|was never closed|^unmatched"
+_KEYWORDS = "|".join(keyword.kwlist)
+_ROWS = (
+    # What other languages write.
+    _Row(_UNREADABLE, r"\belse +if\b", "Write elif, in one word."),
+    _Row(_UNREADABLE, r"([\w.]+) *\+\+", "Write {0} += 1"),
+    _Row(_UNREADABLE, r"([\w.]+) *--", "Write {0} -= 1"),
+    _Row(_UNREADABLE, r"&&|\|\|", "Write and for &&, and or for ||."),
+    _Row(_UNREADABLE, r"!(?!=)", "Write not for !, as in: if not pressed:"),
+    _Row(_UNREADABLE, r"\bnew +(\w+)", "Write {0}(...) without new."),
+    _Row(
+        _UNREADABLE,
+        r"\)\s*\{\s*$",
+        "Write a colon for the brace, and indent what belongs to it; Python needs no braces.",
+    ),
+    _Row(
+        _UNREADABLE,
+        r"^\s*(?:(?:public|private|static|final|const|var|let|int|float|double|boolean|String) +)+(\w+) *=",
+        "Write {0} = ... without the words before it.",
+    ),
+    _Row(_UNREADABLE, r"^\s*(elif|else)\b", "Write {0} exactly below its if, with nothing less indented between them."),
+    _Row(_UNREADABLE, r"//", "A comment begins with #."),
+    _Row(_UNREADABLE, rf"(?:\.|\bdef |\bclass )({_KEYWORDS})\b", "{0} is a word of Python: choose another name."),
+    # What is missing, or too much.
+    _Row("inconsistent use of tabs", "", "Indent with spaces only (VS Code: Convert Indentation to Spaces)."),
+    _Row(
+        "expected an indented block",
+        "",
+        "After a line with a colon, the next is indented: indent this one by four spaces, or write pass before it.",
+    ),
+    _Row(
+        "unexpected indent|unindent does not match",
+        "",
+        "Indent this line exactly as the line above it that belongs to the same block.",
+    ),
+    _Row("^expected ':'", "", "Write a colon at the end of this line."),
+    _Row("was never closed", "", "Close the bracket, on this line or on one of those that follow."),
+    _Row("^unmatched", "", "Remove this bracket, or write the one that opens it."),
+    _Row("^unterminated (?:string|f-string) literal", "", "Write the quotation mark that ends the text."),
+    _Row("^invalid decimal literal", r"\.\d*[fFdD]\b", "Write the number without a letter."),
+    _Row("^invalid decimal literal", "", "A name cannot begin with a digit."),
+    _Row("Maybe you meant '=='", "", "Write == to compare."),
+    _Row("^expected 'except'", "", "Write except SomeError: below the lines of try, or remove try."),
+    _Row("^positional argument follows", "", "Write arguments with a name and = behind those without."),
+    _Row("outside function", "", "Indent this line into the function that it belongs to."),
+)
 
 _CONFLICT = re.compile(r"^(<{7}|={7}|>{7})(?:\s|$)")
 
@@ -46,18 +109,18 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
             meant = "an ordinary space" if right == " " else f"{right} with your keyboard"
             text = f"{shown} a {kind} of a word processor, which Python does not read{_shown_line(error)}"
             return Explanation(text, f"Write {meant}; search the whole file for it.", place)
-    remedy = ""
-    if isinstance(error, TabError):
-        remedy = "Indent with spaces only (VS Code: Convert Indentation to Spaces)."
-    elif error.msg and "expected an indented block" in error.msg:
-        remedy = "Indent the next line by four spaces; write pass if there is nothing to do."
-    elif error.msg and re.search(r"unexpected indent|unindent does not match", error.msg):
-        remedy = "Indent this line exactly as the line above it that belongs to the same block."
-    elif error.msg == "expected ':'":
-        remedy = "Write a colon at the end of this line."
-    elif error.msg and "was never closed" in error.msg:
-        remedy = "Close the bracket, on this line or on one of those that follow."
+    remedy = _remedy(error)
     return Explanation(f"{type(error).__name__}: {error.msg}{_shown_line(error)}", remedy, place)
+
+
+def _remedy(error: SyntaxError) -> str:
+    """Return what to write instead; empty if no row is about this mistake."""
+    message, line = error.msg or "", (error.text or "").partition("#")[0]
+    for row in _ROWS:
+        found = re.search(row.line, line)
+        if found is not None and re.search(row.message, message):
+            return row.remedy.format(*found.groups())
+    return ""
 
 
 def _shown_line(error: SyntaxError) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 import wpilib
 
 from ..hal import HalData
-from .motor_calls import GROUPS
+from .motor_calls import motor_groups
 
 
 class InertMotors:
@@ -29,7 +29,7 @@ class InertMotors:
 
         A class of the robot's own is: it passes its calls on to another motor controller.
         """
-        if isinstance(motor, GROUPS):
+        if isinstance(motor, motor_groups()):
             members = self._members.get(id(motor))
             if members is None:  # created before it could be watched
                 return not any(output["initialized"] for output in self._hal_data["pwm"])

@@ -5,12 +5,12 @@ The calls are intercepted in Python, since WPILib passes 0 for NaN, and 1 for gr
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from typing import Any
 
 import wpilib
-import wpilib.drive
 from wpilib.interfaces import MotorController
 
 from ..runtime.patch_table import Patch
@@ -20,15 +20,24 @@ from .prepared_patches import PreparedPatches
 #: from -1 to 1.
 OnMotorCall = Callable[[Any, str, tuple[float, ...], bool], None]
 
-#: The class of each drive, and its functions that set its motors.
-DRIVES = (
-    (wpilib.drive.DifferentialDrive, ("arcadeDrive", "curvatureDrive", "tankDrive")),
-    (wpilib.drive.MecanumDrive, ("driveCartesian", "drivePolar")),
-)
+
+def _drives() -> list[tuple[type[Any], tuple[str, ...]]]:
+    """Return the class of each drive, and its functions that set its motors.
+
+    Empty unless the robot imports wpilib.drive: an import here would hide that the robot forgot it.
+    """
+    drive = sys.modules.get("wpilib.drive")
+    if drive is None:
+        return []
+    return [
+        (drive.DifferentialDrive, ("arcadeDrive", "curvatureDrive", "tankDrive")),
+        (drive.MecanumDrive, ("driveCartesian", "drivePolar")),
+    ]
 
 
-#: Whatever is made of other motors, and sets them without a call in Python.
-GROUPS = (wpilib.MotorControllerGroup, *(drive for drive, _ in DRIVES))
+def motor_groups() -> tuple[type[Any], ...]:
+    """Return the classes that are made of other motors, and set them without a call in Python."""
+    return (wpilib.MotorControllerGroup, *(drive for drive, _ in _drives()))
 
 
 class MotorCalls:
@@ -63,10 +72,10 @@ def _patches(calls: MotorCalls) -> Iterator[Patch]:
         for name, wrap in (("set", _set), ("setVoltage", _set_voltage)):
             if name in vars(owner):
                 yield Patch(owner, name, wrap(vars(owner)[name], calls))
-    for drive, names in DRIVES:
+    for drive, names in _drives():
         for name in names:
             yield Patch(drive, name, _drive(vars(drive)[name], name, calls))
-    for group in GROUPS:
+    for group in motor_groups():
         yield Patch(group, "__init__", _init(group.__init__, calls.members))
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from .code_warning import CodeWarning
 from .foreign_paths import find_foreign_paths
+from .missing_super import find_missing_super
 from .misspelled_methods import find_misspelled_methods
 
 if TYPE_CHECKING:
@@ -14,4 +15,4 @@ if TYPE_CHECKING:
 
 def find_code_warnings(project: Project) -> list[CodeWarning]:
     """Return the mistakes in the project's imported modules."""
-    return [*find_misspelled_methods(project), *find_foreign_paths(project)]
+    return [*find_misspelled_methods(project), *find_missing_super(project), *find_foreign_paths(project)]

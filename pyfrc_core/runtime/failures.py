@@ -61,7 +61,9 @@ def headline(error: BaseException, files: RobotFiles) -> str | None:
         return f"{_line_of(method, files)}: {_without_self(method)}"
     traceback = error.__traceback__
     explained = explain(error, files) or Explanation()
-    line = explained.place or files.innermost_line(traceback, tests=False) or (method and _line_of(method, files))
+    users = files.innermost_line(traceback, tests=False)
+    place = _line_of(method, files) if method is not None and users is None else explained.place
+    line = place or users
     text = explained.text or text_of(error)
     if not line and (cls := users_class(error, files)) is not None:
         line, text = line_of_class(cls, files), with_library_calls(text, error, files)

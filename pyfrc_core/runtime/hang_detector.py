@@ -285,7 +285,10 @@ class HangDetector:
         stands = "," if run is None else f": robot time has stood at {run.clock.now:.2f} s"
         if computes:
             what = f"{who} hangs here{stands} through {seconds} of computing"
-            advice = "Is it an endless loop? A loop that waits for something must wait(), sleep or return."
+            advice = (
+                "Is it an endless loop? Write if instead of while: WPILib calls a periodic method every 20 ms. "
+                "In a thread of its own, a loop must sleep or wait()."
+            )
         else:
             what = f"{who} is blocked here{stands} for {seconds}, waiting for the world outside"
             advice = "Read from sockets, files and the keyboard in a thread of their own, or with a time-out."

@@ -86,13 +86,13 @@ def _import_error(project: Project, file: Path, error: BaseException) -> RobotCo
         text, _, advice = text.partition("\n")
         return RobotCodeError(text.rstrip("."), where=place, remedy=f"{_WHILE_IMPORTED} {advice}")
     explained = explain(error, project.files) or Explanation()
-    remedy = explained.remedy or _WHILE_IMPORTED
+    remedy = explained.remedy or ("" if isinstance(error, SyntaxError) else _WHILE_IMPORTED)
     if isinstance(error, SystemExit):
         remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
     if isinstance(error, (ImportError, AttributeError)):
         for hidden in find_hidden_by_any_name(project.root, project.main_file):
             remedy += f" {hidden.text}. {hidden.remedy}"
-    return RobotCodeError(explained.text or text_of(error), where=explained.place or place, remedy=remedy)
+    return RobotCodeError(explained.text or text_of(error), where=explained.place or place, remedy=remedy or None)
 
 
 def _refuse_wrong_encoding(project: Project, file: Path, error: Exception) -> None:

@@ -45,7 +45,7 @@ _SYNONYMS = (
 
 def find_misspelled_methods(project: Project) -> list[CodeWarning]:
     """Return the misspelled methods in the project's imported modules, sorted by line."""
-    found = [each for cls in _classes(project) for each in _in_class(cls, project)]
+    found = [each for cls in robot_classes(project) for each in _in_class(cls, project)]
     return sorted(set(found), key=lambda each: (each.where.rpartition(":")[0], int(each.where.rpartition(":")[2])))
 
 
@@ -54,7 +54,7 @@ def refuse_unawaited_methods(project: Project) -> None:
 
     :raises RobotCodeError: when there is such a method, with its line
     """
-    for cls in _classes(project):
+    for cls in robot_classes(project):
         if not any(base.__module__.partition(".")[0] in _LIBRARIES for base in cls.__mro__):
             continue
         for name, method in vars(cls).items():
@@ -71,7 +71,8 @@ def refuse_unawaited_methods(project: Project) -> None:
                 )
 
 
-def _classes(project: Project) -> Iterator[type]:
+def robot_classes(project: Project) -> Iterator[type]:
+    """Yield the classes of the project's imported modules."""
     for module in loaded_modules.look():
         if not project.files.is_robot_code(str(module.__file__)):
             continue

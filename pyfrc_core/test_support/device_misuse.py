@@ -16,6 +16,10 @@ from ..project.robot_files import RobotFiles
 from ..runtime.patch_table import Patch, patched
 
 
+class DeviceWarning(UserWarning):
+    """A device gets what it does not work with, although that raises no error here."""
+
+
 @contextmanager
 def warning_of_misuse(files: RobotFiles) -> Iterator[None]:
     """Warn, with the robot's line, until the context ends. The robot's modules must be imported."""
@@ -75,4 +79,4 @@ class _Misuse:
         if line and line not in self._warned:
             self._warned.add(line)
             file, _, number = line.rpartition(":")
-            warnings.warn_explicit(f"{line}: {text}", UserWarning, self._files.root + file, int(number))
+            warnings.warn_explicit(f"{line}: {text}", DeviceWarning, self._files.root + file, int(number))

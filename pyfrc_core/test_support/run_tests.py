@@ -19,6 +19,7 @@ from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin
 from .remembered_passes import RememberedPasses
 from .summary import SummaryPlugin, warn_of_mistakes
+from .uncollected import find_uncollected
 
 
 class NoTestsError(PyfrcError):
@@ -111,9 +112,14 @@ def _arguments(project: Project, builtin: bool, pytest_args: Sequence[str]) -> l
     if builtin:
         return [*args, "--pyargs", f"{READY_MADE_TESTS}.basic"]
     looked = " and ".join(str(path) for path in project.test_directories)
+    patterns = ("test_*.py", "*_test.py")
+    remedies = list(find_uncollected(project.test_directories[0], set(), patterns))
+    remedies.append(
+        "Run the ready-made tests with: pyfrc test --builtin. Add them to the project with: pyfrc add-tests"
+    )
     raise NoTestsError(
-        f"this project has no tests: looked for files named test_*.py or *_test.py in {looked}",
-        remedy="Run the ready-made tests with: pyfrc test --builtin. Add them to the project with: pyfrc add-tests",
+        f"this project has no tests: looked for files named {' or '.join(patterns)} in {looked}",
+        remedy="\n  ".join(remedies),
     )
 
 

@@ -20,6 +20,7 @@ from ..compat.library_output import LibraryOutput
 from ..compat.real_time_devices import explain_real_time
 from ..project import Project
 from ..runtime.code_checks import find_code_warnings
+from .device_misuse import DeviceWarning
 from .reporting import BUG, REAL_TIME, put_first
 from .uncollected import find_uncollected
 
@@ -66,6 +67,7 @@ class SummaryPlugin:
         _explain_real_time_devices(terminalreporter)
         # Before the failures, of which they may be the reason.
         mistakes = [f"{mistake}\n  {mistake.remedy}" for mistake in find_code_warnings(self._project)]
+        mistakes += _take_device_warnings(terminalreporter.stats)
         _print_section(terminalreporter, "mistakes without an error", mistakes)
         _print_section(terminalreporter, "files without tests", self._uncollected)
         return (yield)
@@ -85,6 +87,15 @@ def _print_section(terminalreporter: Any, title: str, lines: list[str]) -> None:
         terminalreporter.write_sep("=", title, yellow=True, bold=True)
         for line in lines:
             terminalreporter.write_line(line, yellow=True)
+
+
+def _take_device_warnings(stats: dict[str, list[Any]]) -> list[str]:
+    """Remove the warnings about devices from pytest's, which has the tests before the line, and return each once."""
+    mark = f"{DeviceWarning.__name__}: "
+    taken = [each.message for each in stats.get("warnings", []) if mark in each.message]
+    if taken:
+        stats["warnings"] = [each for each in stats["warnings"] if mark not in each.message]
+    return list(dict.fromkeys(message.partition(mark)[2].partition("\n")[0] for message in taken))
 
 
 def warn_of_mistakes(project: Project, stream: TextIO = sys.stderr) -> None:

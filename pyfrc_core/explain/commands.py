@@ -1,0 +1,69 @@
+"""What is bound to a trigger of commands2 and is no command: an error when the trigger fires, far from its line."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+
+from ..errors import text_of
+from ..project.robot_files import RobotFiles
+from .explanation import Explanation
+from .places import last_name, parsed
+
+_NO_COMMAND = re.compile(
+    r"AttributeError: '(NoneType|function|method)' object has no attribute '(schedule|cancel|isScheduled)'"
+    r"|TypeError: Command\.\w+\(\) missing 1 required positional argument: 'self'"
+)
+_BINDINGS = frozenset({"onTrue", "onFalse", "onChange", "whileTrue", "whileFalse", "toggleOnTrue", "toggleOnFalse"})
+
+
+def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
+    if not _NO_COMMAND.match(text_of(error)) or files.innermost_line(error.__traceback__, tests=False) is not None:
+        return None
+    modules = [str(getattr(module, "__file__", "")) for module in list(sys.modules.values())]
+    trees = {file: parsed(file) for file in modules if file and files.is_robot_code(file)}
+    defined = {
+        each.name: (f"{files.relative(file)}:{each.lineno}", each)
+        for file, tree in trees.items()
+        for each in ast.walk(tree)
+        if isinstance(each, (ast.FunctionDef, ast.ClassDef))
+    }
+    for file, tree in trees.items():
+        for call, bound in _bound(tree):
+            if found := _explained(bound, defined):
+                text, remedy = found
+                return Explanation(
+                    f"{last_name(call.func)}() got {text}", remedy, f"{files.relative(file)}:{call.lineno}"
+                )
+    return None
+
+
+def _bound(tree: ast.Module) -> Iterator[tuple[ast.Call, ast.expr]]:
+    """Yield the calls that bind a command, and what they bind."""
+    for call in ast.walk(tree):
+        if isinstance(call, ast.Call) and last_name(call.func) in _BINDINGS and call.args:
+            yield call, call.args[0]
+
+
+def _explained(
+    bound: ast.expr, defined: dict[str, tuple[str, ast.FunctionDef | ast.ClassDef]]
+) -> tuple[str, str] | None:
+    """Return what is bound, and what to write, if that is no command."""
+    written = ast.unparse(bound)
+    run_once = f"Write commands2.cmd.runOnce({written}, SUBSYSTEM), with the subsystem that it uses."
+    if isinstance(bound, ast.Lambda):
+        return f"the function {written}, and no command", run_once
+    called = isinstance(bound, ast.Call)
+    place, definition = defined.get(last_name(bound.func if isinstance(bound, ast.Call) else bound), ("", None))
+    if isinstance(definition, ast.FunctionDef):
+        returns = any(isinstance(each, ast.Return) and each.value is not None for each in ast.walk(definition))
+        if called and not returns:
+            return f"None, from {written}", f"Write return before the command in {definition.name}() ({place})."
+        if not called:
+            remedy = f"Write {written}(), which returns the command." if returns else run_once
+            return f"the function {written}, and no command", remedy
+    if isinstance(definition, ast.ClassDef) and not called:
+        return f"the class {written}, and no command", f"Write {written}(...), with what its __init__ needs ({place})."
+    return None
