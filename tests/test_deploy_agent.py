@@ -19,8 +19,9 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_
 from pyfrc_core.deploy import agent
 from pyfrc_core.deploy.agent import console, wire
 from pyfrc_core.deploy.agent_client import DeployRequest, Watched
-from pyfrc_core.deploy.agent_package import COMMAND, agent_package
+from pyfrc_core.deploy.agent_package import agent_command, agent_package
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 SOURCES = sorted(Path(agent.__file__).parent.glob("*.py"))
 
@@ -61,9 +62,10 @@ def test_it_runs_as_it_is_sent(robot: LocalRobot, tmp_path: Path, python: str) -
 
 
 def test_nothing_of_the_user_stands_in_the_command() -> None:
-    assert COMMAND.startswith("/usr/local/bin/python3 -X utf8 -u -c '")
-    assert COMMAND.count("'") == 2
-    assert not set("$`\\!{%") & set(COMMAND)
+    command = agent_command(ROBORIO.python)
+    assert command.startswith("/usr/local/bin/python3 -X utf8 -u -c '")
+    assert command.count("'") == 2
+    assert not set("$`\\!{%") & set(command)
     assert len(agent_package()) < 50_000, "each deploy sends it: 0.1 s at 4 Mbit/s"
 
 

@@ -28,6 +28,7 @@ from pyfrc_core.deploy.progress import DeployProgress, Phase, UserInterface
 from pyfrc_core.deploy.robot_setup import image_problem
 from pyfrc_core.deploy.session import DeployOptions
 from pyfrc_core.deploy.target_connection import RobotChoice
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.project import find_project
 
 #: As the tool of today has it.
@@ -426,7 +427,7 @@ def test_problems_of_a_robot_are_reported_with_remedies(how, what, remedy, new_r
 
 
 def test_the_second_model_s_image_is_accepted() -> None:
-    assert image_problem("FRC_roboRIO2_2026_v1.2", OURS) is None
+    assert image_problem("FRC_roboRIO2_2026_v1.2", OURS, ROBORIO) is None
 
 
 @pytest.mark.parametrize("how", [{"wpilib": "2026.1.1"}, {"image": "FRC_roboRIO_2024_v2.1"}], ids=["wpilib", "image"])

@@ -16,6 +16,7 @@ from pyfrc_core.deploy.connection import connect, load_in_background
 from pyfrc_core.deploy.discovery import Address
 from pyfrc_core.deploy.errors import ConnectionFailedError, HostKeyError
 from pyfrc_core.deploy.host_keys import KNOWN_HOSTS, HostKey, HostKeys
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 
 @contextmanager
@@ -50,7 +51,7 @@ def server(says: bytes) -> Iterator[Address]:
 def test_another_server_than_an_ssh_server_is_reported(says: bytes, tmp_path: Path) -> None:
     load_in_background()
     with server(says) as address, pytest.raises(ConnectionFailedError) as caught:
-        connect(address, HostKeys(tmp_path).of_robot(address))
+        connect(address, ROBORIO, HostKeys(tmp_path).of_robot(address, ROBORIO))
     assert str(caught.value).startswith(f"{address}: could not log in to the robot: ")
     assert "Check the link" in str(caught.value)
     assert not (tmp_path / KNOWN_HOSTS).exists()
@@ -59,7 +60,7 @@ def test_another_server_than_an_ssh_server_is_reported(says: bytes, tmp_path: Pa
 @pytest.mark.parametrize("says", [b"SSH-2.0-robot\r\n", b"SSH-2.0-robot\r\n" + b"\0" * 64])
 def test_an_ssh_server_that_only_sends_its_greeting_is_reported(says: bytes, tmp_path: Path) -> None:
     with server(says) as address, pytest.raises(ConnectionFailedError, match="violated the SSH protocol") as caught:
-        connect(address, HostKeys(tmp_path).of_robot(address))
+        connect(address, ROBORIO, HostKeys(tmp_path).of_robot(address, ROBORIO))
     assert "Error" not in str(caught.value)
 
 
@@ -67,7 +68,7 @@ def test_an_address_without_a_robot_is_reported(tmp_path: Path) -> None:
     with refusing_port() as port:
         address = Address("127.0.0.1", port)
         with pytest.raises(ConnectionFailedError, match="refused"):
-            connect(address, HostKeys(tmp_path).of_robot(address))
+            connect(address, ROBORIO, HostKeys(tmp_path).of_robot(address, ROBORIO))
 
 
 # -- when a key is pinned ----------------------------------------------------------------------------------------------
@@ -109,22 +110,22 @@ def ssh_server(lets_in: bool) -> Iterator[tuple[Address, list[socket.socket]]]:
 def test_a_key_is_pinned_only_after_the_login(accepted: str | None, tmp_path: Path) -> None:
     """A stranger's server at the team's address does not let us in, and must not become the team's robot."""
     if accepted:
-        HostKeys(tmp_path).of_robot(Address("10.12.34.2")).check(HostKey("ssh-ed25519", b"the robot's"))
+        HostKeys(tmp_path).of_robot(Address("10.12.34.2"), ROBORIO).check(HostKey("ssh-ed25519", b"the robot's"))
     before = [str(known) for known in HostKeys(tmp_path).entries()]
-    keys = HostKeys(tmp_path).of_robot(Address("10.12.34.2"))
+    keys = HostKeys(tmp_path).of_robot(Address("10.12.34.2"), ROBORIO)
     with ssh_server(lets_in=False) as (address, [connected]), pytest.raises(ConnectionFailedError, match="refuses"):
-        connect(address, keys, connected=connected, accepted_key=accepted, robot_name="practice")
+        connect(address, ROBORIO, keys, connected=connected, accepted_key=accepted, robot_name="practice")
     assert [str(known) for known in HostKeys(tmp_path).entries()] == before
     with ssh_server(lets_in=True) as (address, [connected]):
         options = {"accepted_key": accepted, "robot_name": "practice"}
-        with connect(address, keys, connected=connected, **options) as connection:
+        with connect(address, ROBORIO, keys, connected=connected, **options) as connection:
             assert connection.recognized.new_for == "team 1234"
     after = [str(known) for known in HostKeys(tmp_path).entries()]
     assert after == [*before, f"{SHOWN.fingerprint} (practice)"]
 
 
 def test_a_key_that_is_not_expected_is_refused_before_the_login(tmp_path: Path) -> None:
-    keys = HostKeys(tmp_path).of_robot(Address("10.12.34.2"))
+    keys = HostKeys(tmp_path).of_robot(Address("10.12.34.2"), ROBORIO)
     keys.check(HostKey("ssh-ed25519", b"the robot's"))
     with ssh_server(lets_in=False) as (address, [connected]), pytest.raises(HostKeyError):
-        connect(address, keys, connected=connected)
+        connect(address, ROBORIO, keys, connected=connected)

@@ -19,7 +19,7 @@ from roborio.machine import KILL_SCRIPT
 
 from pyfrc_core.deploy import session
 from pyfrc_core.deploy.agent import serve, wire
-from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError, StoppedError
@@ -28,6 +28,7 @@ from pyfrc_core.deploy.progress import DeployProgress, Phase, UserInterface
 from pyfrc_core.deploy.recovery_hints import explain_interruption
 from pyfrc_core.deploy.session import DeployOptions
 from pyfrc_core.deploy.target_connection import RobotChoice
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.project import find_project
 
 REQUEST = DeployRequest("robot.py", {})
@@ -239,7 +240,8 @@ def test_a_silent_laptop_counts_as_disconnected_while_it_holds_the_lock(robot: L
         ):
             ours.sendall(data)
         ours.shutdown(socket.SHUT_WR)
-        serve.Agent(LoggingWire(source, io.BytesIO()), RoboRio(RobotPaths(str(robot.root))), {}).serve()
+        there = RealRobot(RobotPaths(ROBORIO.layout, str(robot.root)))
+        serve.Agent(LoggingWire(source, io.BytesIO()), there, {}).serve()
     assert limited == [False, True, True, False]
 
 

@@ -18,6 +18,7 @@ from roborio import PATIENCE
 from pyfrc_core.deploy import discovery
 from pyfrc_core.deploy.discovery import Address, RobotNotFoundError, addresses_of, find_robot, parse_address
 from pyfrc_core.deploy.errors import OnTheFieldError
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.errors import UsageError
 
 BANNER = b"SSH-2.0-look-alike\r\n"
@@ -179,10 +180,10 @@ def test_useless_data_of_a_driver_station_is_ignored(says: bytes, servers: Serve
     [(1, "10.0.1.2"), (254, "10.2.54.2"), (1234, "10.12.34.2"), (10000, "10.100.0.2"), (25599, "10.255.99.2")],
 )
 def test_a_teams_addresses(team: int, first: str) -> None:
-    every = [str(address) for address, _ in addresses_of(team)]
+    every = [str(address) for address, _ in addresses_of(team, ROBORIO)]
     name = f"roboRIO-{team}-FRC"
     assert every == [first, f"{name}.local", "172.22.11.2", name, f"{name}.lan", f"{name}.frc-field.local"]
-    assert [str(address) for address, _ in addresses_of(team, resolve=False)] == [first, "172.22.11.2"]
+    assert [str(address) for address, _ in addresses_of(team, ROBORIO, resolve=False)] == [first, "172.22.11.2"]
 
 
 @pytest.mark.parametrize(

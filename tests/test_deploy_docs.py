@@ -46,7 +46,12 @@ def test_the_guide_lists_the_options_that_there_are(make_project) -> None:
 
 def test_the_guides_messages_are_those_that_there_are() -> None:
     source = "".join(file.read_text("utf-8") for file in (ROOT / "pyfrc_core/deploy").rglob("*.py"))
-    source = source.replace("{user}", "lvuser").replace("{LARGE:,}", "250,000").replace("{year}", "...")
+    source = (
+        source.replace("{user}", "lvuser")
+        .replace("{controller.name}", "roboRIO")
+        .replace("{LARGE:,}", "250,000")
+        .replace("{year}", "...")
+    )
     _, _, section = GUIDE.partition("## When something is wrong")
     rows = [line.split("|")[1] for line in section.partition("\n## ")[0].splitlines() if line.startswith("| `")]
     assert len(rows) > 10

@@ -15,6 +15,7 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.facts import RobotFacts
 from pyfrc_core.deploy.robot_checks import refuse_unfit_robot
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor import CheckResult
 from pyfrc_core.doctor.robot import RobotSearch, check_robot_facts
 from pyfrc_core.project import find_project
@@ -23,11 +24,12 @@ OURS = version("wpilib")
 JAVA_COMMAND = "/usr/local/frc/JRE/bin/java -jar /home/lvuser/Robot.jar\n"
 REMOVE = "To remove it: pyfrc undeploy --java-cpp"
 READY = RobotFacts(
-    not_roborio=None,
+    controller="roboRIO",
+    not_controller=None,
     python="3.14.0",
     wpilib=OURS,
     image="FRC_roboRIO_2026_v1.2",
-    startup_dlls=False,
+    wastes_memory=False,
     free_bytes=100_000_000,
     user="lvuser",
     current=None,
@@ -146,7 +148,7 @@ def test_a_robot_without_python(image: str, first: str, make_project) -> None:
 @pytest.mark.parametrize(
     "wrong",
     [
-        {"not_roborio": "there is no frcKillRobot.sh on it"},
+        {"not_controller": "there is no frcKillRobot.sh on it"},
         {"wpilib": None},
         {"python": "3.9.1"},
         {"wpilib": "2026.1.1"},
@@ -158,8 +160,8 @@ def test_a_robot_without_python(image: str, first: str, make_project) -> None:
 def test_the_doctor_reports_what_a_deploy_would_refuse(wrong: dict[str, Any]) -> None:
     facts = replace(READY, **wrong)
     with pytest.raises(RefusedError) as refused:
-        refuse_unfit_robot(facts, "10.12.34.2", check_versions=True)
-    (finding,) = check_robot_facts(facts, None)
+        refuse_unfit_robot(facts, ROBORIO, "10.12.34.2", check_versions=True)
+    (finding,) = check_robot_facts(facts, ROBORIO, None)
     assert finding.status == "problem"
     assert finding.text == refused.value.message
     assert finding.remedy is not None
@@ -167,20 +169,20 @@ def test_the_doctor_reports_what_a_deploy_would_refuse(wrong: dict[str, Any]) ->
 
 
 def test_a_robot_that_is_ready() -> None:
-    refuse_unfit_robot(READY, "10.12.34.2", check_versions=True)
-    (finding,) = check_robot_facts(READY, None)
+    refuse_unfit_robot(READY, ROBORIO, "10.12.34.2", check_versions=True)
+    (finding,) = check_robot_facts(READY, ROBORIO, None)
     assert finding.status == "ok"
 
 
 def test_the_doctor_reports_all_problems_at_once() -> None:
     facts = replace(READY, wpilib=None, python="3.9.1", image="FRC_roboRIO_2025_v2.0")
-    assert [each.status for each in check_robot_facts(facts, None)] == ["problem"] * 3
+    assert [each.status for each in check_robot_facts(facts, ROBORIO, None)] == ["problem"] * 3
 
 
 def test_packages_that_the_project_asks_for_and_the_robot_lacks(tmp_path: Path) -> None:
     (tmp_path / "robot.py").write_text(ROBOT_PY)
     (tmp_path / "pyproject.toml").write_text('[tool.robotpy]\ncomponents = ["commands2"]\n')
-    (finding,) = check_robot_facts(READY, find_project(tmp_path))
+    (finding,) = check_robot_facts(READY, ROBORIO, find_project(tmp_path))
     assert (
         finding.text == "pyproject.toml:2: components has commands2, but the robot has no package robotpy-commands-v2"
     )

@@ -10,19 +10,20 @@ from pathlib import Path
 import pytest
 from skips import missing_programs, require
 
-from pyfrc_core.deploy.discovery import USB_CABLE, Address, FoundRobot, addresses_of, team_of
+from pyfrc_core.deploy.discovery import Address, FoundRobot, addresses_of, team_of
 from pyfrc_core.deploy.errors import HostKeyError, KeyFileError
 from pyfrc_core.deploy.host_keys import KNOWN_HOSTS, HostKey, HostKeys, RobotKeys
 from pyfrc_core.deploy.target_connection import load_robot_keys
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.deploy.team import RobotTarget
 from pyfrc_core.errors import UsageError
 from pyfrc_core.project import Project
 
 TEAM = 1234
-RADIO, USB = Address("10.12.34.2"), Address(USB_CABLE)
+RADIO, USB = Address("10.12.34.2"), Address("172.22.11.2")
 #: What the Driver Station may report: an address that the team's list does not have.
 REPORTED = Address("10.12.34.57")
-OF_TEAM = [*(address for address, _ in addresses_of(TEAM)), REPORTED]
+OF_TEAM = [*(address for address, _ in addresses_of(TEAM, ROBORIO)), REPORTED]
 #: Named by --robot, and none of the team's.
 OWN = [Address("192.168.1.20"), Address("robot.example.org"), Address("127.0.0.1", 2222), Address("10.12.34.2", 2222)]
 #: The team's robots, by what they are for; one of no robot of the team; one of another team's robot.
@@ -38,7 +39,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def at(directory: Path, address: Address = RADIO, team: int | None = TEAM) -> RobotKeys:
     """What the project knows of the robot there, as the next command reads it."""
-    return HostKeys(directory).of_robot(address, team)
+    return HostKeys(directory).of_robot(address, ROBORIO, team)
 
 
 def refused(keys: RobotKeys, key: HostKey, accepted: str | None = None) -> str:
@@ -136,7 +137,7 @@ def test_another_team_s_robot_named_by_robot_in_a_team_s_project(
     (tmp_path / "robot.py").touch()
     (tmp_path / "pyproject.toml").write_text(f"[tool.pyfrc]\nteam = {TEAM}\n")
     project = Project(tmp_path / "robot.py")
-    HostKeys(tmp_path).of_robot(Address("10.99.99.2")).check(THEIRS)
+    HostKeys(tmp_path).of_robot(Address("10.99.99.2"), ROBORIO).check(THEIRS)
     if own_is_pinned:
         at(tmp_path).check(ONE)
     with socket.socket() as unused:
@@ -153,7 +154,7 @@ def test_another_team_s_address_named_by_robot_in_a_team_s_project(tmp_path: Pat
     (tmp_path / "robot.py").touch()
     (tmp_path / "pyproject.toml").write_text(f"[tool.pyfrc]\nteam = {TEAM}\n")
     theirs = Address("10.99.99.2")
-    HostKeys(tmp_path).of_robot(theirs).check(THEIRS)
+    HostKeys(tmp_path).of_robot(theirs, ROBORIO).check(THEIRS)
     with socket.socket() as unused:
         keys = load_robot_keys(
             Project(tmp_path / "robot.py"), RobotTarget(robot=str(theirs)), FoundRobot(theirs, "named", unused)
@@ -190,21 +191,21 @@ def test_a_volunteer_meets_robots_of_many_teams(
 ) -> None:
     """Two are known. Only at the end of a cable, where no team was named, any robot may be."""
     keys = HostKeys.of_this_user()
-    keys.of_robot(RADIO).check(ONE)
-    keys.of_robot(Address("10.56.78.2")).check(THEIRS)
+    keys.of_robot(RADIO, ROBORIO).check(ONE)
+    keys.of_robot(Address("10.56.78.2"), ROBORIO).check(THEIRS)
     keys = HostKeys.of_this_user()
     if accepted:
-        keys.of_robot(address, team).check(key)
+        keys.of_robot(address, ROBORIO, team).check(key)
     else:
-        refused(keys.of_robot(address, team), key)
+        refused(keys.of_robot(address, ROBORIO, team), key)
 
 
 @pytest.mark.parametrize("team", [None, TEAM])
 def test_what_was_at_the_volunteer_s_cable_is_known_nowhere_else(team: int | None, home: Path) -> None:
-    assert HostKeys.of_this_user().of_robot(USB, team).check(UNKNOWN).new_for == "the USB cable"
-    assert HostKeys.of_this_user().of_robot(USB, team).check(UNKNOWN).new_for is None
-    assert HostKeys.of_this_user().of_robot(RADIO).check(ONE).new_for == f"team {TEAM}"
-    refused(HostKeys.of_this_user().of_robot(RADIO), UNKNOWN)
+    assert HostKeys.of_this_user().of_robot(USB, ROBORIO, team).check(UNKNOWN).new_for == "the USB cable"
+    assert HostKeys.of_this_user().of_robot(USB, ROBORIO, team).check(UNKNOWN).new_for is None
+    assert HostKeys.of_this_user().of_robot(RADIO, ROBORIO).check(ONE).new_for == f"team {TEAM}"
+    refused(HostKeys.of_this_user().of_robot(RADIO, ROBORIO), UNKNOWN)
     assert (home / KNOWN_HOSTS).is_file()
 
 
@@ -366,7 +367,7 @@ def test_a_link_is_not_followed(place: str, whose: str, there: bool, home: Path)
     assert sorted(home.rglob("*")) == before
     assert elsewhere.is_dir() or not there or elsewhere.read_text() == "precious"
     link.unlink()
-    keys = HostKeys(home).of_robot(RADIO)
+    keys = HostKeys(home).of_robot(RADIO, ROBORIO)
     link.parent.mkdir(exist_ok=True)
     if place != ".pyfrc":
         link.symlink_to(elsewhere)  # between reading and writing
@@ -378,7 +379,7 @@ def test_a_file_that_cannot_be_written_is_named_with_what_to_do(home: Path) -> N
     (home / ".pyfrc").write_text("no directory")
     for keys, whose in ((HostKeys(home), "the project's directory"), (HostKeys.of_this_user(), "your home directory")):
         with pytest.raises(KeyFileError, match="cannot write the file with the keys of robots: file exists") as caught:
-            keys.of_robot(RADIO).check(ONE)
+            keys.of_robot(RADIO, ROBORIO).check(ONE)
         assert caught.value.where == str(home / ".pyfrc")
         assert f"Make sure that you can write {whose}" in str(caught.value.remedy)
 

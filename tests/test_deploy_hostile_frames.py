@@ -20,15 +20,16 @@ from pyfrc_core.deploy.agent_client import AgentClient, DeployRequest
 from pyfrc_core.deploy.agent_stream import TimeLimits
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
 from pyfrc_core.deploy.manifest import Manifest
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 Script = Iterable[bytes]
 
 FACTS: dict[str, Any] = {
     "python": "3.14.0",
     "wpilib": "2026.2.2",
-    "image": "FRC_roboRIO_2026_v1.2",
-    "startup_dlls": False,
-    "kill_script": True,
+    "virtual": False,
+    "texts": {"image": "IMAGEVERSION = FRC_roboRIO_2026_v1.2", "memory": None},
+    "can_restart": True,
     "free": 1_000_000,
     "user": "lvuser",
     "home": True,
@@ -84,6 +85,7 @@ class FakeRobot:
     """
 
     address = "10.12.34.2"
+    controller = ROBORIO
 
     def __init__(self, *scripts: bytes, then: Script = (), status: int | None = -1, errors: bytes = b"") -> None:
         self._scripts = iter(scripts)

@@ -19,6 +19,7 @@ from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.errors import DeployError
 from pyfrc_core.deploy.facts import Deployed, RobotFacts
 from pyfrc_core.deploy.robot_info import info_text
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 #: Deploys a program, number n, and starts it: whether the watch sees it run; None: it is not watched.
 DeployAndWatch = Callable[[int, "bool | None"], Deployed]
@@ -128,7 +129,7 @@ def test_a_release_that_ran_stays_known_as_such_and_in_place_it_becomes_another_
 def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, agents: Agents, deploy: DeployAndWatch) -> None:
     for number, runs in ((1, True), (2, True), (3, False), (4, False)):
         deploy(number, runs)
-    releases = Releases(RobotPaths(str(robot.root)), Activity(lambda **said: None))
+    releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
     releases.prune(kept=1)
     assert releases.numbers() == [2, 4]
 

@@ -29,6 +29,7 @@ from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.progress import DeployProgress, UserInterface
 from pyfrc_core.deploy.session import DeployOptions
 from pyfrc_core.deploy.target_connection import RobotChoice
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.project import find_project
 
 LATE = """
@@ -252,7 +253,7 @@ def test_a_damaged_record_prevents_no_deploy_and_no_rollback(
 
 def test_what_cannot_be_written_is_valid_and_written_later(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def new() -> Releases:
-        return Releases(RobotPaths(str(tmp_path)), Activity(lambda **said: None))
+        return Releases(RobotPaths(ROBORIO.layout, str(tmp_path)), Activity(lambda **said: None))
 
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

@@ -13,8 +13,9 @@ from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import LocalRobot
 
 from pyfrc_core.deploy.agent import releases, robot_paths, serve, wire
-from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.robot_paths import Lock, Refusal, RobotPaths
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 
 def is_held(lock: Path) -> bool:
@@ -27,7 +28,7 @@ def is_held(lock: Path) -> bool:
 
 
 def test_a_lock_that_is_removed_while_it_is_waited_for(robot: LocalRobot, monkeypatch: pytest.MonkeyPatch) -> None:
-    there = RobotPaths(str(robot.root))
+    there = RobotPaths(ROBORIO.layout, str(robot.root))
     flock, calls = fcntl.flock, []
 
     def late_flock(stream: Any, how: int) -> None:
@@ -47,7 +48,7 @@ def test_a_lock_that_is_removed_while_it_is_waited_for(robot: LocalRobot, monkey
 def test_an_undeploy_holds_the_lock_until_everything_is_removed_and_limits_no_silence_then(
     robot: LocalRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    there = RobotPaths(str(robot.root))
+    there = RobotPaths(ROBORIO.layout, str(robot.root))
     (there.releases / "1").mkdir(parents=True)
     (there.releases / "1.json").write_text("{}")
     there.code.symlink_to(".pyfrc/releases/1")
@@ -71,7 +72,7 @@ def test_an_undeploy_holds_the_lock_until_everything_is_removed_and_limits_no_si
     os.close(target)
     responses = io.BytesIO()
     with io.FileIO(source, "rb") as stream:
-        serve.Agent(LoggingWire(stream, responses), RoboRio(there), {"who": "alice"}).serve()
+        serve.Agent(LoggingWire(stream, responses), RealRobot(there), {"who": "alice"}).serve()
     assert limited == [False, False]
     responses.seek(0)
     wire.read_frame(responses.read)  # the facts

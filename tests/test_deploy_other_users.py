@@ -84,7 +84,7 @@ def test_a_read_only_directory_of_the_program_is_removed(roborio: Roborio, tmp_p
         roborio.run("touch", "/home/lvuser/py/photos/old/a.jpg", user="lvuser")
         roborio.run("chmod", "-R", "a-w", "/home/lvuser/py/photos", user="lvuser")
         # The trash of an earlier deploy is gone as well.
-        assert sorted(each.name for each in (roborio.home / ".pyfrc").iterdir()) == ["agent", "lock", "releases"]
+        assert sorted(each.name for each in (roborio.home / ".pyfrc").iterdir()) == ["lock", "releases"]
     roborio.run("chmod", "555", "/home/lvuser/.pyfrc/releases/5", user="lvuser")
     assert undeploy(roborio)
     assert not (roborio.home / "py").exists()

@@ -72,19 +72,22 @@ def test_a_home_that_cannot_be_written(project: RobotProject, look_alike: Robori
 def test_other_problems_of_the_disk(tmp_path: Path) -> None:
     missing, directory = tmp_path / "missing", tmp_path / "directory"
     directory.mkdir()
-    assert disk_problem(OSError(errno.EROFS, "")) == (
+    assert disk_problem(OSError(errno.EROFS, ""), "admin") == (
         "the robot's disk cannot be written: it is read-only, as after an error",
         "Switch the robot off and on again; if that does not help, image it.",
     )
     taken = OSError(errno.EISDIR, "Is a directory", str(missing), None, str(directory))
-    assert disk_problem(taken) == (f"{directory}: Is a directory", "Remove or rename it on the robot.")
-    assert disk_problem(OSError(errno.EIO, "Input/output error")) == (
+    assert disk_problem(taken, "admin") == (f"{directory}: Is a directory", "Remove or rename it on the robot.")
+    assert disk_problem(OSError(errno.EIO, "Input/output error"), "admin") == (
         "the robot: Input/output error",
         "Check its owner and permissions.",
     )
     if user() != "root":
         directory.chmod(0o555)
-        assert f"{directory} on the robot belongs" in disk_problem(PermissionError(13, "", str(directory / "a")))[0]
+        assert (
+            f"{directory} on the robot belongs"
+            in disk_problem(PermissionError(13, "", str(directory / "a")), "admin")[0]
+        )
 
 
 def test_a_file_that_becomes_a_pipe_while_it_is_sent(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:

@@ -70,8 +70,8 @@ def test_a_program_is_deployed_and_runs(roborio: Roborio, tmp_path: Path) -> Non
     project = program(tmp_path, "first", **{"Ünd so weiter/it's.txt": "x"})
     with agent(roborio) as robot:
         facts = robot.facts
-        assert (facts.not_roborio, facts.python, facts.wpilib, facts.user) == (None, "3.14.0", "2026.2.2", "lvuser")
-        assert (facts.image, facts.startup_dlls) == ("FRC_roboRIO_2026_v1.2", True)
+        assert (facts.not_controller, facts.python, facts.wpilib, facts.user) == (None, "3.14.0", "2026.2.2", "lvuser")
+        assert (facts.image, facts.wastes_memory) == ("FRC_roboRIO_2026_v1.2", True)
         assert (facts.current, facts.command, facts.running, facts.releases) == (None, None, False, ())
         assert robot.deploy(project, DeployRequest("robot.py", {"git-hash": "1234"})).release == 1
         printed: list[str] = []
@@ -366,4 +366,4 @@ def test_what_is_not_on_the_robot() -> None:
     require_roborio()
     with Roborio(image=None, wpilib=None) as roborio, agent(roborio) as robot:
         assert robot.facts.wpilib is None
-        assert robot.facts.not_roborio == "there is no roboRIO image on it"
+        assert robot.facts.not_controller == "there is no roboRIO image on it"

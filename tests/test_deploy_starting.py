@@ -19,7 +19,7 @@ from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, Cut, LocalRobot, project_of
 
 from pyfrc_core.deploy import recovery_hints
-from pyfrc_core.deploy.agent.host import RoboRio, age_of
+from pyfrc_core.deploy.agent.host import RealRobot, age_of
 from pyfrc_core.deploy.agent.program import process_state
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent.start_monitor import ENDED, RUNNING, STARTING, UNHEARD
@@ -39,6 +39,7 @@ from pyfrc_core.deploy.progress import DeployProgress, Questions, UserInterface
 from pyfrc_core.deploy.recovery_hints import RecoveryHint, explain_interruption
 from pyfrc_core.deploy.responses import Fields, ResponseError
 from pyfrc_core.deploy.starting import go_back, start
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 REQUEST = DeployRequest("robot.py", {})
 TRACEBACK = "Traceback (most recent call last):\n  File robot.py\nRuntimeError: no such gyro\n"
@@ -240,7 +241,7 @@ def test_old_releases_that_cannot_be_removed_do_not_prevent_a_deploy(
     os.close(writing)
     with os.fdopen(reading, "rb", buffering=0) as source:
         deployed = transaction.Deploy(
-            releases.Releases(RobotPaths(str(robot.root)), Activity(lambda **said: None)),
+            releases.Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None)),
             wire.Wire(source, io.BytesIO()),
             request,
         ).run()
@@ -387,14 +388,14 @@ def test_a_process_that_the_kill_script_leaves_in_the_background_is_not_waited_f
 def test_what_can_be_seen_of_a_process_from_outside() -> None:
     if not Path("/proc/self/stat").exists():
         pytest.skip("what is seen of a process is in /proc")
-    seen = process_state(RoboRio(RobotPaths()), os.getpid())
+    seen = process_state(RealRobot(RobotPaths(ROBORIO.layout)), os.getpid())
     assert seen["cpu"] > 0
     assert not seen["network_tables"]
     state = StartState.of(Fields({"seconds": 1.0, "age": 1.0, "heard": True, "seen": True, **seen}))
     assert state.cpu == seen["cpu"]
     with subprocess.Popen([sys.executable, "-c", ""]) as ended:
         ended.wait()
-    assert process_state(RoboRio(RobotPaths()), ended.pid) == {}
+    assert process_state(RealRobot(RobotPaths(ROBORIO.layout)), ended.pid) == {}
     assert age_of([ended.pid]) is None
 
 

@@ -11,6 +11,7 @@ from pyfrc_core.deploy.agent import wire
 from pyfrc_core.deploy.agent_stream import AgentStream, TimeLimits
 from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError
 from pyfrc_core.deploy.responses import Fields
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 LIMITS = TimeLimits(start=20, silence=60, frame=30, response=900)
 ALIVE = wire.message_frame({"alive": True})
@@ -70,7 +71,7 @@ class SlowChannel:
 
 def stream_of(*pieces: tuple[float, bytes], clock: Clock | None = None) -> AgentStream:
     clock = clock or Clock()
-    return AgentStream(SlowChannel(clock, pieces), "10.12.34.2", LIMITS, clock)
+    return AgentStream(SlowChannel(clock, pieces), "10.12.34.2", ROBORIO.python, LIMITS, clock)
 
 
 def dripping(frame: bytes, seconds: float) -> list[tuple[float, bytes]]:
@@ -123,7 +124,7 @@ def test_each_limit_holds(pieces: list[tuple[float, bytes]], seconds: float, why
 def test_keep_alive_messages_while_contents_are_sent_are_skipped_and_the_rest_is_kept() -> None:
     clock = Clock()
     for ready, news in ((ALIVE + ALIVE, False), (ALIVE + DONE, True)):
-        stream = AgentStream(SlowChannel(clock, [(0, DONE)], ready), "10.12.34.2", LIMITS, clock)
+        stream = AgentStream(SlowChannel(clock, [(0, DONE)], ready), "10.12.34.2", ROBORIO.python, LIMITS, clock)
         assert stream.has_message() is news
         assert stream.read_response(release) == 7
 
@@ -131,6 +132,6 @@ def test_keep_alive_messages_while_contents_are_sent_are_skipped_and_the_rest_is
 def test_a_refusal_while_contents_are_sent() -> None:
     refusal = wire.message_frame({"error": "space", "message": "the disk is full", "remedy": ""})
     clock = Clock()
-    stream = AgentStream(SlowChannel(clock, [], ALIVE + refusal), "10.12.34.2", LIMITS, clock)
+    stream = AgentStream(SlowChannel(clock, [], ALIVE + refusal), "10.12.34.2", ROBORIO.python, LIMITS, clock)
     with pytest.raises(RefusedError, match="the disk is full"):
         stream.has_message()

@@ -17,6 +17,7 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, pro
 from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.manifest import Entry, Manifest
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 START = "env LD_LIBRARY_PATH=/usr/local/frc/lib/ /usr/local/bin/python3 -u"
 OTHER_COMMAND = "/usr/local/bin/python3 -u -O -m robotpy --main /home/lvuser/py/robot.py run"
@@ -213,11 +214,11 @@ def test_where_names_cannot_be_exchanged(robot: LocalRobot, project: Project, mo
     from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 
     other_tools_program(robot, "env LD_LIBRARY_PATH=/usr/local/frc/lib/ x --main /home/lvuser/py/robot.py run")
-    ours = releases.Releases(RobotPaths(str(robot.root)), Activity(lambda **said: None))
+    ours = releases.Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
     ours.adopt_directory(1)
     ours.directory(2).mkdir()
     (ours.directory(2) / "robot.py").write_text("# ours\n")
-    commands = releases.start_commands("robot.py")
+    commands = releases.start_commands(ROBORIO.layout, "robot.py", debug=False)
     ours.write_record(2, {"files": {}, "commands": commands})
     for name, text in commands.items():
         (robot.home / name).write_text(text or "")

@@ -10,7 +10,7 @@ import pytest
 from packaging.requirements import Requirement
 
 from pyfrc_core._version import __version__
-from pyfrc_core.deploy.agent import robot_paths
+from pyfrc_core.deploy.targets import controller_of
 from pyfrc_core.runtime.clock import KICKOFF
 from pyfrc_core.season import CURRENT, FIELDS, SEASONS
 
@@ -64,5 +64,6 @@ def test_the_robotpy_command_finds_our_commands() -> None:
     assert CURRENT.cli_plugins in PYPROJECT["project"]["entry-points"]
 
 
-def test_the_agent_on_the_robot_knows_the_same_directories() -> None:
-    assert (CURRENT.controller.home, CURRENT.controller.program) == (robot_paths.HOME, robot_paths.CODE)
+def test_a_deploy_knows_the_controller_of_each_season() -> None:
+    for season in SEASONS.values():
+        assert controller_of(season).layout.home == season.controller.home

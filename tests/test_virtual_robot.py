@@ -24,6 +24,7 @@ from skips import require
 from started_commands import StartedCommand
 
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.errors import PyfrcError
 from pyfrc_core.project import find_project
@@ -288,13 +289,13 @@ def test_a_key_that_cannot_be_read_is_named(project: RobotProject, directory: Pa
     assert result.first_error.startswith(f"{directory / 'host_key'}: this is not an SSH key: ")
 
 
-@pytest.mark.parametrize("write", ["pathlib.Path.write_text", "pyfrc_core.virtual_robot.disk.write_whole"])
+@pytest.mark.parametrize("write", ["pathlib.Path.mkdir", "pyfrc_core.virtual_robot.disk.write_whole"])
 def test_a_full_disk_is_named(write: str, directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(write, full)
-    with pytest.raises(PyfrcError) as caught, RobotDisk(directory) as disk:
+    with pytest.raises(PyfrcError) as caught, RobotDisk(directory, ROBORIO.layout) as disk:
         disk.write_address("127.0.0.1:2222", 2222)
     assert caught.value.message == "cannot store the virtual robot's files here: no space left on device"
     assert caught.value.where == str(directory)
@@ -393,7 +394,7 @@ def listening_ports(process: int) -> set[int]:
 
 
 def test_a_control_request_needs_the_key(project: RobotProject, directory: Path) -> None:
-    program = Supervisor(RobotPaths(str(directory)), lambda line: None, lambda text: None)
+    program = Supervisor(RobotPaths(ROBORIO.layout, str(directory)), lambda line: None, lambda text: None)
     control = Control(program)
     try:
         for request, response in ((f"{control.key} processes\n", b"[]"), ("0000 processes\n", b""), ("\n", b"")):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from ..file_hash import open_file
 from . import recovery_hints
 from .agent import start_monitor, wire
-from .agent_package import COMMAND, agent_package
+from .agent_package import agent_command, agent_package
 from .agent_stream import AgentStream, Channel, TimeLimits
 from .errors import ConnectionFailedError, DeployError, OtherComputerError
 from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .discovery import Address
     from .manifest import Entry, Manifest
     from .recovery_hints import RecoveryHint
+    from .targets import Controller
 
 __all__ = ["AgentClient", "DeployRequest", "Deployed", "Plan", "RobotFacts", "RolledBack", "StartState", "Watched"]
 
@@ -39,6 +40,7 @@ class CommandRunner(Protocol):
     """The part of `Connection` that `AgentClient` needs."""
 
     address: Address
+    controller: Controller
 
     def open(self, command: str) -> Channel: ...
 
@@ -50,11 +52,12 @@ class AgentClient:
     request, and another `DeployError` if the request fails.
     """
 
-    def __init__(self, stream: AgentStream) -> None:
+    def __init__(self, stream: AgentStream, controller: Controller) -> None:
         self._stream = stream
+        self._controller = controller
         #: Whether the robot restarts the program without another request.
         self._is_restarting = False
-        #: Whether the old program survived the kill script at the last restart, and was ended by a signal.
+        #: Whether the old program survived the stop command at the last restart, and was ended by a signal.
         self.program_survived = False
         self._current: int | None = None
         self._previous: int | None = None
@@ -76,16 +79,25 @@ class AgentClient:
         :param hello: fields for the first message: ``modules`` to look for in the robot's Python; in tests, ``root``,
             the directory with the robot's files
         """
-        client = cls(AgentStream(connection.open(COMMAND), str(connection.address), limits or TimeLimits()))
-        first = wire.message_frame({"who": _user_and_host(), **(hello or {})})
+        controller = connection.controller
+        channel = connection.open(agent_command(controller.python))
+        stream = AgentStream(channel, str(connection.address), controller.python, limits or TimeLimits())
+        client = cls(stream, controller)
+        layout = controller.layout._asdict()
+        first = wire.message_frame({"who": _user_and_host(), "layout": layout, **(hello or {})})
         try:
-            client._stream.start(agent_package() + first)
-            client.facts = client._stream.read_response(RobotFacts.of, silence=client._stream.limits.start)
+            stream.start(agent_package() + first)
+            client.facts = stream.read_response(client._facts, silence=stream.limits.start)
         except BaseException:
             client.close()
             raise
         client._current, client._command = client.facts.current, client.facts.command
         return client
+
+    @property
+    def stop_command(self) -> str:
+        """Return the name of the command that stops the program."""
+        return self._controller.layout.stop[0].rpartition("/")[2]
 
     def close(self) -> None:
         """Close the connection to the agent, which then ends."""
@@ -93,7 +105,10 @@ class AgentClient:
 
     def info(self) -> RobotFacts:
         """Return the robot's current facts."""
-        return self._request(RobotFacts.of, "info")
+        return self._request(self._facts, "info")
+
+    def _facts(self, fields: Fields) -> RobotFacts:
+        return RobotFacts.of(fields, self._controller)
 
     def plan(self, manifest: Manifest, on_progress: OnProgress | None = None) -> Plan:
         """Return what a deploy of these files would do. Nothing is written on the robot."""
@@ -149,7 +164,7 @@ class AgentClient:
     def restart(self) -> bool:
         """Restart the program, or wait for the restart that a deploy has requested.
 
-        :return: whether the old program survived the kill script, and was ended by a signal
+        :return: whether the old program survived the stop command, and was ended by a signal
         """
         if not self._is_restarting:
             self._send("restart")

@@ -8,7 +8,6 @@ from functools import cache
 from pathlib import Path
 
 from .agent import wire
-from .agent_stream import PYTHON
 
 # The only program in the command line. It reads the agent's modules from standard input and calls `main`.
 _BOOTSTRAP = """
@@ -28,7 +27,6 @@ for n,s in json.loads(zlib.decompress(g(int(g(8))))):
  exec(compile(s,n,"exec"),t.__dict__)
 t.main(r)
 """
-COMMAND = f"{PYTHON} -X utf8 -u -c '{_BOOTSTRAP}'"
 #: In the order of their imports. The bootstrap calls `main` of the last one.
 _MODULES = (
     "__init__",
@@ -36,6 +34,7 @@ _MODULES = (
     "wire",
     "disk",
     "imports",
+    "layout",
     "robot_paths",
     "release_record",
     "virtual",
@@ -52,6 +51,14 @@ _MODULES = (
     "program",
     "serve",
 )
+
+
+def agent_command(python: str) -> str:
+    """Return the command that loads the agent.
+
+    :param python: the path of the robot's Python
+    """
+    return f"{python} -X utf8 -u -c '{_BOOTSTRAP}'"
 
 
 @cache

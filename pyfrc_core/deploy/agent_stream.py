@@ -28,7 +28,6 @@ MAX_FRAMES = 100_000
 
 #: Printed by the bootstrap of `agent_package`.
 _TOO_OLD = re.compile(r"Python \d+\.\d+ is too old")
-PYTHON = "/usr/local/bin/python3"
 _RETRY = "The program on the robot is complete. Check the connection and run the command again."
 
 
@@ -71,14 +70,16 @@ class AgentStream:
     Each method raises `ConnectionFailedError` if the connection is lost or a time limit is exceeded, `RefusedError` if
     the robot refuses a request, and another `DeployError` if a request fails or the robot violates the protocol.
 
+    :param python: the path of the robot's Python
     :param clock: a monotonic clock in seconds, for `limits`
     """
 
     def __init__(
-        self, channel: Channel, where: str, limits: TimeLimits, clock: Callable[[], float] = time.monotonic
+        self, channel: Channel, where: str, python: str, limits: TimeLimits, clock: Callable[[], float] = time.monotonic
     ) -> None:
         self._channel = channel
         self._where = where
+        self._python = python
         self._clock = clock
         self._unread: dict[str, Any] | None = None
         #: Called with the content of each keep-alive message.
@@ -221,7 +222,7 @@ class AgentStream:
             status, output = -1, ""
         if status in (126, 127):
             return NoPythonError(
-                f"there is no Python on the robot ({PYTHON})",
+                f"there is no Python on the robot ({self._python})",
                 where=self._where,
                 remedy=PREPARE,
             )

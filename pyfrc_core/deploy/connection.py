@@ -7,7 +7,6 @@ import logging
 import socket
 import threading
 from collections.abc import Callable
-from functools import partial
 from importlib import import_module
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -16,16 +15,15 @@ from .credentials import NONE_OFFERED, Credentials
 from .discovery import CONNECT_SECONDS, Address
 from .errors import ConnectionFailedError, DeployError
 from .host_keys import HostKey, Recognized, RobotKeys
+from .targets import AdministratorTask, Controller
 
 if TYPE_CHECKING:
     import paramiko
 
-PROGRAM_USER = "lvuser"
-ADMINISTRATOR = "admin"
 #: The first part of a virtual robot's SSH greeting.
 VIRTUAL_ROBOT_GREETING = "SSH-2.0-pyfrc_virtual_robot"
 
-#: Time limit for each step of the login, in seconds. The first key exchange after a roboRIO's start is slow.
+#: Time limit for each step of the login, in seconds. The first key exchange after a robot's start is slow.
 _STEP_SECONDS = 15.0
 #: Seconds between keep-alive packets, and until a silent connection counts as lost.
 _ALIVE_SECONDS = 5
@@ -46,6 +44,7 @@ class Connection:
     """An SSH connection, open until `close`.
 
     :param transport: an authenticated transport
+    :param controller: the kind of computer on the robot
     :param key: the robot's host key
     :param recognized: the result of the key check
     :param reconnect: connects to the same robot as another user
@@ -55,6 +54,7 @@ class Connection:
         self,
         transport: paramiko.Transport,
         address: Address,
+        controller: Controller,
         key: HostKey,
         recognized: Recognized,
         reconnect: Callable[[str], Connection],
@@ -62,6 +62,7 @@ class Connection:
         self._transport = transport
         self._reconnect = reconnect
         self.address = address
+        self.controller = controller
         self.key = key
         self.recognized = recognized
 
@@ -73,14 +74,14 @@ class Connection:
         """
         return self._reconnect(user)
 
-    def administer(self, command: str) -> str | None:
-        """Run a command as administrator, over a second connection.
+    def administer(self, task: AdministratorTask) -> str | None:
+        """Run a task as administrator, over a second connection.
 
         :return: the error, or None
         """
         try:
-            with self.as_user(ADMINISTRATOR) as administrator:
-                status, printed = administrator.run(command)
+            with self.as_user(self.controller.layout.administrator) as administrator:
+                status, printed = administrator.run(task.script)
         except (DeployError, OSError) as error:
             return str(error)
         return None if status == 0 else printed.strip() or f"exit code {status}"
@@ -139,9 +140,10 @@ class Connection:
 
 def connect(
     address: Address,
+    controller: Controller,
     keys: RobotKeys,
     *,
-    user: str = PROGRAM_USER,
+    user: str | None = None,
     connected: socket.socket | None = None,
     accepted_key: str | None = None,
     robot_name: str | None = None,
@@ -150,7 +152,9 @@ def connect(
 ) -> Connection:
     """Connect, check the robot's host key, log in, and pin the key if it is new.
 
+    :param controller: the kind of computer on the robot
     :param keys: the robot's known keys
+    :param user: default: the user who runs the robot program
     :param connected: a socket that is already connected to the address
     :param accepted_key: the fingerprint of a changed host key that the user accepts
     :param robot_name: a name to store with the robot's key
@@ -173,7 +177,7 @@ def connect(
     try:
         key = _greet(transport, keys)
         keys.check(key, accepted_key, robot_name, pin=False)
-        _log_in(transport, address, user, credentials)
+        _log_in(transport, address, controller, user or controller.layout.user, credentials)
         # Pinned only after the login, which fails at an unrelated server with a robot's address.
         recognized = keys.check(key, accepted_key, robot_name, pin)
     except BaseException as error:
@@ -182,12 +186,12 @@ def connect(
             raise _not_let_in(address, error) from error
         raise
     transport.set_keepalive(_ALIVE_SECONDS)
-    reconnect = partial(_connect_again, address, keys, key, credentials)
-    return Connection(transport, address, key, recognized, reconnect)
 
+    def reconnect(user: str) -> Connection:
+        accepted = key.fingerprint
+        return connect(address, controller, keys, user=user, accepted_key=accepted, pin=False, credentials=credentials)
 
-def _connect_again(address: Address, keys: RobotKeys, key: HostKey, credentials: Credentials, user: str) -> Connection:
-    return connect(address, keys, user=user, accepted_key=key.fingerprint, pin=False, credentials=credentials)
+    return Connection(transport, address, controller, key, recognized, reconnect)
 
 
 def _set_socket_options(connected: socket.socket) -> None:
@@ -212,18 +216,20 @@ def _kind_of_key(algorithm: str) -> str:
     return "ssh-rsa" if algorithm.startswith("rsa-sha2-") else algorithm
 
 
-def _log_in(transport: paramiko.Transport, address: Address, user: str, credentials: Credentials) -> None:
+def _log_in(
+    transport: paramiko.Transport, address: Address, controller: Controller, user: str, credentials: Credentials
+) -> None:
     import paramiko
 
     try:
-        # Robots have no passwords and accept these users without authentication.
+        # Robots without passwords accept these users without authentication.
         transport.auth_none(user)
         return
     except paramiko.BadAuthenticationType as refused:
         allowed = refused.allowed_types
     if "password" in allowed:
         with contextlib.suppress(paramiko.AuthenticationException):
-            transport.auth_password(user, "", fallback=False)
+            transport.auth_password(user, controller.password, fallback=False)
             return
     offered = 0
     if "publickey" in allowed:
@@ -232,21 +238,26 @@ def _log_in(transport: paramiko.Transport, address: Address, user: str, credenti
             with contextlib.suppress(paramiko.AuthenticationException):
                 transport.auth_publickey(user, key)
                 return
-    raise _refused(address, user, allowed, offered, credentials)
+    raise _refused(address, controller, user, allowed, offered, credentials)
 
 
 def _refused(
-    address: Address, user: str, allowed: list[str], offered: int, credentials: Credentials
+    address: Address, controller: Controller, user: str, allowed: list[str], offered: int, credentials: Credentials
 ) -> ConnectionFailedError:
     if offered:
         what = f"the robot refuses {user} with {credentials.offered(offered)}"
         remedy = "Offer the right key: --identity FILE, or ssh-add FILE and --ssh-agent."
     elif "password" in allowed:
-        what = f"the robot refuses {user} with an empty password, which is the default on robots"
-        remedy = (
-            f"Remove the password, as admin on the robot: passwd -d {user}; or image the robot again. If this is not "
-            "the robot, give its address with --robot HOST."
-        )
+        if controller.password:
+            what = f"the robot refuses {user} with the password {controller.password}, which is the default on robots"
+            remedy = f"Set the password on the robot: passwd {user}; or image the robot again."
+        else:
+            what = f"the robot refuses {user} with an empty password, which is the default on robots"
+            administrator = controller.layout.administrator
+            remedy = (
+                f"Remove the password, as {administrator} on the robot: passwd -d {user}; or image the robot again."
+            )
+        remedy += " If this is not the robot, give its address with --robot HOST."
     else:
         what = f"the robot lets {user} in only with a key, and {credentials.offered(0)}"
         remedy = "Offer a key of yours: --identity FILE; or ssh-add FILE and --ssh-agent."

@@ -17,8 +17,8 @@ from functools import partial
 from typing import Any
 
 from ..errors import UsageError
-from ..season import CURRENT
 from .errors import DeployError, OnTheFieldError
+from .targets import Controller, team_of_host
 
 #: Where the Driver Station on this computer provides the address of its robot.
 DRIVER_STATION = ("127.0.0.1", 1742)
@@ -32,9 +32,6 @@ DRIVER_STATION_SECONDS = 1.0
 
 #: The highest team number that an address 10.TE.AM.2 can contain.
 MAX_TEAM = 25_599
-
-#: The address of any robot at the other end of a USB cable.
-USB_CABLE = CURRENT.controller.usb_address
 
 _BANNER = b"SSH-"
 
@@ -139,36 +136,19 @@ def _dotted(host: str) -> str:
     return socket.inet_ntoa(socket.inet_aton(host))
 
 
-def addresses_of(team: int, resolve: bool = True) -> list[tuple[Address, str]]:
+def addresses_of(team: int, controller: Controller, resolve: bool = True) -> list[tuple[Address, str]]:
     """Return the possible addresses of a team's robot, each with a description.
 
     :param resolve: include host names
     """
-    name = CURRENT.controller.host_name.format(team=team)
-    every = [
-        (Address(f"10.{team // 100}.{team % 100}.2"), "radio or Ethernet"),
-        (Address(f"{name}.local"), "name, by multicast"),
-        (Address(USB_CABLE), "USB cable"),
-        (Address(name), "name"),
-        (Address(f"{name}.lan"), "name, by the router"),
-        (Address(f"{name}.frc-field.local"), "name, on a field"),
-    ]
+    every = [(Address(host), kind) for host, kind in controller.addresses(team)]
     return [(address, kind) for address, kind in every if resolve or not address.is_name]
 
 
 def team_of(address: Address) -> int | None:
     """Return the team to which an address belongs, or None if it belongs to no team or to all (the USB cable)."""
-    if address.port != 22:
-        return None
-    if named := re.fullmatch(
-        r"roborio-([0-9]{1,5})-frc(?:\.local|\.lan|\.frc-field\.local)?", address.host, re.IGNORECASE
-    ):
-        team = int(named[1])
-    elif numbers := re.fullmatch(r"10\.([0-9]{1,3})\.([0-9]{1,2})\.2", address.host):
-        team = int(numbers[1]) * 100 + int(numbers[2])
-    else:
-        return None
-    return team if 1 <= team <= MAX_TEAM else None
+    team = team_of_host(address.host) if address.port == 22 else None
+    return team if team is not None and 1 <= team <= MAX_TEAM else None
 
 
 def find_robot(

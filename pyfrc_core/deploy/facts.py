@@ -7,12 +7,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..season import CURRENT
 from ..terminal_text import one_line
 from .agent import start_monitor
 
 if TYPE_CHECKING:
     from .responses import Fields
+    from .targets import Controller
+
+#: The image of a virtual robot, which has none.
+VIRTUAL_IMAGE = "virtual robot"
 
 _TRACEBACK = re.compile(r"^Traceback \(most recent call last\):\n(?:[ \t].*\n|\n)*(?P<error>\S.*\n?)?", re.MULTILINE)
 
@@ -65,11 +68,12 @@ class Release:
 class RobotFacts:
     """The facts that the agent reports about the robot.
 
-    :param not_roborio:  the reason why it is not a roboRIO; None if it is one
+    :param controller:   the kind of computer that it should be
+    :param not_controller: the reason why it is not one; None if it is
     :param python:       the version of its Python
     :param wpilib:       the version of `wpilib`; None if it is not installed
     :param image:        the version of its image
-    :param startup_dlls: whether the StartupDLLs line, which costs 24 MB of memory, is active
+    :param wastes_memory: whether its image wastes memory, which the controller's `save_memory` frees
     :param free_bytes:   free disk space in bytes
     :param user:         the user who owns new files
     :param current:      the release that it starts; None for another tool's program, and without a program
@@ -87,11 +91,12 @@ class RobotFacts:
     :param program_age:  seconds since the program's start; None if unknown or no program runs
     """
 
-    not_roborio: str | None
+    controller: str
+    not_controller: str | None
     python: str
     wpilib: str | None
     image: str | None
-    startup_dlls: bool
+    wastes_memory: bool
     free_bytes: int
     user: str
     current: int | None
@@ -109,22 +114,24 @@ class RobotFacts:
     program_age: float | None = None
 
     @classmethod
-    def of(cls, fields: Fields) -> RobotFacts:
+    def of(cls, fields: Fields, controller: Controller) -> RobotFacts:
         """Parse the agent's message."""
-        image = fields.line_or_none("image")
+        texts = fields.texts_or_none("texts")
+        image = VIRTUAL_IMAGE if fields.flag("virtual") else controller.image_in(texts)
         why = None
         if image is None:
-            why = f"there is no {CURRENT.controller.name} image on it"
+            why = f"there is no {controller.name} image on it"
         elif not fields.flag("home"):
-            why = f"there is no {CURRENT.controller.home} on it"
-        elif not fields.flag("kill_script"):
-            why = "there is no frcKillRobot.sh on it"
+            why = f"there is no {controller.layout.home} on it"
+        elif not fields.flag("can_restart"):
+            why = f"there is no {controller.layout.restart[0].rpartition('/')[2]} on it"
         return cls(
-            not_roborio=why,
+            controller=controller.name,
+            not_controller=why,
             python=fields.line("python"),
             wpilib=fields.line_or_none("wpilib"),
-            image=image,
-            startup_dlls=fields.flag("startup_dlls"),
+            image=None if image is None else one_line(image),
+            wastes_memory=controller.wastes_memory(texts),
             free_bytes=fields.count("free"),
             user=fields.line("user"),
             current=fields.count_or_none("current"),

@@ -23,8 +23,9 @@ from pathlib import Path
 
 from ..errors import UsageError
 from ..text_files import keep_out_of_version_control, write_whole
-from .discovery import USB_CABLE, Address, addresses_of, team_of
+from .discovery import Address, addresses_of, team_of
 from .errors import HostKeyError, KeyFileError
+from .targets import Controller, is_shared_host
 
 KNOWN_HOSTS = Path(".pyfrc", "known_hosts")
 
@@ -74,7 +75,7 @@ class KnownKey:
     @property
     def is_of_cable_only(self) -> bool:
         """Return whether it is pinned only for the USB cable, so that its team is unknown."""
-        return self.hosts == (USB_CABLE,)
+        return len(self.hosts) == 1 and is_shared_host(self.hosts[0])
 
     def __str__(self) -> str:
         return f"{self.key.fingerprint} ({self.name})" if self.name else self.key.fingerprint
@@ -110,17 +111,20 @@ class HostKeys:
         """Return the user's keys, which are used outside of projects and belong to robots of several teams."""
         return cls(Path.home(), of_user=True)
 
-    def of_robot(self, address: Address, team: int | None = None, project_team: int | None = None) -> RobotKeys:
+    def of_robot(
+        self, address: Address, controller: Controller, team: int | None = None, project_team: int | None = None
+    ) -> RobotKeys:
         """Return the known keys of a robot.
 
         :param address: its address
+        :param controller: its controller
         :param team: its team; default: the team of the address, if any
         :param project_team: the project's team, for a robot that the user named by its address
         """
         team = team_of(address) if team is None else team
-        if team is None and _host(address) == USB_CABLE:
+        if team is None and is_shared_host(_host(address)):
             team = project_team
-        return RobotKeys(self, address, team, project_team)
+        return RobotKeys(self, address, controller, team, project_team)
 
     def entries(self) -> list[KnownKey]:
         """Return all pinned keys that are now in the file."""
@@ -181,12 +185,15 @@ class HostKeys:
 class RobotKeys:
     """The known keys of a robot: those of its team, or those of its address."""
 
-    def __init__(self, keys: HostKeys, address: Address, team: int | None, project_team: int | None = None) -> None:
+    def __init__(
+        self, keys: HostKeys, address: Address, controller: Controller, team: int | None, project_team: int | None
+    ) -> None:
         self._keys = keys
+        self._controller = controller
         self._host = _host(address)
         self._team = team
         self._expected_team = project_team if team is None else team
-        self._at_cable = self._host == USB_CABLE
+        self._at_cable = is_shared_host(self._host)
 
     def known(self) -> list[KnownKey]:
         """Return the pinned keys."""
@@ -243,9 +250,9 @@ class RobotKeys:
     def _hosts(self) -> tuple[str, ...]:
         if self._team is None or self._is_any_robots():
             return (self._host,)
-        hosts = (address.host for address, _ in addresses_of(self._team))
+        hosts = (address.host for address, _ in addresses_of(self._team, self._controller))
         # Robots of several teams may be connected to the user's USB cable.
-        return tuple(host for host in hosts if not (self._keys.of_user and host == USB_CABLE))
+        return tuple(host for host in hosts if not (self._keys.of_user and is_shared_host(host)))
 
     def _what(self) -> str:
         if self._is_any_robots():

@@ -117,6 +117,11 @@ class Fields:
             raise ResponseError(f"{key!r} is not a list of texts")
         return tuple(values)
 
+    def texts_or_none(self, key: str) -> dict[str, str | None]:
+        """Return an object with a text or None for each name, unchanged."""
+        values = self.object(key)
+        return {name: values.text_or_none(name) for name in values._fields}
+
     def objects(self, key: str) -> list[Fields]:
         """Return a list of objects."""
         return [Fields(each, repr(key)) for each in self._of(key, list, "a list")]

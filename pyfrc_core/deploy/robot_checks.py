@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from .._version import requirement
 from .errors import RefusedError
 from .progress import DeployProgress
-from .robot_setup import IMAGE_IT, PREPARE, Obstacle, image_problem, python_problem, same_version_on_both
+from .robot_setup import PREPARE, Obstacle, image_it, image_problem, python_problem, same_version_on_both
+from .targets import AdministratorTask, Controller
 
 if TYPE_CHECKING:
     from .connection import Connection
@@ -18,31 +19,29 @@ if TYPE_CHECKING:
 
 NO_CHECK = "To deploy without this check: -n (--no-version-check)."
 
-# With this line, services of the image load libraries that robots do not use.
-_MEMORY_SAVER = "sed -i -e 's/^StartupDLLs/;StartupDLLs/' /etc/natinst/share/ni-rt.ini"
 
-
-def refuse_unfit_robot(facts: RobotFacts, where: str, check_versions: bool) -> None:
+def refuse_unfit_robot(facts: RobotFacts, controller: Controller, where: str, check_versions: bool) -> None:
     """Check whether the program can run on the robot.
 
     :param check_versions: also refuse a robot where the program might fail
     :raises RefusedError: if it cannot
     """
-    for each in obstacles(facts):
+    for each in obstacles(facts, controller):
         if each.certain:
             raise RefusedError(each.text, where=where, remedy=each.remedy)
         if check_versions:
             raise RefusedError(each.text, where=where, remedy=f"{each.remedy} {NO_CHECK}")
 
 
-def obstacles(facts: RobotFacts) -> Iterator[Obstacle]:
+def obstacles(facts: RobotFacts, controller: Controller) -> Iterator[Obstacle]:
     """Yield the reasons why a robot is not ready, most important first.
 
     :raises RefusedError: if `wpilib` is not installed on this computer
     """
-    if facts.not_roborio is not None:
-        remedy = f"Check the address, or name the robot with --robot HOST. For a new roboRIO: {IMAGE_IT}"
-        yield Obstacle(f"this is not a roboRIO: {facts.not_roborio}", remedy)
+    image = image_it(controller)
+    if facts.not_controller is not None:
+        remedy = f"Check the address, or name the robot with --robot HOST. For a new {controller.name}: {image}"
+        yield Obstacle(f"this is not a {controller.name}: {facts.not_controller}", remedy)
         return
     ours = _our_wpilib()
     if facts.wpilib is None:
@@ -53,36 +52,38 @@ def obstacles(facts: RobotFacts) -> Iterator[Obstacle]:
     if facts.wpilib not in (None, ours):
         text = f"the robot has wpilib {facts.wpilib}, this computer has {ours}: what passes here may fail there"
         yield Obstacle(text, same_version_on_both(ours), certain=False)
-    wrong_image = image_problem(facts.image, ours)
+    wrong_image = image_problem(facts.image, ours, controller)
     if wrong_image is not None:
-        yield Obstacle(wrong_image, IMAGE_IT, certain=False)
+        yield Obstacle(wrong_image, image, certain=False)
 
 
-class MemorySaver:
-    """Frees 24 MB of memory that the image's services use needlessly, in the background.
+class BackgroundTask:
+    """Runs a task of the administrator in the background, over a second connection. A failure only causes a warning.
 
-    This needs a second connection, as administrator. A failure only causes a warning.
+    :param task: None: nothing to do
     """
 
-    def __init__(self, facts: RobotFacts, connection: Connection) -> None:
+    def __init__(self, task: AdministratorTask | None, connection: Connection) -> None:
+        self._task = task
         self._connection = connection
         self._problem: str | None = None
-        self._thread = threading.Thread(target=self._run) if facts.startup_dlls else None
-        if self._thread is not None:
+        self._thread = threading.Thread(target=self._run)
+        if task is not None:
             self._thread.start()
 
     def report(self, progress: DeployProgress) -> None:
         """Wait for the result, and print it."""
-        if self._thread is None:
+        if self._task is None:
             return
         self._thread.join()
         if self._problem is None:
-            progress.note("  StartupDLLs was switched off: 24 MB more memory after the robot's next start")
+            progress.note(f"  {self._task.done}")
         else:
-            progress.warning(f"StartupDLLs, which costs 24 MB of memory, could not be switched off: {self._problem}")
+            progress.warning(f"{self._task.failed}: {self._problem}")
 
     def _run(self) -> None:
-        self._problem = self._connection.administer(_MEMORY_SAVER)
+        assert self._task is not None
+        self._problem = self._connection.administer(self._task)
 
 
 def _our_wpilib() -> str:

@@ -21,10 +21,12 @@ from ..config.packages import PACKAGES, component_of, quoted_requirement
 from ..config.robotpy import COMPONENTS, RobotPackages, unknown_components
 from ..wording import counted
 from .agent.imports import is_there
+from .facts import VIRTUAL_IMAGE
 from .local_checks import ask_to_continue
 from .program_imports import ProgramImports
 from .robot_checks import NO_CHECK
-from .robot_setup import INSTALL_FOR_VIRTUAL_ROBOT, INSTALL_PACKAGES, VIRTUAL_IMAGE
+from .robot_setup import INSTALL_FOR_VIRTUAL_ROBOT, INSTALL_PACKAGES
+from .targets import controller_named
 
 if TYPE_CHECKING:
     from packaging.requirements import Requirement
@@ -158,7 +160,7 @@ class ImportSearch:
         others = self._found().extensions_of(top)
         if others:
             text = f"{others[0]} is not for the robot's Python ({facts.extension_suffixes[0]})"
-            return text, "Take the library built for the roboRIO."
+            return text, f"Take the library built for the {facts.controller}."
         if top in sys.stdlib_module_names:
             text = f"Python {facts.python} on the robot has no such module"
             return text, "That Python's library does not have it: use another module."
@@ -312,12 +314,15 @@ def unfit_packages(packages: RobotPackages, facts: RobotFacts) -> Iterator[Packa
 
 
 def _needed_there(needed: Requirement, facts: RobotFacts) -> bool:
-    """Return whether a requirement's marker applies to the robot; for a roboRIO, under both of its machine names."""
+    """Return whether a requirement's marker applies to the robot, under each of its machine names."""
     if needed.marker is None:
         return True
     from packaging.markers import default_environment
 
-    machines = {facts.machine, "roborio"} if facts.machine.startswith("arm") else {facts.machine}
+    controller = controller_named(facts.controller)
+    machines = {facts.machine}
+    if facts.machine.startswith(controller.machine):
+        machines.add(controller.marker_machine)
     robot: dict[str, str] = {
         **{key: str(value) for key, value in default_environment().items()},
         "extra": "",

@@ -1,4 +1,4 @@
-"""Instructions for preparing a roboRIO, shared by `pyfrc deploy`, `pyfrc doctor` and docs/deploy.md.
+"""Instructions for preparing a robot, shared by `pyfrc deploy`, `pyfrc doctor` and docs/deploy.md.
 
 The `robotpy` command of the package `robotpy` installs Python, WPILib and the project's packages on the robot. It is
 not a dependency of pyfrc, since it is needed only once after imaging.
@@ -6,26 +6,18 @@ not a dependency of pyfrc, since it is needed only once after imaging.
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..season import CURRENT, SEASONS
-
-#: The image name of a virtual robot, which has no image.
-VIRTUAL_IMAGE = "virtual robot"
+from .facts import VIRTUAL_IMAGE
+from .targets import Controller
 
 #: The commands in order. The second needs the internet, the third the robot.
 COMMANDS = ("python -m pip install robotpy", "python -m robotpy sync", "python -m robotpy deploy")
 
 _SECTION = 'docs/deploy.md, "A freshly imaged robot", has every step.'
-
-_NEWEST_IMAGE = CURRENT.controller.images[-1]
-
-IMAGE_IT = (
-    f"Image it with the {CURRENT.controller.name} Imaging Tool of this season (image {_NEWEST_IMAGE}). {_SECTION}"
-)
 
 PREPARE = (
     f"Prepare the robot: {COMMANDS[0]}; with internet: {COMMANDS[1]}; then at the robot: {COMMANDS[2]}. {_SECTION}"
@@ -39,8 +31,6 @@ INSTALL_PACKAGES = f"with internet: {COMMANDS[1]}; then at the robot: {COMMANDS[
 
 #: How to install a package for a virtual robot, without the package's name.
 INSTALL_FOR_VIRTUAL_ROBOT = "in the environment in which pyfrc virtual-robot runs: python -m pip install"
-
-_IMAGE_VERSION = re.compile(r"FRC_roboRIO2?_((20[0-9]{2})_v[0-9.]+)")
 
 
 @dataclass(frozen=True)
@@ -79,24 +69,20 @@ def same_version_on_both(version: str) -> str:
     )
 
 
-def image_problem(image: str | None, wpilib: str) -> str | None:
+def image_it(controller: Controller) -> str:
+    """Return how to install the season's image on a robot."""
+    return f"{controller.image_it} (image {CURRENT.controller.images[-1]}). {_SECTION}"
+
+
+def image_problem(image: str | None, wpilib: str, controller: Controller) -> str | None:
     """Return why the season's tools do not accept a robot's image, or None if they accept it.
 
-    :param image:  the robot's image, such as ``FRC_roboRIO_2026_v1.2``; None if unknown
+    :param image:  the robot's image; None if unknown
     :param wpilib: the version of `wpilib` on this computer
     """
     if image == VIRTUAL_IMAGE:
         return None
-    found = _IMAGE_VERSION.fullmatch(image or "")
-    if found is None:
-        return f"the robot's image is unknown ({image!r})"
-    version, year = found.groups()
-    if version in CURRENT.controller.images:
-        return None
-    season = wpilib.partition(".")[0]
-    if year != season:
-        return f"the robot's image is of {year} ({version}), but wpilib {wpilib} needs the image of {season}"
-    return f"the robot's image is {version}, but this season's image is {_NEWEST_IMAGE}"
+    return controller.image_problem(image, wpilib, CURRENT.controller.images)
 
 
 def python_problem(python: str, wpilib: str) -> str | None:

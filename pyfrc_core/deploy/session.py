@@ -80,7 +80,7 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
     target = choose_target(project, options.choice, talk.ask)
     checked = _Checked() if options.dry_run else _check_program(project, options, talk)
     from .manifest import build_manifest
-    from .robot_checks import MemorySaver, refuse_unfit_robot
+    from .robot_checks import BackgroundTask, refuse_unfit_robot
     from .robot_packages import ImportSearch, check_packages
     from .starting import start
 
@@ -95,7 +95,7 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
         if robot.facts.other_languages:
             progress.note("  {}. {}".format(*other_languages_notice(robot.facts.other_languages)))
         _note_unfit_releases(robot.facts, progress)
-        refuse_unfit_robot(robot.facts, str(connection.address), options.check_versions)
+        refuse_unfit_robot(robot.facts, connection.controller, str(connection.address), options.check_versions)
         check_packages(imports, packages, robot.facts, talk, dry_run=options.dry_run, refuse=options.check_versions)
         if checked.importing is not None:
             _refuse_unimportable(checked.importing, talk)
@@ -104,14 +104,14 @@ def deploy(project: Project, options: DeployOptions, talk: UserInterface) -> Add
                 plan = robot.plan(manifest, phase.work)
             progress.result({"host": connection.host, "plan": asdict(plan)}, _plan_as_text(plan), requested=True)
             return connection.address
-        memory = MemorySaver(robot.facts, connection)
+        memory = BackgroundTask(connection.controller.save_memory if robot.facts.wastes_memory else None, connection)
         deployed = _upload(robot, project, manifest, options, talk, imports.program())
         verdict = None
         try:
             if not options.in_place:
                 verdict = start(robot, talk, deployed.fallback, options.auto_rollback)
         finally:
-            _replace_bad_kill_script(robot, connection, progress)
+            _repair_stop(robot, connection, progress)
             memory.report(progress)  # last, since a failing login as administrator may take half a minute
         _report_deployed(deployed, verdict, connection, options, talk)
     return connection.address
@@ -132,7 +132,7 @@ def rollback(project: Project | None, choice: RobotChoice, release: int | None, 
         try:
             restored = go_back(robot, talk, release)
         finally:
-            _replace_bad_kill_script(robot, connection, talk.progress)
+            _repair_stop(robot, connection, talk.progress)
         result = {"host": connection.host, "release": restored}
         talk.progress.result(result, f"The robot runs release {restored} again.")
     return connection.address
@@ -147,11 +147,12 @@ def _note_unfit_releases(facts: RobotFacts, progress: DeployProgress) -> None:
             progress.note(f"  release {each.number} ended after its last start: {back}")
 
 
-def _replace_bad_kill_script(robot: AgentClient, connection: Connection, progress: DeployProgress) -> None:
+def _repair_stop(robot: AgentClient, connection: Connection, progress: DeployProgress) -> None:
+    """Replace the robot's stop command if it has not ended the program."""
     if robot.program_survived:
-        from .kill_script import replace_kill_script  # not before, since it is rare
+        from .robot_checks import BackgroundTask
 
-        replace_kill_script(connection, progress)
+        BackgroundTask(connection.controller.repair_stop(), connection).report(progress)
 
 
 def undeploy_other_languages(
@@ -161,10 +162,10 @@ def undeploy_other_languages(
 
     :param confirmed: whether the user has already confirmed this
     """
-    from .other_languages import WHAT, remove_other_languages
+    from .other_languages import remove_other_languages
 
     target = choose_target(project, choice, talk.ask)
-    _confirm(f"{WHAT} will be removed", talk, confirmed)
+    _confirm(f"{target.controller.leftovers} will be removed", talk, confirmed)
     found = find(target, choice, talk.progress)
     with connected(project, target, found, choice, talk.progress) as connection:
         with talk.progress.phase("remove"):

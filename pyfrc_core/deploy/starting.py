@@ -8,7 +8,7 @@ from .errors import DeployError, NotSeenToRunError, ProgramDiedError, RefusedErr
 from .facts import StartState, Watched
 from .progress import Phase, UserInterface
 
-#: Seconds after which a program is reported as still starting. On a roboRIO (667 MHz), imports take 5 to 10 s, large
+#: Seconds after which a program is reported as still starting. On a robot of 667 MHz, imports take 5 to 10 s, large
 #: libraries 5 s more, and a `robotInit` that configures twenty devices 5 to 10 s: 25 s in all. The limit is more than
 #: twice as long.
 WATCH_SECONDS = 60.0
@@ -80,7 +80,7 @@ def go_back(robot: AgentClient, talk: UserInterface, release: int | None, *, onl
 def _restart(robot: AgentClient, talk: UserInterface) -> Watched:
     with talk.progress.phase("start") as phase:
         if robot.restart():
-            talk.progress.note("  frcKillRobot.sh did not end the old program; it was killed")
+            talk.progress.note(f"  {robot.stop_command} did not end the old program; it was killed")
         reporter = _StateReporter(talk, phase)
         watched = robot.watch(WATCH_SECONDS, on_state=reporter.show, unheard=UNHEARD_SECONDS)
         state = watched.state

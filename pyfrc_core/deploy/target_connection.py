@@ -83,15 +83,16 @@ def locate(target: RobotTarget, choice: RobotChoice) -> FoundRobot:
         return find_robot([(address, f"by {target.source}")], str(address), take_its_robot=False)
     assert target.team is not None
     whose = f"team {target.team} (by {target.source})"
-    return find_robot(addresses_of(target.team, choice.resolve), whose)
+    return find_robot(addresses_of(target.team, target.controller, choice.resolve), whose)
 
 
 def load_robot_keys(project: Project | None, target: RobotTarget, found: FoundRobot) -> RobotKeys:
     """Return the known host keys of the robot: of the project, or of this user outside of a project."""
     if project is None:
-        return HostKeys.of_this_user().of_robot(found.address, target.team)
+        return HostKeys.of_this_user().of_robot(found.address, target.controller, target.team)
     keys = HostKeys(project.pyproject.parent)
-    return keys.of_robot(found.address, target.team, team_of_project(project) if target.team is None else None)
+    project_team = team_of_project(project) if target.team is None else None
+    return keys.of_robot(found.address, target.controller, target.team, project_team)
 
 
 def log_in(project: Project | None, target: RobotTarget, choice: RobotChoice, found: FoundRobot) -> Connection:
@@ -104,6 +105,7 @@ def log_in(project: Project | None, target: RobotTarget, choice: RobotChoice, fo
     """
     return connect(
         found.address,
+        target.controller,
         load_robot_keys(project, target, found),
         connected=found.connected,
         accepted_key=choice.accepted_key,

@@ -5,15 +5,17 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from ..config.toml_file import TomlFile
 from ..errors import SettingsError, UsageError
 from ..project import Project
+from ..season import CURRENT
 from ..text_files import write_whole
 from .discovery import MAX_TEAM
+from .targets import Controller, controller_of
 
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
 _OLD_FILE = ".deploy_cfg"
@@ -28,6 +30,8 @@ class RobotTarget:
     robot: str | None = None
     #: Where it was specified.
     source: str = "the command"
+    #: The kind of computer on it.
+    controller: Controller = field(default_factory=lambda: controller_of(CURRENT))
 
 
 def find_target(

@@ -15,6 +15,7 @@ from ..deploy.robot_checks import obstacles
 from ..deploy.robot_packages import unfit_packages
 from ..deploy.robot_setup import other_languages_notice
 from ..deploy.target_connection import load_robot_keys
+from ..deploy.targets import Controller
 from ..deploy.team import RobotTarget, find_target
 from ..deploy.without_python import RobotWithoutPython
 from ..errors import PyfrcError, SettingsError, UsageError
@@ -24,7 +25,7 @@ from .robot_project import problem_from_error
 
 #: Seconds to wait for a robot after all other checks.
 SEARCH_SECONDS = 3.0
-#: Additional seconds to check a robot that was found: connecting and starting its Python takes a roboRIO some time.
+#: Additional seconds to check a robot that was found: connecting and starting its Python takes a robot some time.
 CHECK_SECONDS = 20.0
 
 _TOPIC = "robot"
@@ -99,13 +100,13 @@ class RobotSearch:
         else:
             assert target.team is not None
             self._whose = f"team {target.team}"
-            candidates = addresses_of(target.team)
+            candidates = addresses_of(target.team, target.controller)
         found = find_robot(candidates, self._whose, take_its_robot=target.robot is None)
         with found.connected:
             self._found = True
             yield ok(_TOPIC, f"{self._whose} found at {found.address} ({found.kind})")
             keys = load_robot_keys(project, target, found)
-            with connect(found.address, keys, connected=found.connected, pin=False) as connection:
+            with connect(found.address, target.controller, keys, connected=found.connected, pin=False) as connection:
                 yield from _examine(project, connection)
 
     def _not_found(self) -> CheckResult:
@@ -122,13 +123,13 @@ def _examine(project: Project | None, connection: Connection) -> Iterator[CheckR
         yield from _check_other_languages(there.other_languages)
     else:
         robot.close()
-        yield from check_robot_facts(robot.facts, project)
+        yield from check_robot_facts(robot.facts, connection.controller, project)
 
 
-def check_robot_facts(facts: RobotFacts, project: Project | None) -> Iterator[CheckResult]:
+def check_robot_facts(facts: RobotFacts, controller: Controller, project: Project | None) -> Iterator[CheckResult]:
     """Check whether a robot is ready for this project, as a deploy does."""
-    problems = [problem(_TOPIC, each.text, each.remedy) for each in obstacles(facts)]
-    if project is not None and facts.not_roborio is None and facts.wpilib is not None:
+    problems = [problem(_TOPIC, each.text, each.remedy) for each in obstacles(facts, controller)]
+    if project is not None and facts.not_controller is None and facts.wpilib is not None:
         packages = load_robot_packages(project.pyproject)
         problems += [problem(_TOPIC, str(each), each.remedy) for each in unfit_packages(packages, facts)]
     ready = f"Python {facts.python}, wpilib {facts.wpilib}, image {facts.image}"

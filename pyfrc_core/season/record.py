@@ -39,25 +39,19 @@ class SeasonField:
 
 
 @dataclass(frozen=True)
-class Controller:
-    """The computer on the robot, as the season's tools prepare it.
+class ControllerSoftware:
+    """The computer on the robot, as the season's tools prepare it. `deploy.targets` has the rest of it.
 
     :param name:           its product name
     :param images:         versions of its system image that the season's tools accept, the newest last
     :param python:         the version of Python that WPILib is built for there
     :param home:           home directory of the user that runs the robot program
-    :param program:        directory of the robot program
-    :param host_name:      its name in the local network; ``{team}`` is the team's number
-    :param usb_address:    its address on a USB cable
     """
 
     name: str
     images: tuple[str, ...]
     python: tuple[int, int]
     home: str
-    program: str
-    host_name: str
-    usb_address: str
 
 
 @dataclass(frozen=True)
@@ -87,6 +81,6 @@ class Season:
     kickoff: datetime
     match: MatchLengths
     field: SeasonField
-    controller: Controller
+    controller: ControllerSoftware
     packages: Packages
     cli_plugins: str

@@ -1,4 +1,4 @@
-"""The virtual robot's disk: a directory with the same layout as a roboRIO's root directory."""
+"""The virtual robot's disk: a directory with the same layout as a robot's root directory."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 
 from ..deploy.agent.disk import text_of, write_whole
-from ..deploy.agent.inventory import IMAGE_FILE
+from ..deploy.agent.layout import Layout
 from ..deploy.agent.robot_paths import RobotPaths
 from ..deploy.agent.system import lock
-from ..deploy.robot_setup import VIRTUAL_IMAGE
 from ..errors import PyfrcError, UsageError
 
 if TYPE_CHECKING:
@@ -25,14 +24,15 @@ class RobotDisk:
     """A directory with the files of one virtual robot, locked until the end of the ``with`` block.
 
     :param directory: created if it does not exist
+    :param layout:    the controller that it stands for
     :param fresh:     remove the robot's programs first; its SSH key stays
     :raises UsageError: if the directory has other files
     :raises PyfrcError: if a virtual robot is using it, or it cannot be written
     """
 
-    def __init__(self, directory: Path, fresh: bool = False) -> None:
+    def __init__(self, directory: Path, layout: Layout, fresh: bool = False) -> None:
         self.directory = directory
-        self.paths = RobotPaths(str(directory / "root"))
+        self.paths = RobotPaths(layout, str(directory / "root"))
         self._key_file = directory / "host_key"
         self._port_file = directory / "port"
         with _storing_in(directory):
@@ -107,9 +107,8 @@ class RobotDisk:
     def _create(self) -> None:
         temporary = self.paths.of("/tmp")
         shutil.rmtree(temporary, ignore_errors=True)  # as on a robot, at each start
-        for each in (self.paths.home, temporary, self.paths.of(IMAGE_FILE).parent):
+        for each in (self.paths.home, temporary):
             each.mkdir(parents=True, exist_ok=True)
-        self.paths.of(IMAGE_FILE).write_text(f'[ImageMetadata]\nIMAGEVERSION = "{VIRTUAL_IMAGE}"\n')
 
 
 @contextmanager

@@ -10,7 +10,9 @@ from pathlib import Path
 from types import TracebackType
 
 from ..deploy.agent.virtual import VARIABLE, VirtualRobotClient
+from ..deploy.targets import controller_of
 from ..errors import PyfrcError
+from ..season import CURRENT
 from ..terminal_text import visible
 from .console import ConsoleServer
 from .control import Control
@@ -54,7 +56,8 @@ class VirtualRobot:
         from .ssh_server import SshServer
 
         with ExitStack() as stack:
-            disk = stack.enter_context(RobotDisk(directory, fresh))
+            layout = controller_of(CURRENT).layout
+            disk = stack.enter_context(RobotDisk(directory, layout, fresh))
             listening = stack.enter_context(_listener(port, disk.last_port()))
             self.directory = directory
             self.port: int = listening.getsockname()[1]
@@ -68,9 +71,9 @@ class VirtualRobot:
             supervisor = Supervisor(disk.paths, printed, on_end)
             control = Control(supervisor)
             stack.callback(control.close)
-            client = VirtualRobotClient(str(disk.paths.root), control.port, control.key, console.port)
+            client = VirtualRobotClient(layout, str(disk.paths.root), control.port, control.key, console.port)
             environment = {**os.environ, VARIABLE: client.to_text()}
-            server = SshServer(listening, disk.key, console.port, disk.paths.home, environment)
+            server = SshServer(listening, disk.key, console.port, disk.paths, environment)
             supervisor.start()
             stack.callback(supervisor.close)
             stack.callback(server.close)

@@ -11,7 +11,7 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,7 +24,7 @@ from paramiko.common import (
     OPEN_SUCCEEDED,
 )
 
-from ..deploy.connection import ADMINISTRATOR, PROGRAM_USER, VIRTUAL_ROBOT_GREETING
+from ..deploy.connection import VIRTUAL_ROBOT_GREETING
 from . import children
 from .console import close_server
 from .peers import is_other_user
@@ -32,7 +32,8 @@ from .peers import is_other_user
 if TYPE_CHECKING:
     from paramiko import Channel, PKey, Transport
 
-_USERS = (PROGRAM_USER, ADMINISTRATOR)
+    from ..deploy.agent.robot_paths import RobotPaths
+
 _NOT_FOUND = 127  # a shell's exit code for a command that does not exist
 _SIGNALLED = 128  # a shell adds the signal's number to this exit code
 _STEP_SECONDS = 15.0
@@ -44,19 +45,20 @@ class SshServer:
 
     :param key:         the robot's host key
     :param console:     the port of its console, which is part of the server's greeting
-    :param home:        the working directory of commands
+    :param paths:       its files; its users log in, and commands begin in the home directory
     :param environment: the environment variables of commands
     """
 
     def __init__(
-        self, listening: socket.socket, key: PKey, console: int, home: Path, environment: Mapping[str, str]
+        self, listening: socket.socket, key: PKey, console: int, paths: RobotPaths, environment: Mapping[str, str]
     ) -> None:
         # Clients that only search for a robot disconnect immediately, which is normal.
         logging.getLogger("paramiko").setLevel(logging.CRITICAL)
         self._listening = listening
         self._key = key
         self._greeting = f"{VIRTUAL_ROBOT_GREETING} console={console}"
-        self._home = home
+        self._home = paths.home
+        self._users = (paths.layout.user, paths.layout.administrator)
         self._environment = environment
         self._closed = threading.Event()
         self._lock = threading.Lock()
@@ -97,7 +99,7 @@ class SshServer:
         with self._lock:
             self._transports = {each for each in self._transports if each.is_alive()} | {transport}
         try:
-            transport.start_server(server=_Session(self._run))
+            transport.start_server(server=_Session(self._run, self._users))
         except (paramiko.SSHException, OSError, EOFError):
             transport.close()
 
@@ -161,19 +163,21 @@ class _Session(paramiko.ServerInterface):
     """The policy for one connection: users and requests.
 
     :param run: runs a command with a channel as its input and output
+    :param users: the users who may log in
     """
 
-    def __init__(self, run: Callable[[Channel, str], None]) -> None:
+    def __init__(self, run: Callable[[Channel, str], None], users: Sequence[str]) -> None:
         self._run = run
+        self._users = users
 
     def get_allowed_auths(self, username: str) -> str:
         return "none,password"
 
     def check_auth_none(self, username: str) -> int:
-        return AUTH_SUCCESSFUL if username in _USERS else AUTH_FAILED
+        return AUTH_SUCCESSFUL if username in self._users else AUTH_FAILED
 
     def check_auth_password(self, username: str, password: str) -> int:
-        return AUTH_SUCCESSFUL if username in _USERS and not password else AUTH_FAILED
+        return AUTH_SUCCESSFUL if username in self._users and not password else AUTH_FAILED
 
     def check_channel_request(self, kind: str, chanid: int) -> int:
         return OPEN_SUCCEEDED if kind == "session" else OPEN_FAILED_ADMINISTRATIVELY_PROHIBITED

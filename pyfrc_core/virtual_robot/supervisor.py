@@ -1,4 +1,4 @@
-"""Starts the robot program and restarts it after its end, as `lvrt` does on a roboRIO."""
+"""Starts the robot program and restarts it after its end, as the supervisor of a robot does."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-from ..deploy.agent.disk import text_of
-from ..deploy.agent.robot_paths import COMMAND, DEBUG_COMMAND, RobotPaths
+from ..deploy.agent.robot_paths import RobotPaths
 from . import children
 
 _RUNNER = "pyfrc_core.virtual_robot.program"
@@ -97,8 +96,7 @@ class Supervisor:
                 self._on_end(f"the robot program has ended ({_end_of(code)}); restarting it")
 
     def _start(self) -> subprocess.Popen[bytes] | None:
-        debug = self._paths.debug_flag.exists()
-        command = text_of(self._paths.home / (DEBUG_COMMAND if debug else COMMAND))
+        command = self._paths.start_command()
         if not command:
             return None
         words = program_words(command, self._paths)

@@ -10,14 +10,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.host import RealRobot
+from pyfrc_core.deploy.agent.layout import Layout
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent.serve import Agent
 from pyfrc_core.deploy.agent.wire import CONTENT, Wire, frame, message_frame, parse_message, read_frame
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 Message = dict[str, Any]
-
-HOME = "home/lvuser"
 
 
 def manifest(files: Mapping[str, str], executable: tuple[str, ...] = ()) -> list[list[Any]]:
@@ -36,12 +36,12 @@ def contents(*texts: str) -> bytes:
 class AgentDisk:
     """A robot's disk, and an agent on it."""
 
-    def __init__(self, root: Path) -> None:
+    def __init__(self, root: Path, layout: Layout = ROBORIO.layout) -> None:
         self.root = root
-        self.home = root / HOME
+        self.places = RobotPaths(layout, str(root))
+        self.home = self.places.home
         self.home.mkdir(parents=True)
         (root / "tmp").mkdir()
-        self.places = RobotPaths(str(root))
 
     def ask(self, *requests: Message | bytes, hello: Message | None = None) -> list[Message]:
         """Send requests to an agent, and return its messages after the facts.
@@ -53,7 +53,7 @@ class AgentDisk:
         os.close(target)
         responses = io.BytesIO()
         with os.fdopen(source, "rb", buffering=0) as stream:
-            agent = Agent(Wire(stream, responses), RoboRio(self.places), hello or {"who": "Ada"})
+            agent = Agent(Wire(stream, responses), RealRobot(self.places), hello or {"who": "Ada"})
             try:
                 agent.serve()
             finally:
@@ -77,10 +77,10 @@ class AgentDisk:
 
     def startable(self) -> str:
         """What the robot would start: the start command's main file, and the first line of that."""
-        text = self.read("robotDebugCommand" if self.places.debug_flag.exists() else "robotCommand")
-        if text is None:
+        text = self.places.start_command()
+        if not text:
             return "nothing"
-        name = text.partition("--main ")[2].split()[0].removeprefix(f"/{HOME}/")
+        name = text.partition("--main ")[2].split()[0].removeprefix(f"{self.places.layout.home}/")
         return f"{name}: {(self.home / name).read_text().partition(chr(10))[0]}"
 
     def tree(self, directory: str = ".pyfrc/releases") -> list[str]:

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 
 from pyfrc_core.deploy.agent import disk, releases, robot_paths, serve, system, transaction
-from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.releases import Releases, start_commands
 from pyfrc_core.deploy.agent.robot_paths import Lock, Refusal
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .agent_disk import AgentDisk, contents, manifest
 
@@ -64,7 +65,7 @@ def test_the_first_deploy(robot: AgentDisk) -> None:
     compiled = sorted(each.name for each in (robot.home / "py/__pycache__").iterdir())
     assert [name.partition(".")[0] for name in compiled] == ["arm", "robot"]
     assert all(name.endswith(".opt-1.pyc") for name in compiled)
-    assert not robot.places.debug_flag.exists()
+    assert not robot.places.is_debug()
     assert not robot.places.incoming.exists()
     assert (robot.home / "py/robot.py").stat().st_mode & 0o777 == 0o644
 
@@ -115,14 +116,14 @@ def test_executable_files_and_debugging(robot: AgentDisk) -> None:
     request = {"op": "deploy", "files": manifest(ONE, ("arm.py",)), "main": "robot.py", "debug": True}
     robot.ask(request, contents(*ONE.values()))
     assert (robot.home / "py/arm.py").stat().st_mode & 0o777 == 0o755
-    assert robot.places.debug_flag.exists()
+    assert robot.places.is_debug()
     assert robot.startable() == "py/robot.py: # one"
     assert {each.name.split(".")[2] for each in (robot.home / "py/__pycache__").iterdir()} == {"pyc"}
     # A file that is no longer executable is another.
     need, _, _ = robot.deploy(ONE)
     assert need["need"] == []
     assert (robot.home / "py/arm.py").stat().st_mode & 0o777 == 0o644
-    assert not robot.places.debug_flag.exists()
+    assert not robot.places.is_debug()
 
 
 def test_so_many_releases_are_kept(robot: AgentDisk) -> None:
@@ -304,7 +305,7 @@ def test_errors_of_the_disk_and_of_the_agent(robot: AgentDisk, monkeypatch: pyte
 def test_a_computer_that_is_no_roborio(robot: AgentDisk) -> None:
     robot.home.rmdir()
     kind, message = refused(robot.deploy(ONE))
-    assert kind == "roborio"
+    assert kind == "controller"
     assert message == f"there is no {robot.home} here: this is not a roboRIO"
 
 
@@ -367,7 +368,8 @@ def test_facts(robot: AgentDisk) -> None:
     (robot.root / "etc/natinst/share/ni-rt.ini").write_text("[STARTUP]\nStartupDLLs = a.so\n")
     (facts,) = robot.ask({"op": "info", "modules": ["json", "no_such_module"]})
     found = facts["done"]
-    assert (found["image"], found["startup_dlls"], found["kill_script"]) == ("FRC_roboRIO_2026_v1.2", True, False)
+    assert (ROBORIO.image_in(found["texts"]), ROBORIO.wastes_memory(found["texts"])) == ("FRC_roboRIO_2026_v1.2", True)
+    assert (found["virtual"], found["can_restart"]) == (False, False)
     assert (found["current"], found["home"], found["other_code"], found["debug"]) == (2, True, False, False)
     assert found["missing_modules"] == ["no_such_module"]
     assert found["deploy_json"] == '{\n  "by": "Ada"\n}'
@@ -605,7 +607,7 @@ def test_the_debris_of_a_deploy_that_was_cut_is_cleared_up(robot: AgentDisk) -> 
 
 def test_what_the_program_writes_above_its_directory_stays(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
     """`..` of a release is a directory of pyfrc's."""
-    monkeypatch.setattr(RoboRio, "stop", lambda host, start: None)
+    monkeypatch.setattr(RealRobot, "stop", lambda host, start: None)
     deployed_twice(robot)
     written = (
         "releases/match.txt",
@@ -667,13 +669,13 @@ def test_a_deploy_that_was_cut_past_its_moment_is_finished(robot: AgentDisk) -> 
 
 def test_undeploy_removes_it_all(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
     stopped: list[tuple[str, bool]] = []
-    monkeypatch.setattr(RoboRio, "stop", lambda host, start: stopped.append((robot.startable(), start)))
+    monkeypatch.setattr(RealRobot, "stop", lambda host, start: stopped.append((robot.startable(), start)))
     robot.deploy(ONE, *ONE.values(), debug=True)
     (robot.home / "keep.txt").write_text("")
     assert robot.ask({"op": "undeploy"}) == [{"done": {"removed": True}}]
     assert stopped == [("nothing", False)]
     assert [each.name for each in robot.home.iterdir()] == ["keep.txt"]
-    assert not robot.places.debug_flag.exists()
+    assert not robot.places.is_debug()
     assert robot.ask({"op": "undeploy"}) == [{"done": {"removed": False}}]
 
 
@@ -682,13 +684,17 @@ def test_undeploy_removes_it_all(robot: AgentDisk, monkeypatch: pytest.MonkeyPat
 
 @pytest.mark.parametrize("main", ["robot.py", "src/robot.py", "_a-b.py", "9.py"])
 def test_start_commands(main: str) -> None:
-    assert set(start_commands(main)) == {"robotCommand", "robotDebugCommand"}
+    assert set(start_commands(ROBORIO.layout, main, debug=False)) == {"robotCommand", "robotDebugCommand"}
+    one_file = ROBORIO.layout._replace(debug_command="", debug_flag="")
+    assert start_commands(one_file, main, debug=True) == {
+        "robotCommand": f"{PYTHON} -m robotpy --main /home/lvuser/py/{main} -v run\n"
+    }
 
 
 @pytest.mark.parametrize("main", ["", "-c", "a b.py", "a;b", "/robot.py", "a\n"])
 def test_main_files_that_would_break_the_command(main: str) -> None:
     with pytest.raises(Refusal):
-        start_commands(main)
+        start_commands(ROBORIO.layout, main, debug=False)
 
 
 def test_files_are_written_whole(tmp_path: Path) -> None:

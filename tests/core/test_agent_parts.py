@@ -22,7 +22,7 @@ from pyfrc_core.deploy.agent import console, host, imports, inventory, program, 
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import CompiledForms, Compiler, compile_below
 from pyfrc_core.deploy.agent.console import ConsoleClient, console_text, split_frames
-from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.program import Program
 from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
 from pyfrc_core.deploy.agent.virtual import VARIABLE, VirtualRobotClient
@@ -39,6 +39,7 @@ from pyfrc_core.deploy.agent.wire import (
 )
 from pyfrc_core.deploy.agent_stream import MAX_RESPONSE_BYTES
 from pyfrc_core.deploy.responses import parse_json
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 # -- frames ------------------------------------------------------------------------------------------------------------
 
@@ -285,7 +286,7 @@ def test_modules_are_found_without_importing_them(tmp_path: Path, monkeypatch: p
 
 
 def test_what_other_languages_have_left(tmp_path: Path) -> None:
-    places = RobotPaths(str(tmp_path))
+    places = RobotPaths(ROBORIO.layout, str(tmp_path))
     assert places.of("/home/lvuser") == tmp_path / "home/lvuser"
     assert inventory.find_other_languages(places) == []
     files = ("home/lvuser/b.jar", "home/lvuser/a.jar", "home/lvuser/frcUserProgram", "usr/local/frc/JRE/bin/java")
@@ -300,24 +301,28 @@ def test_what_other_languages_have_left(tmp_path: Path) -> None:
         "/usr/local/frc/JRE/bin/java",
         "/usr/local/frc/third-party/lib",
     ]
-    assert inventory.image_in('x\nIMAGEVERSION = "FRC_2026"\n') == "FRC_2026"
-    assert inventory.image_in("IMAGEVERSION=FRC_2026\n") == "FRC_2026"
-    assert inventory.image_in("") is None
+
+
+def test_the_image_of_a_roborio() -> None:
+    assert ROBORIO.image_in({"image": 'x\nIMAGEVERSION = "FRC_2026"\n'}) == "FRC_2026"
+    assert ROBORIO.image_in({"image": "IMAGEVERSION=FRC_2026\n"}) == "FRC_2026"
+    assert ROBORIO.image_in({"image": ""}) is None
+    assert ROBORIO.image_in({"image": None}) is None
 
 
 def test_a_virtual_robot_in_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(VARIABLE, raising=False)
-    assert VirtualRobotClient.from_environment() is None
-    virtual = VirtualRobotClient("/robot", 1234, "ab", 5678)
+    assert VirtualRobotClient.from_environment(ROBORIO.layout) is None
+    virtual = VirtualRobotClient(ROBORIO.layout, "/robot", 1234, "ab", 5678)
     monkeypatch.setenv(VARIABLE, virtual.to_text())
-    found = VirtualRobotClient.from_environment()
+    found = VirtualRobotClient.from_environment(ROBORIO.layout)
     assert found is not None
-    assert vars(found) == vars(virtual)
+    assert found.to_text() == virtual.to_text()
     assert (found.paths.root, found.console_ports) == (Path("/robot"), (5678,))
 
 
 def test_own_processes() -> None:
-    robot = RoboRio(RobotPaths())
+    robot = RealRobot(RobotPaths(ROBORIO.layout))
     assert robot.is_running(os.getpid())
     assert not robot.is_running(2**22 + 1)
     assert os.getpid() not in robot.processes()
@@ -329,20 +334,20 @@ def test_own_processes() -> None:
     assert age is not None
     assert 0 <= age < 86_400
     assert host.age_of([]) is None
-    assert host._is_jar(b"/home/lvuser/Robot.jar")
-    assert not host._is_jar(b"/home/other/Robot.jar")
-    assert not host._is_jar(b"/home/lvuser/Robot.jar.txt")
+    assert robot._is_jar(b"/home/lvuser/Robot.jar")
+    assert not robot._is_jar(b"/home/other/Robot.jar")
+    assert not robot._is_jar(b"/home/lvuser/Robot.jar.txt")
 
 
 # -- restarting --------------------------------------------------------------------------------------------------------
 
 
-def robot_with_script(root: Path, script: str) -> RoboRio:
+def robot_with_script(root: Path, script: str) -> RealRobot:
     file = root / "usr/local/frc/bin/frcKillRobot.sh"
     file.parent.mkdir(parents=True)
     file.write_text(f"#!/bin/sh\n{script}\n")
     file.chmod(0o755)
-    return RoboRio(RobotPaths(str(root)))
+    return RealRobot(RobotPaths(ROBORIO.layout, str(root)))
 
 
 class World:
@@ -351,7 +356,7 @@ class World:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, *looks: Iterable[int]) -> None:
         self._looks = [set(look) for look in looks]
         self.signals: list[tuple[int, int]] = []
-        monkeypatch.setattr(RoboRio, "processes", lambda robot: self.processes())
+        monkeypatch.setattr(RealRobot, "processes", lambda robot: self.processes())
         monkeypatch.setattr(host, "_END_SECONDS", 0.0)
         self._kill = os.kill
         monkeypatch.setattr(host.os, "kill", self.kill)
@@ -388,15 +393,15 @@ def test_a_program_that_survives_is_ended_by_signals(tmp_path: Path, monkeypatch
 def test_what_cannot_be_stopped_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     World(monkeypatch, [7])
     with pytest.raises(Refusal, match=r"there is no /usr/local/frc/bin/frcKillRobot\.sh on the robot"):
-        RoboRio(RobotPaths(str(tmp_path))).stop(start=True)
+        RealRobot(RobotPaths(ROBORIO.layout, str(tmp_path))).stop(start=True)
     robot = robot_with_script(tmp_path, "echo cannot; exit 1")
     with pytest.raises(Refusal, match="has not stopped the old program: cannot"):
         robot.stop(start=True)
-    robot.paths.of(host._KILL_SCRIPT).write_text("exec /no/such/thing\n")
+    robot.paths.of(ROBORIO.layout.stop[0]).write_text("exec /no/such/thing\n")
     with pytest.raises(Refusal, match="cannot be executed"):
         robot.stop(start=True)
-    monkeypatch.setattr(host, "_SCRIPT_SECONDS", 2)
-    robot.paths.of(host._KILL_SCRIPT).write_text("sleep 60\n")
+    monkeypatch.setattr(host, "_COMMAND_SECONDS", 2)
+    robot.paths.of(ROBORIO.layout.stop[0]).write_text("sleep 60\n")
     waits: list[int] = []
     with pytest.raises(Refusal, match=r"it did not end within 2 s"):
         robot.stop(start=True, meanwhile=lambda: waits.append(1))
@@ -413,7 +418,7 @@ def test_a_restart_is_watched_until_there_is_a_verdict(tmp_path: Path, monkeypat
         return next(heard, "") if ours._monitor is None else ""  # it prints when it is watched
 
     monkeypatch.setattr(ours._console, "receive", receive)
-    monkeypatch.setattr(RoboRio, "is_running", lambda robot, process: True)
+    monkeypatch.setattr(RealRobot, "is_running", lambda robot, process: True)
     monkeypatch.setattr(program, "_REPORT_SECONDS", 0.0)
     ours.restart()
     source, target = os.pipe()
@@ -433,8 +438,8 @@ def test_a_restart_is_watched_until_there_is_a_verdict(tmp_path: Path, monkeypat
 
 def test_a_watch_ends_when_the_laptop_wants_something_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     World(monkeypatch, [8])
-    monkeypatch.setattr(RoboRio, "is_running", lambda robot, process: True)
-    ours = Program(RoboRio(RobotPaths(str(tmp_path))))
+    monkeypatch.setattr(RealRobot, "is_running", lambda robot, process: True)
+    ours = Program(RealRobot(RobotPaths(ROBORIO.layout, str(tmp_path))))
     monkeypatch.setattr(ours._console, "receive", lambda seconds: "")
     with pipe_with(message_frame({})) as source:
         assert ours.watch(Wire(source, io.BytesIO()), 60, 60)["verdict"] == "starting"
@@ -470,15 +475,15 @@ def output_of(*texts: str, before: str = "") -> list[str]:
 
     :param before: printed during the restart
     """
-    ours, responses = Program(RoboRio(RobotPaths())), io.BytesIO()
+    ours, responses = Program(RealRobot(RobotPaths(ROBORIO.layout))), io.BytesIO()
     waiting = iter([before, *texts])
     with pytest.MonkeyPatch.context() as patch, pipe_with(message_frame({})) as source:
         World(patch, [8])
         patch.setattr(ours._console, "connect", lambda: None)
         patch.setattr(ours._console, "receive", lambda seconds: next(waiting, ""))
-        patch.setattr(RoboRio, "is_running", lambda robot, process: True)
-        patch.setattr(RoboRio, "stop", lambda robot, start, meanwhile: meanwhile())
-        patch.setattr(RoboRio, "processes", lambda robot: {8} if ours._monitor else set())
+        patch.setattr(RealRobot, "is_running", lambda robot, process: True)
+        patch.setattr(RealRobot, "stop", lambda robot, start, meanwhile: meanwhile())
+        patch.setattr(RealRobot, "processes", lambda robot: {8} if ours._monitor else set())
         ours.restart()
         ours.watch(Wire(source, responses), 60, 60)
     responses.seek(0)

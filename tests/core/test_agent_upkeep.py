@@ -20,12 +20,13 @@ from pyfrc_core.deploy.agent import host, program, releases, serve, system, tran
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import CompiledForms, Compiler
 from pyfrc_core.deploy.agent.content_index import ContentIndex
-from pyfrc_core.deploy.agent.host import RoboRio
+from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.program import Program
 from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
 from pyfrc_core.deploy.agent.virtual import VARIABLE, VirtualRobotClient
 from pyfrc_core.deploy.agent.wire import Wire, message_frame, parse_message, read_frame
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .agent_disk import AgentDisk, contents, manifest
 
@@ -148,13 +149,13 @@ def _noting(call: Callable[..., Any], note: Callable[[], object]) -> Callable[..
 def test_a_watch_reports_once_a_second_what_is_new(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
     monkeypatch.setattr(program.time, "monotonic", lambda: now[0])
-    monkeypatch.setattr(RoboRio, "processes", lambda robot: listed.append(now[0]) or {8})
-    monkeypatch.setattr(RoboRio, "is_running", lambda robot, process: process == 8)
+    monkeypatch.setattr(RealRobot, "processes", lambda robot: listed.append(now[0]) or {8})
+    monkeypatch.setattr(RealRobot, "is_running", lambda robot, process: process == 8)
     monkeypatch.setattr(program, "process_state", lambda host, process: {"cpu": 1.0})
     listed: list[float] = []
     waits: list[float] = []
     texts = iter(["one\n", "", "two\n"])
-    ours = Program(RoboRio(RobotPaths(str(tmp_path))))
+    ours = Program(RealRobot(RobotPaths(ROBORIO.layout, str(tmp_path))))
 
     def receive(seconds: float) -> str:
         waits.append(seconds)
@@ -326,7 +327,7 @@ def test_undeploy_is_on_the_disk_before_the_program_is_stopped_and_when_it_is_do
         log.append(f"{what}: {' '.join(there)}")
 
     monkeypatch.setattr(releases, "flush", lambda directory: note(f"flush {directory.name}"))
-    monkeypatch.setattr(RoboRio, "stop", lambda host, start: note("stop"))
+    monkeypatch.setattr(RealRobot, "stop", lambda host, start: note("stop"))
     robot.ask({"op": "undeploy"})
     assert log == ["flush lvuser: py .pyfrc", "stop: py .pyfrc", "flush lvuser: "]
 
@@ -414,14 +415,14 @@ def test_a_virtual_robots_program_is_asked_for_and_restarted() -> None:
 
         thread = threading.Thread(target=respond, daemon=True)
         thread.start()
-        virtual = VirtualRobotClient("/robot", listener.getsockname()[1], "key", 1)
+        virtual = VirtualRobotClient(ROBORIO.layout, "/robot", listener.getsockname()[1], "key", 1)
         assert virtual.processes() == {3, 4}
         assert (virtual.is_running(3), virtual.is_running(5)) == (True, False)
         assert virtual.stop(start=True) is False
         assert virtual.stop(start=False) is False
         thread.join(60)
     assert asked == ["key: processes"] * 3 + ["key: restart", "key: stop"]
-    assert virtual.has_kill_script()
+    assert virtual.can_restart()
     assert virtual.other_languages() == []
     assert virtual.serves_network_tables(3) is None
 
@@ -434,7 +435,7 @@ def test_the_agent_as_a_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.delenv(VARIABLE, raising=False)
     (tmp_path / "home/lvuser").mkdir(parents=True)
     (tmp_path / "home/lvuser/robotCommand").write_text("the command")
-    sent = [{"root": str(tmp_path)}, {"op": "plan", "files": manifest(ONE)}]
+    sent = [{"root": str(tmp_path), "layout": ROBORIO.layout._asdict()}, {"op": "plan", "files": manifest(ONE)}]
     stream = b"".join(map(message_frame, sent)) + b"\0\0\0\3Xabc"
     done = subprocess.run([sys.executable, "-c", AGENT], input=stream, capture_output=True)
     assert (done.returncode, done.stderr) == (1, b"")
@@ -450,18 +451,16 @@ def test_the_agent_as_a_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 def test_a_process_that_serves_network_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         monkeypatch.setattr(host, "NETWORK_TABLES_PORT", server.getsockname()[1])
-        assert RoboRio(RobotPaths()).serves_network_tables(os.getpid()) is True
+        assert RealRobot(RobotPaths(ROBORIO.layout)).serves_network_tables(os.getpid()) is True
         with socket.create_connection(server.getsockname()):
             pass
-    assert RoboRio(RobotPaths()).serves_network_tables(os.getpid()) is False
+    assert RealRobot(RobotPaths(ROBORIO.layout)).serves_network_tables(os.getpid()) is False
 
 
 def test_programs_are_known_by_their_command_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # Below a directory of this test's own: no agent of another test takes them for its robot's.
     home = str(tmp_path)
-    monkeypatch.setattr(host, "_CODE_PREFIXES", (f"{home}/py/".encode(),))
-    monkeypatch.setattr(host, "_NATIVE_PROGRAM", f"{home}/native".encode())
-    monkeypatch.setattr(host, "HOME", home)
+    robot = RealRobot(RobotPaths(ROBORIO.layout._replace(home=home, code=f"{home}/py")))
     started: list[subprocess.Popen[bytes]] = []
 
     def start(name: str, *words: str) -> int:
@@ -476,12 +475,12 @@ def test_programs_are_known_by_their_command_lines(tmp_path: Path, monkeypatch: 
 
     try:
         ours = {start("/usr/local/bin/python3", f"{home}/py/robot.py"), start("java", f"{home}/Robot.jar")}
-        ours.add(start(f"{home}/native"))
+        ours.add(start(f"{home}/frcUserProgram"))
         others = {start("python3", "/tmp/robot.py"), start("tail", f"{home}/py/robot.py"), start("java", "x.jar")}
-        found = RoboRio(RobotPaths()).processes()
+        found = robot.processes()
         assert found & (ours | others) == ours
         monkeypatch.setattr(host.os, "geteuid", lambda: -1)
-        assert RoboRio(RobotPaths()).processes() == set()
+        assert robot.processes() == set()
     finally:
         for process in started:
             process.communicate()

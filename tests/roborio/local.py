@@ -20,8 +20,9 @@ from pathlib import Path
 from types import TracebackType
 
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
-from pyfrc_core.deploy.agent_package import COMMAND, agent_package
+from pyfrc_core.deploy.agent_package import agent_command, agent_package
 from pyfrc_core.deploy.manifest import Manifest, build_manifest
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 #: Names with their kind, permissions and content, and which are hard links to one file.
 Disk = tuple[frozenset[tuple[str, int, str | bytes]], frozenset[tuple[str, ...]]]
@@ -130,6 +131,7 @@ class LocalRobot:
     """A robot's disk in a directory, and agents that work on it."""
 
     address = "local"
+    controller = ROBORIO
 
     def __init__(self, root: Path) -> None:
         self.root = root
@@ -183,7 +185,7 @@ class LocalRobot:
 
     def open(self, command: str) -> LocalChannel:
         """What a connection does: run the agent."""
-        assert command == COMMAND
+        assert command == agent_command(ROBORIO.python)
         assert self._agents is not None
         self.channel = self._agents.channel(self.root, **self._options)
         return self.channel
@@ -311,7 +313,7 @@ class Processes:
     """
 
     def __init__(self, python: str = sys.executable, shell: str | None = None) -> None:
-        program = COMMAND.partition(" -c '")[2].removesuffix("'")
+        program = agent_command("python3").partition(" -c '")[2].removesuffix("'")
         self._command = [python, "-X", "utf8", "-u", "-c", program] if shell is None else ["sh", "-c", shell]
 
     def channel(

@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING
 
 from pyfrc_core.deploy.errors import ConnectionFailedError
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .machine import PATIENCE
 
@@ -21,6 +22,7 @@ class SshConnection:
         import paramiko
 
         self.address = f"{host}:{port}"
+        self.controller = ROBORIO
         self.transport: paramiko.Transport | None = None
         try:
             self.transport = paramiko.Transport(socket.create_connection((host, port), timeout=PATIENCE))

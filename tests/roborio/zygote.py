@@ -24,6 +24,7 @@ from typing import Any
 
 from pyfrc_core.deploy.agent import compiling, host, program, releases, robot_paths, serve, start_monitor, system, wire
 from pyfrc_core.deploy.agent.activity import Activity
+from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 _CHANGES = {
     "os.rename",
@@ -180,21 +181,21 @@ def rehearse() -> None:
         wire.frame(wire.CONTENT, zlib.compress(code)),
     ]
     with tempfile.TemporaryDirectory() as root, pathlib.Path(os.devnull).open("wb") as unread:
-        paths = robot_paths.RobotPaths(root)
+        paths = robot_paths.RobotPaths(ROBORIO.layout, root)
         paths.home.mkdir(parents=True)
         source, target = os.pipe()
         os.write(target, b"".join(frames))
         os.close(target)
         with open(source, "rb", 0) as requests:  # noqa: PTH123 - a descriptor
             connection = wire.Wire(requests, unread)
-            serve.Agent(connection, host.RoboRio(paths), connection.receive()).serve()
+            serve.Agent(connection, host.RealRobot(paths), connection.receive()).serve()
         assert paths.code.is_dir()
 
 
 def main() -> None:
     """Fork an agent for each message, with its sockets."""
     control = socket.socket(fileno=int(sys.argv[1]))
-    host.RoboRio.processes = lambda robot: set()  # type: ignore[method-assign]  # listing all processes takes long
+    host.RealRobot.processes = lambda robot: set()  # type: ignore[method-assign]  # listing all processes takes long
     rehearse()
     gc.collect()
     gc.freeze()  # keeps this process's memory pages shared with its forks

@@ -18,7 +18,7 @@ from typing import Any
 
 from .activity import Activity
 from .disk import files_below, link_or_copy
-from .robot_paths import CODE, Refusal
+from .robot_paths import Refusal
 from .system import end_with_parent
 
 #: Memory for the compiling process, in bytes. A robot with 256 MB runs its program meanwhile.
@@ -40,11 +40,20 @@ class Compiler:
     :param names:     relative paths, in the order in which the files become available
     :param debug:     keep `assert` statements
     :param program:   files that the program imports at its start; other files may be invalid
+    :param code:      the directory from which the program will run, for its tracebacks; default: `directory`
     """
 
-    def __init__(self, directory: Path, names: Sequence[str], debug: bool, program: Collection[str] = ()) -> None:
+    def __init__(
+        self,
+        directory: Path,
+        names: Sequence[str],
+        debug: bool,
+        program: Collection[str] = (),
+        code: str | None = None,
+    ) -> None:
         self._directory = directory
         self._debug = debug
+        self._code = code or str(directory)
         self._program = program
         #: Path, line and message of the program's first source that this Python cannot compile.
         self._failure: list[Any] = []
@@ -151,7 +160,8 @@ class Compiler:
         file = str(self._directory / name)
         optimize = 0 if self._debug else 1
         try:
-            py_compile.compile(file, _cache_of(file, self._debug), f"{CODE}/{name}", doraise=True, optimize=optimize)
+            target = _cache_of(file, self._debug)
+            py_compile.compile(file, target, f"{self._code}/{name}", doraise=True, optimize=optimize)
         except py_compile.PyCompileError as failure:
             error = failure.exc_value
             if name in self._program and not self._failure and not isinstance(error, MemoryError):
@@ -186,15 +196,18 @@ def _cache_of(file: str, debug: bool) -> str:
     return cache_from_source(file, optimization=optimization)
 
 
-def compile_below(directory: Path, debug: bool, activity: Activity, program: Collection[str] = ()) -> None:
+def compile_below(
+    directory: Path, debug: bool, activity: Activity, code: str | None = None, program: Collection[str] = ()
+) -> None:
     """Compile the sources below a directory that have no compiled file yet.
 
+    :param code: see `Compiler`
     :param program: see `Compiler`
     """
     compiled = CompiledForms()
     sources = [(name, entry.path) for name, entry in files_below(directory) if name.endswith(".py")]
     names = [name for name, path in sources if not compiled.includes(path, debug)]
-    with Compiler(directory, names, debug, program) as compiler:
+    with Compiler(directory, names, debug, program, code) as compiler:
         for _ in names:
             compiler.add_next()
         compiler.finish(activity)

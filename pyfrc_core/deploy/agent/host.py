@@ -1,6 +1,6 @@
 """The robot that runs this agent: the processes of its program, and stopping and starting it.
 
-`RoboRio` and `virtual.VirtualRobotClient` have the same attributes and methods; a `Host` is either.
+`RealRobot` and `virtual.VirtualRobotClient` have the same attributes and methods; a `Host` is either.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Union
@@ -17,38 +17,38 @@ from .console import PORTS
 from .disk import text_of
 from .inventory import find_other_languages
 from .release_record import Boot
-from .robot_paths import CODE, HOME, Refusal, RobotPaths
+from .robot_paths import Refusal, RobotPaths
 from .virtual import VirtualRobotClient
 
-_KILL_SCRIPT = "/usr/local/frc/bin/frcKillRobot.sh"
-# They set PATH for NI's programs and FRC_ConsoleTee.
-_PROFILES = ("/etc/profile.d/frc-path.sh", "/etc/profile.d/natinst-path.sh")
-_SHELLS = ("/bin/bash", "/bin/sh")  # the script needs bash, and may lack a first line that names it
-_CODE_PREFIXES = (f"{CODE}/".encode(), f"{HOME}/.pyfrc/releases/".encode())
-_NATIVE_PROGRAM = f"{HOME}/frcUserProgram".encode()  # written in C++
+_SHELLS = ("/bin/bash", "/bin/sh")  # a script may need bash, and lack a first line that names it
 #: The port of NetworkTables 4. WPILib opens it when the robot class is constructed, before `robotInit`.
 NETWORK_TABLES_PORT = 5810
 _NOT_EXECUTED = (126, 127)  # a shell's exit codes
 _POWER_CYCLE = "Switch the robot off and on again: it starts the new program then."
-_SCRIPT_SECONDS = 15.0
+_COMMAND_SECONDS = 15.0
 _END_SECONDS = 2.0  # for the old program to end, after the script and after each signal
 _POLL_SECONDS = 0.05
 
 
-class RoboRio:
-    """A roboRIO.
+class RealRobot:
+    """A robot's controller.
 
     :param paths: its files
     """
 
+    is_virtual = False
     console_ports = PORTS
 
     def __init__(self, paths: RobotPaths) -> None:
         self.paths = paths
+        layout = paths.layout
+        self._code = (f"{layout.code}/".encode(), f"{paths.releases_on_robot}/".encode())
+        self._home = f"{layout.home}/".encode()
+        self._native_program = self._home + b"frcUserProgram"  # written in C++
 
-    def has_kill_script(self) -> bool:
+    def can_restart(self) -> bool:
         """Return whether the program can be stopped and started."""
-        return self.paths.of(_KILL_SCRIPT).exists()
+        return self.paths.of(self.paths.layout.restart[0]).exists()
 
     def other_languages(self) -> list[str]:
         """Return the files and directories of programs in Java and C++ that can be removed."""
@@ -67,11 +67,14 @@ class RoboRio:
                     continue
                 # The first word excludes programs that only read a file there, such as tail or an editor.
                 name = words[0].rpartition(b"/")[2]
-                is_python = name.startswith(b"python") and any(word.startswith(_CODE_PREFIXES) for word in words)
-                is_java = name == b"java" and any(_is_jar(word) for word in words)
-                if is_python or is_java or words[0] == _NATIVE_PROGRAM:
+                is_python = name.startswith(b"python") and any(word.startswith(self._code) for word in words)
+                is_java = name == b"java" and any(map(self._is_jar, words))
+                if is_python or is_java or words[0] == self._native_program:
                     found.add(int(entry.name))
         return found
+
+    def _is_jar(self, word: bytes) -> bool:
+        return word.startswith(self._home) and word.endswith(b".jar")
 
     def is_running(self, process: int) -> bool:
         """Return whether a process of the program still runs; much cheaper than `processes`."""
@@ -103,14 +106,15 @@ class RoboRio:
     def stop(self, start: bool, meanwhile: Callable[[], None] = lambda: None) -> bool:
         """Stop the program, and start it again if wanted. Return when all old processes have ended.
 
-        The exit code of the kill script is ignored, since it may fail if no program runs.
+        The exit code of the command is ignored, since it may fail if no program runs.
 
         :param meanwhile: called repeatedly until the old processes have ended
-        :return: whether the program survived the kill script and was ended by a signal
-        :raises Refusal: if the script is missing or cannot be executed, or the program does not end
+        :return: whether the program survived the command and was ended by a signal
+        :raises Refusal: if the command is missing or cannot be executed, or the program does not end
         """
         before = self.processes()
-        printed = self._run_kill_script(["-t", "-r"] if start else ["-t"], meanwhile)
+        command = self.paths.layout.restart if start else self.paths.layout.stop
+        printed = self._run(command, meanwhile)
         survivors = self._wait_for_end(before, meanwhile)
         survived = bool(survivors)
         for number in (signal.SIGTERM, signal.SIGKILL):
@@ -121,48 +125,48 @@ class RoboRio:
         if survivors:
             raise Refusal(
                 "restart",
-                f"{_KILL_SCRIPT} has not stopped the old program: {printed or 'it printed nothing'}",
+                f"{command[0]} has not stopped the old program: {printed or 'it printed nothing'}",
                 _POWER_CYCLE,
             )
         return survived
 
-    def _run_kill_script(self, options: list[str], meanwhile: Callable[[], None]) -> str:
-        """Run the kill script, and return its output."""
+    def _run(self, command: Sequence[str], meanwhile: Callable[[], None]) -> str:
+        """Run a command, and return its output."""
         import subprocess
         import tempfile
 
-        script = self.paths.of(_KILL_SCRIPT)
+        script = self.paths.of(command[0])
         if not script.exists():
             raise Refusal(
                 "restart",
-                f"there is no {_KILL_SCRIPT} on the robot, so its program cannot be restarted",
+                f"there is no {command[0]} on the robot, so its program cannot be restarted",
                 "Switch the robot off and on again; if that does not help, image it.",
             )
         shell = next((each for each in _SHELLS if os.access(each, os.X_OK)), _SHELLS[-1])
-        profiles = [str(self.paths.of(path)) for path in _PROFILES]
+        profiles = [str(self.paths.of(path)) for path in self.paths.layout.profiles]
         sourcing = '[ ! -r "$1" ] || . "$1"; shift; ' * len(profiles)
-        deadline = time.monotonic() + _SCRIPT_SECONDS
-        # A file instead of a pipe: background processes of the script keep its output open after its end.
+        deadline = time.monotonic() + _COMMAND_SECONDS
+        # A file instead of a pipe: background processes of the command keep its output open after its end.
         with tempfile.TemporaryFile() as output:
-            script_run = subprocess.Popen(
-                [shell, "-c", sourcing + 'exec "$@"', shell, *profiles, str(script), *options],
+            run = subprocess.Popen(
+                [shell, "-c", sourcing + 'exec "$@"', shell, *profiles, str(script), *command[1:]],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,
             )
-            while script_run.poll() is None and time.monotonic() < deadline:
+            while run.poll() is None and time.monotonic() < deadline:
                 meanwhile()
                 with suppress(subprocess.TimeoutExpired):
-                    script_run.wait(_POLL_SECONDS)
-            if script_run.poll() is None:
-                script_run.kill()
-                script_run.wait()
-                return f"it did not end within {_SCRIPT_SECONDS:g} s"
+                    run.wait(_POLL_SECONDS)
+            if run.poll() is None:
+                run.kill()
+                run.wait()
+                return f"it did not end within {_COMMAND_SECONDS:g} s"
             output.seek(0)
             printed = output.read(4096).decode(errors="replace").strip()
-        if script_run.returncode in _NOT_EXECUTED:
+        if run.returncode in _NOT_EXECUTED:
             reason = printed.rpartition("\n")[2]  # bash prints it twice
-            raise Refusal("restart", f"{_KILL_SCRIPT} cannot be executed: {reason}", _POWER_CYCLE)
+            raise Refusal("restart", f"{command[0]} cannot be executed: {reason}", _POWER_CYCLE)
         return printed
 
     def _wait_for_end(self, before: set[int], meanwhile: Callable[[], None]) -> set[int]:
@@ -174,11 +178,7 @@ class RoboRio:
         return left
 
 
-Host = Union[RoboRio, VirtualRobotClient]  # noqa: UP007 - the agent runs on Python 3.9, too
-
-
-def _is_jar(word: bytes) -> bool:
-    return word.startswith(f"{HOME}/".encode()) and word.endswith(b".jar")
+Host = Union[RealRobot, VirtualRobotClient]  # noqa: UP007 - the agent runs on Python 3.9, too
 
 
 def age_of(processes: Iterable[int]) -> float | None:

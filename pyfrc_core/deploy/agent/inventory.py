@@ -1,35 +1,22 @@
-"""The image version of a robot, and files of programs in Java and C++."""
+"""Files of programs in Java and C++ on a robot."""
 
 from __future__ import annotations
 
 import re
 
 from .disk import text_of
-from .robot_paths import COMMAND, DEBUG_COMMAND, HOME, RobotPaths
-
-IMAGE_FILE = "/etc/natinst/share/scs_imagemetadata.ini"
-#: The start commands of programs in Java and C++, as a regular expression for Python and for grep -E.
-START_COMMAND = "[.]jar|frcUserProgram"
-START_COMMAND_FILES = (f"{HOME}/{COMMAND}", f"{HOME}/{DEBUG_COMMAND}")
-PROGRAMS = (f"{HOME}/*.jar", f"{HOME}/frcUserProgram")
-#: Libraries of programs in Java and C++. The directory is empty in the image.
-LIBRARIES = "/usr/local/frc/third-party/lib"
-JAVA = "/usr/local/frc/JRE/bin/java"
-
-
-def image_in(text: str) -> str | None:
-    """Return the version of the image from the content of `IMAGE_FILE`."""
-    found = re.search(r'IMAGEVERSION\s*=\s*"?([^"\n]*)', text)
-    return found[1] if found else None
+from .robot_paths import RobotPaths
 
 
 def find_other_languages(paths: RobotPaths) -> list[str]:
     """Return the files and directories of programs in Java and C++ that can be removed."""
-    found = [file for file in START_COMMAND_FILES if re.search(START_COMMAND, text_of(paths.of(file)) or "")]
-    for pattern in (*PROGRAMS, JAVA):
+    layout = paths.layout
+    commands = [f"{layout.home}/{name}" for name in layout.command_files]
+    found = [file for file in commands if re.search(layout.other_start, text_of(paths.of(file)) or "")]
+    for pattern in layout.other_files:
         parent, _, name = pattern.rpartition("/")
-        found += sorted(f"{parent}/{each.name}" for each in paths.of(parent).glob(name))
-    libraries = paths.of(LIBRARIES)
-    if libraries.is_dir() and any(libraries.iterdir()):
-        found.append(LIBRARIES)
+        if name:
+            found += sorted(f"{parent}/{each.name}" for each in paths.of(parent).glob(name))
+        elif paths.of(parent).is_dir() and any(paths.of(parent).iterdir()):
+            found.append(parent)
     return found

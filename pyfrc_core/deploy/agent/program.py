@@ -55,7 +55,7 @@ class Program:
 
         :param main: the program's main file, if known
         :param has_run: see `StartMonitor`
-        :return: whether the old program survived the kill script and was ended by a signal
+        :return: whether the old program survived the stop command and was ended by a signal
         """
         self._console.connect()
         self._output = ""
@@ -98,7 +98,7 @@ class Program:
     def _poll(self, monitor: StartMonitor, seconds: float = 0.0) -> None:
         text = self._console.receive(seconds)
         process, now = monitor.process, time.monotonic()
-        # Listing all processes takes a roboRIO some hundredths of a second.
+        # Listing all processes takes a slow robot some hundredths of a second.
         if process is not None and now < self._next_listing and self._host.is_running(process):
             found = {process}
         else:

@@ -18,17 +18,17 @@ from pathlib import Path
 from .activity import Activity
 from .carrying import Carried, carry_over
 from .disk import allow_changes, make_links_absolute, remove, remove_if_possible, text_of, write_whole
+from .layout import Layout
 from .release_record import Record, parse_record, standing
-from .robot_paths import CODE, COMMAND, DEBUG_COMMAND, HOME, Refusal, RobotPaths
+from .robot_paths import Refusal, RobotPaths
 from .system import REPLACES_LINKS, exchange, flush, linked_directory, make_link, replace_link
 
 _KEPT = 3
 _TRASH, _CARRIED = "trash-", "carried"
 _RECORD, _UNFINISHED_RECORD = re.compile(r"\d+\.json"), re.compile(r"\.\d+\.json\.new")
-_DIRECT = HOME + "/.pyfrc/releases"
 
 
-def start_commands(main: str) -> dict[str, str | None]:
+def start_commands(layout: Layout, main: str, debug: bool) -> dict[str, str | None]:
     """Return the content of the robot's start command files for a program with this main file.
 
     :raises Refusal: if the main file's name has characters that are not allowed in a command
@@ -39,11 +39,11 @@ def start_commands(main: str) -> dict[str, str | None]:
             f"the main file cannot be called {main!r}: its name is part of the robot's start command",
             "Give it a name of letters, digits, '_', '-' and '.'.",
         )
-    python = "env LD_LIBRARY_PATH=/usr/local/frc/lib/ /usr/local/bin/python3 -u"
-    return {
-        COMMAND: f"{python} -O -m robotpy --main {CODE}/{main} run\n",
-        DEBUG_COMMAND: f"{python} -m robotpy --main {CODE}/{main} -v run\n",
-    }
+    file = f"{layout.code}/{main}"
+    start, start_debug = layout.start.replace("{main}", file), layout.start_debug.replace("{main}", file)
+    if layout.debug_command:
+        return {layout.command: start, layout.debug_command: start_debug}
+    return {layout.command: start_debug if debug else start}
 
 
 class Releases:
@@ -177,7 +177,8 @@ class Releases:
 
         :param taken: the release number for another tool's directory in ``~/py``, whose record is already written
         """
-        direct = {name: text and text.replace(f"{CODE}/", f"{_DIRECT}/{number}/") for name, text in commands.items()}
+        code, direct_code = f"{self.paths.layout.code}/", f"{self.paths.releases_on_robot}/{number}/"
+        direct = {name: text and text.replace(code, direct_code) for name, text in commands.items()}
         changed = any(text_of(self.paths.home / name) != text for name, text in commands.items())
         detour = changed or not REPLACES_LINKS
         link = self.paths.own / "py" if taken is None else self.directory(taken)
@@ -211,12 +212,15 @@ class Releases:
 
     def set_debug(self, debug: bool) -> None:
         """Select whether the robot starts the program for debugging."""
+        if not self.paths.layout.debug_flag:
+            return
+        flag = self.paths.of(self.paths.layout.debug_flag)
         # Another user's file may stay: both start commands refer to the same program.
         with suppress(PermissionError):
             if debug:
-                self.paths.debug_flag.touch()
+                flag.touch()
             else:
-                remove(self.paths.debug_flag)
+                remove(flag)
 
     def require_movable_code(self) -> None:
         """Check that another tool's directory can be moved.
@@ -225,10 +229,12 @@ class Releases:
         """
         allow_changes(self.paths.code)
         if not os.access(self.paths.code, os.W_OK):
+            layout = self.paths.layout
             raise Refusal(
                 "disk",
-                f"{CODE} belongs to another user of the robot, and cannot be moved",
-                f"Give it to lvuser, as admin on the robot: chown -R lvuser:ni {CODE}",
+                f"{layout.code} belongs to another user of the robot, and cannot be moved",
+                f"Give it to {layout.user}, as {layout.administrator} on the robot: "
+                f"chown -R {layout.owner} {layout.code}",
             )
 
     def adopt_directory(self, number: int) -> None:
@@ -238,21 +244,21 @@ class Releases:
         """
         self.require_movable_code()
         make_links_absolute(self.paths.code, self.paths.own / _CARRIED)
-        commands = {name: text_of(self.paths.home / name) for name in (COMMAND, DEBUG_COMMAND)}
+        commands = {name: text_of(self.paths.home / name) for name in self.paths.layout.command_files}
         deployed = text_of(self.paths.code / "deploy.json")
         try:
             about = json.loads(deployed or "{}")
         except ValueError:
             about = {}
-        debug = self.paths.debug_flag.exists()
-        self.write_record(number, {"taken": True, "debug": debug, "commands": commands, "deploy": about})
+        self.write_record(
+            number, {"taken": True, "debug": self.paths.is_debug(), "commands": commands, "deploy": about}
+        )
 
     def recover(self) -> None:
         """Clean up after an interrupted deploy, and complete it if it was interrupted after the switch."""
         if not self.paths.own.is_dir():
             return
-        command = text_of(self.paths.home / (DEBUG_COMMAND if self.paths.debug_flag.exists() else COMMAND)) or ""
-        started = re.search(re.escape(_DIRECT) + r"/(\d+)/", command)
+        started = re.search(re.escape(self.paths.releases_on_robot) + r"/(\d+)/", self.paths.start_command())
         if started is not None and self._is_complete(int(started[1])):
             number = int(started[1])
             taken = None
@@ -267,7 +273,7 @@ class Releases:
 
     def _remove_remains(self) -> None:
         """Remove what interrupted deploys have left, and nothing else: a program may write to ``../`` of its code."""
-        for name in (COMMAND, DEBUG_COMMAND):
+        for name in self.paths.layout.command_files:
             remove(self.paths.home / f".{name}.new")
         for each in self.paths.own.iterdir():
             if re.fullmatch(rf"{_TRASH}\d+", each.name):
@@ -347,8 +353,9 @@ class Releases:
 
     def _startable(self) -> set[str]:
         """Return the numbers of the releases that the robot may start in its current state."""
-        texts = [text_of(self.paths.home / name) or "" for name in (COMMAND, DEBUG_COMMAND)]
-        kept = {number for text in texts for number in re.findall(re.escape(_DIRECT) + r"/(\d+)/", text)}
+        texts = [text_of(self.paths.home / name) or "" for name in self.paths.layout.command_files]
+        direct = re.escape(self.paths.releases_on_robot) + r"/(\d+)/"
+        kept = {number for text in texts for number in re.findall(direct, text)}
         current = self.current()
         return kept if current is None else {*kept, str(current)}
 

@@ -1,4 +1,4 @@
-"""Paths on a roboRIO, the agent's exception, and the deploy lock."""
+"""Paths on the robot, the agent's exception, and the deploy lock."""
 
 from __future__ import annotations
 
@@ -11,11 +11,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from .disk import text_of
+from .layout import Layout
 from .system import lock
 
-HOME = "/home/lvuser"
-CODE = HOME + "/py"
-COMMAND, DEBUG_COMMAND = "robotCommand", "robotDebugCommand"
 #: Seconds to wait for a lock: the agent of a deploy that was just interrupted may still hold it.
 _GRACE = 2.0
 
@@ -40,21 +39,32 @@ class RobotPaths:
     :param root: the directory that contains all of them; ``/`` on a robot
     """
 
-    def __init__(self, root: str = "/") -> None:
+    def __init__(self, layout: Layout, root: str = "/") -> None:
+        self.layout = layout
         self.root = Path(root)
-        self.home = self.of(HOME)
+        self.home = self.of(layout.home)
         #: The code that the robot starts: a link to a release, or a directory created by another tool.
-        self.code = self.of(CODE)
+        self.code = self.of(layout.code)
         self.own = self.home / ".pyfrc"
         self.releases = self.own / "releases"
         #: Where the next release is assembled.
         self.incoming = self.own / "incoming"
         self.lock = self.own / "lock"
-        self.debug_flag = self.of("/tmp/frcdebug")
+        #: Where the robot finds the releases.
+        self.releases_on_robot = f"{layout.home}/.pyfrc/releases"
 
     def of(self, path: str) -> Path:
         """Return where a path of the robot is in this file system."""
         return self.root / path.lstrip("/")
+
+    def is_debug(self) -> bool:
+        """Return whether the robot starts the program for debugging, on a controller with a file for this."""
+        return bool(self.layout.debug_flag) and self.of(self.layout.debug_flag).exists()
+
+    def start_command(self) -> str:
+        """Return the command that the robot starts the program with; empty if there is none."""
+        name = self.layout.debug_command if self.is_debug() else self.layout.command
+        return text_of(self.home / name) or ""
 
 
 class Lock:

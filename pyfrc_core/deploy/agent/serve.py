@@ -14,20 +14,19 @@ from typing import Any, BinaryIO
 from .activity import Activity
 from .content_index import sha256_of
 from .disk import disk_problem, files_below, free_bytes, remove, text_of
-from .host import Host, RoboRio, age_of
+from .host import Host, RealRobot, age_of
 from .imports import look_up
-from .inventory import IMAGE_FILE, image_in
+from .layout import Layout
 from .program import Program
 from .release_record import after_watch, now
 from .releases import Releases
-from .robot_paths import COMMAND, DEBUG_COMMAND, Lock, Refusal, RobotPaths
+from .robot_paths import Lock, Refusal, RobotPaths
 from .start_monitor import ENDED, RUNNING, UNHEARD
 from .system import become, is_root, user
 from .transaction import RESERVE, Deploy, plan
 from .virtual import VirtualRobotClient
 from .wire import EndedError, Message, OutputPipe, Wire, WireError
 
-_USER = "lvuser"
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT)
 
 
@@ -35,12 +34,13 @@ def main(source: BinaryIO) -> None:
     """Run the agent. Requests come from `source`; responses go to standard output."""
     wire = Wire(source, OutputPipe(os.dup(1)))
     hello = wire.receive()
-    host: Host | None = VirtualRobotClient.from_environment()
+    layout = Layout(**hello["layout"])
+    host: Host | None = VirtualRobotClient.from_environment(layout)
     if host is None:
         root = hello.get("root")
         if root is None and is_root():
-            become(_USER)
-        host = RoboRio(RobotPaths(root or "/"))
+            become(layout.user)
+        host = RealRobot(RobotPaths(layout, root or "/"))
     try:
         Agent(wire, host, hello).serve()
     except (WireError, ConnectionError):
@@ -114,7 +114,7 @@ class Agent:
                     free=free,
                 )
             else:
-                self._send_error("disk", *disk_problem(error))
+                self._send_error("disk", *disk_problem(error, self._paths.layout.administrator))
         except Exception:
             import traceback
 
@@ -126,7 +126,6 @@ class Agent:
 
     def facts(self, request: Message) -> Message:
         """Return the robot's facts: versions, releases, the state of its program."""
-        ini = text_of(self._paths.of("/etc/natinst/share/ni-rt.ini"))
         releases, python = self._releases, look_up(request.get("modules") or ())
         program = self._host.processes()
         self._review(program)
@@ -134,9 +133,9 @@ class Agent:
             **python,
             "wpilib": python["packages"].get("wpilib"),
             "python": ".".join(map(str, sys.version_info[:3])),
-            "image": image_in(text_of(self._paths.of(IMAGE_FILE)) or ""),
-            "startup_dlls": any(line.startswith("StartupDLLs") for line in (ini or "").splitlines()),
-            "kill_script": self._host.has_kill_script(),
+            "virtual": self._host.is_virtual,
+            "texts": {name: text_of(self._paths.of(file)) for name, file in self._paths.layout.texts.items()},
+            "can_restart": self._host.can_restart(),
             "free": free_bytes(self._paths.home) if self._paths.home.is_dir() else 0,
             "user": user(),
             "home": self._paths.home.is_dir(),
@@ -144,8 +143,8 @@ class Agent:
             "releases": [self._summary(number) for number in releases.numbers()],
             "other_code": releases.is_other_tools() and any(True for _ in files_below(self._paths.code)),
             "deploy_json": text_of(self._paths.code / "deploy.json"),
-            "command": text_of(self._paths.home / COMMAND),
-            "debug": self._paths.debug_flag.exists(),
+            "command": text_of(self._paths.home / self._paths.layout.command),
+            "debug": self._paths.is_debug(),
             "running": bool(program),
             "program_age": age_of(program),
             "other_languages": self._host.other_languages(),
@@ -174,7 +173,8 @@ class Agent:
         """
         self._wire.limits_silence = True
         if not self._paths.home.is_dir():
-            raise Refusal("roborio", f"there is no {self._paths.home} here: this is not a roboRIO")
+            what = f"there is no {self._paths.home} here: this is not a {self._paths.layout.name}"
+            raise Refusal("controller", what)
         held, self._lock = self._lock, None
         with held or ExitStack() as lock:
             if held is None:
@@ -320,7 +320,7 @@ class Agent:
         with self._transaction():
             if self._releases.is_other_tools():
                 self._releases.require_movable_code()
-            for name in (COMMAND, DEBUG_COMMAND):
+            for name in self._paths.layout.command_files:
                 remove(self._paths.home / name)
             self._releases.set_debug(False)
             self._releases.flush(self._paths.home)

@@ -3,7 +3,7 @@
 `StartMonitor` is a state machine. Its caller passes the time and observations. It reads no clock, inspects no process
 and never waits, so that tests can cover every order of events.
 
-A roboRIO restarts a program immediately after its end. A crashing program is therefore visible as a process that is
+A robot restarts a program immediately after its end. A crashing program is therefore visible as a process that is
 replaced by another. A working program keeps its process.
 """
 
@@ -32,7 +32,7 @@ _MIN_TRIAL, _MAX_TRIAL = 0.6, 2.0
 _MIN_TRIAL_AGAIN = 0.3
 #: Seconds for which it must run after a traceback. A traceback does not always mean a crash: code logs caught errors.
 _AFTER_TRACEBACK = 3.0
-#: Seconds after the restart in which one process may be replaced without a traceback, since the kill script and the
+#: Seconds after the restart in which one process may be replaced without a traceback, since the stop command and the
 #: robot's supervisor may both start the program.
 _DOUBLE_START = 2.0
 #: Seconds without a process after which the program counts as ended; the second value applies after a traceback.
@@ -81,12 +81,12 @@ class StartMonitor:
         self._over: float | None = None
 
     def restarted(self, now: float) -> None:
-        """Record that the kill script has ended: from now on, the end of a process counts."""
+        """Record that the stop command has ended: from now on, the end of a process counts."""
         self._restarted = now
 
     @property
     def is_restarted(self) -> bool:
-        """Return whether the kill script has ended."""
+        """Return whether the stop command has ended."""
         return self._restarted is not None
 
     def observe(self, now: float, processes: Iterable[int], text: str = "") -> bool:

@@ -1,6 +1,6 @@
 """Functions that depend on the operating system: locks, links, atomic exchange, waiting for a pipe, users.
 
-A roboRIO runs Linux. A virtual robot runs on its user's system. Only Linux has been tested.
+A robot runs Linux. A virtual robot runs on its user's system. Only Linux has been tested.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from .content_index import DEPLOY_JSON, ContentIndex, WantedFile, parse_manifest
 from .disk import BLOCK, files_below, free_bytes, link_or_copy, remove, write_whole
 from .release_record import NEVER_RUN, Record
 from .releases import Releases, start_commands
-from .robot_paths import COMMAND, DEBUG_COMMAND, Refusal
+from .robot_paths import Refusal
 from .wire import Message, Wire
 
 #: Bytes of disk space that stay free for the program's own files after a deploy.
@@ -91,7 +91,7 @@ class Deploy:
         #: Whether a restart follows, which removes old releases.
         self._restarts = bool(request.get("restart"))
         self._program = frozenset(request.get("program") or ())
-        self._commands = start_commands(self._main)
+        self._commands = start_commands(self._paths.layout, self._main, self._debug)
 
     def run(self) -> Message:
         """Carry out the deploy, and return the result for the laptop."""
@@ -129,7 +129,7 @@ class Deploy:
         same = (record.get("main"), record.get("debug")) == (self._main, self._debug)
         has_run = bool(same and record.get("ran") and not record.get("ended"))
         record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
-        compile_below(directory, self._debug, self._activity, self._program)
+        compile_below(directory, self._debug, self._activity, self._paths.layout.code, self._program)
         write_whole(directory / DEPLOY_JSON, json.dumps(self._about, indent=2))
         self._releases.write_record(current, record)
         self._switch(current, None)
@@ -177,7 +177,7 @@ class Deploy:
         copied = [each for each in wanted if each.path not in linked and first.get(each.sha256) != each]
         at_once = [name for name, is_compiled in linked.items() if not is_compiled and name.endswith(".py")]
         sources = at_once + [each.path for each in (*missing, *copied) if each.path.endswith(".py")]
-        with Compiler(incoming, sources, self._debug, self._program) as compiler:
+        with Compiler(incoming, sources, self._debug, self._program, self._paths.layout.code) as compiler:
 
             def complete(each: WantedFile) -> None:
                 (incoming / each.path).chmod(0o755 if each.executable else 0o644)
@@ -279,14 +279,14 @@ class Deploy:
             (self._paths.incoming / each.path).replace(target)
             compiled.link(str(self._paths.incoming / each.path), str(target))
         self._releases.remove(self._paths.incoming)
-        compile_below(code, self._debug, self._activity)
+        compile_below(code, self._debug, self._activity, self._paths.layout.code)
         write_whole(code / DEPLOY_JSON, json.dumps(self._about, indent=2))
         if current is not None:
             record = self._releases.record(current)
             record["files"] = {**record.get("files", {}), **{each.path: each.sha256 for each in self._wanted}}
             record.update(deploy=self._about, main=self._main, debug=self._debug, commands=self._commands)
             self._releases.write_record(current, record)
-        for name in (COMMAND, DEBUG_COMMAND):
+        for name in self._paths.layout.command_files:
             write_whole(self._paths.home / name, self._commands[name] or "")
         self._releases.flush(self._paths.home)
         self._releases.set_debug(self._debug)

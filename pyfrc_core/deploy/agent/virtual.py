@@ -1,7 +1,7 @@
 """A virtual robot as the host of the agent.
 
 The virtual robot describes itself in an environment variable of the agent's process. A laptop cannot set this variable,
-and it does not exist on a roboRIO.
+and it does not exist on a real robot.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import json
 import os
 from collections.abc import Callable
 
+from .layout import Layout
 from .release_record import Boot
 from .robot_paths import RobotPaths
 
@@ -20,37 +21,37 @@ VARIABLE = "PYFRC_VIRTUAL_ROBOT"
 class VirtualRobotClient:
     """The virtual robot that runs this agent.
 
+    :param layout:  the controller that it stands for
     :param root:    the directory with its files
     :param control: the loopback port of its supervisor
     :param key:     the supervisor's authentication key, in hexadecimal
     :param console: the loopback port of its console
     """
 
-    def __init__(self, root: str, control: int, key: str, console: int) -> None:
-        self.root = root
+    is_virtual = True
+
+    def __init__(self, layout: Layout, root: str, control: int, key: str, console: int) -> None:
+        self.paths = RobotPaths(layout, root)
         self.control = control
         self.key = key
         self.console = console
 
     @classmethod
-    def from_environment(cls) -> VirtualRobotClient | None:
-        """Return the virtual robot that runs this agent, or None on a roboRIO."""
+    def from_environment(cls, layout: Layout) -> VirtualRobotClient | None:
+        """Return the virtual robot that runs this agent, or None on a real robot."""
         text = os.environ.get(VARIABLE)
-        return None if text is None else cls(**json.loads(text))
+        return None if text is None else cls(layout, **json.loads(text))
 
     def to_text(self) -> str:
         """Return the value of the environment variable."""
-        return json.dumps(vars(self))
-
-    @property
-    def paths(self) -> RobotPaths:
-        return RobotPaths(self.root)
+        root = str(self.paths.root)
+        return json.dumps({"root": root, "control": self.control, "key": self.key, "console": self.console})
 
     @property
     def console_ports(self) -> tuple[int, ...]:
         return (self.console,)
 
-    def has_kill_script(self) -> bool:
+    def can_restart(self) -> bool:
         """Return whether the program can be stopped and started."""
         return True
 
@@ -83,7 +84,7 @@ class VirtualRobotClient:
         return False
 
     def _request(self, name: str) -> list[int]:
-        import socket  # not before, since a roboRIO does not need it
+        import socket  # not before, since a real robot does not need it
 
         with socket.create_connection(("127.0.0.1", self.control)) as connection:
             connection.sendall(f"{self.key} {name}\n".encode())

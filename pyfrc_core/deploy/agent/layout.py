@@ -1,0 +1,53 @@
+"""What the agent must know of the controller. The laptop's first message describes it, since the agent knows none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+
+class Layout(NamedTuple):
+    """The files and commands of a controller.
+
+    :param name:          its product name, for messages
+    :param user:          the user who runs the robot program, and owns its files
+    :param owner:         the same with the group, as ``chown`` takes it
+    :param administrator: the user who may change everything
+    :param home:          the user's home directory
+    :param code:          the directory with the robot program, in `home`
+    :param start:         the start command; ``{main}`` is the main file
+    :param start_debug:   the same for debugging
+    :param command:       the file in `home` with the command that the controller runs
+    :param debug_command: the file that it runs instead while `debug_flag` exists; empty if `command` has either of them
+    :param debug_flag:    empty without `debug_command`
+    :param stop:          the path and the options of the command that stops the program
+    :param restart:       of the command that stops it and starts the current one
+    :param profiles:      files that a shell sources before these commands
+    :param texts:         files whose content the laptop needs, by names
+    :param other_start:   a regular expression that finds start commands of programs in other languages, for Python and
+        ``grep -E``
+    :param other_files:   patterns of their files; one that ends with a slash is a directory, if it has files
+    """
+
+    name: str
+    user: str
+    owner: str
+    administrator: str
+    home: str
+    code: str
+    start: str
+    start_debug: str
+    command: str
+    debug_command: str
+    debug_flag: str
+    stop: Sequence[str]
+    restart: Sequence[str]
+    profiles: Sequence[str]
+    texts: Mapping[str, str]
+    other_start: str
+    other_files: Sequence[str]
+
+    @property
+    def command_files(self) -> list[str]:
+        """Return the names of the files with start commands."""
+        return [each for each in (self.command, self.debug_command) if each]

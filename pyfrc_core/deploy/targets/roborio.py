@@ -1,0 +1,169 @@
+"""The roboRIO: NI's Linux on ARM, two users without passwords, a kill script, `lvrt` as supervisor."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from importlib.resources import files
+from shlex import quote
+
+from ..agent.layout import Layout
+from .controller import AdministratorTask, Controller, Texts
+
+_HOME = "/home/lvuser"
+_PYTHON = "/usr/local/bin/python3"
+_START = f"env LD_LIBRARY_PATH=/usr/local/frc/lib/ {_PYTHON} -u"
+_KILL_SCRIPT = "/usr/local/frc/bin/frcKillRobot.sh"
+# They set PATH for NI's programs and FRC_ConsoleTee.
+_PROFILES = ("/etc/profile.d/frc-path.sh", "/etc/profile.d/natinst-path.sh")
+_USB_CABLE = "172.22.11.2"
+_MEMORY_SETTINGS = "/etc/natinst/share/ni-rt.ini"
+#: Libraries of programs in Java and C++. The directory is empty in the image.
+_LIBRARIES = "/usr/local/frc/third-party/lib"
+_PROGRAMS = (f"{_HOME}/*.jar", f"{_HOME}/frcUserProgram")
+
+_LAYOUT = Layout(
+    name="roboRIO",
+    user="lvuser",
+    owner="lvuser:ni",
+    administrator="admin",
+    home=_HOME,
+    code=f"{_HOME}/py",
+    start=f"{_START} -O -m robotpy --main {{main}} run\n",
+    start_debug=f"{_START} -m robotpy --main {{main}} -v run\n",
+    command="robotCommand",
+    debug_command="robotDebugCommand",
+    debug_flag="/tmp/frcdebug",
+    stop=(_KILL_SCRIPT, "-t"),
+    restart=(_KILL_SCRIPT, "-t", "-r"),
+    profiles=_PROFILES,
+    texts={"image": "/etc/natinst/share/scs_imagemetadata.ini", "memory": _MEMORY_SETTINGS},
+    other_start="[.]jar|frcUserProgram",
+    other_files=(*_PROGRAMS, "/usr/local/frc/JRE/bin/java", f"{_LIBRARIES}/"),
+)
+
+
+def _addresses(team: int) -> list[tuple[str, str]]:
+    name = f"roboRIO-{team}-FRC"
+    return [
+        (f"10.{team // 100}.{team % 100}.2", "radio or Ethernet"),
+        (f"{name}.local", "name, by multicast"),
+        (_USB_CABLE, "USB cable"),
+        (name, "name"),
+        (f"{name}.lan", "name, by the router"),
+        (f"{name}.frc-field.local", "name, on a field"),
+    ]
+
+
+def _team_of_host(host: str) -> int | None:
+    if named := re.fullmatch(r"roborio-([0-9]{1,5})-frc(?:\.local|\.lan|\.frc-field\.local)?", host, re.IGNORECASE):
+        return int(named[1])
+    if numbers := re.fullmatch(r"10\.([0-9]{1,3})\.([0-9]{1,2})\.2", host):
+        return int(numbers[1]) * 100 + int(numbers[2])
+    return None
+
+
+def _image_in(texts: Texts) -> str | None:
+    found = re.search(r'IMAGEVERSION\s*=\s*"?([^"\n]*)', texts.get("image") or "")
+    return found[1] if found else None
+
+
+def _image_problem(image: str | None, wpilib: str, accepted: Sequence[str]) -> str | None:
+    found = re.fullmatch(r"FRC_roboRIO2?_((20[0-9]{2})_v[0-9.]+)", image or "")
+    if found is None:
+        return f"the robot's image is unknown ({image!r})"
+    version, year = found.groups()
+    if version in accepted:
+        return None
+    season = wpilib.partition(".")[0]
+    if year != season:
+        return f"the robot's image is of {year} ({version}), but wpilib {wpilib} needs the image of {season}"
+    return f"the robot's image is {version}, but this season's image is {accepted[-1]}"
+
+
+def _wastes_memory(texts: Texts) -> bool:
+    # With this line, services of the image load libraries that robots do not use.
+    return any(line.startswith("StartupDLLs") for line in (texts.get("memory") or "").splitlines())
+
+
+# Each file is complete before it gets its final name, since power may be cut. The image's script is kept once.
+_REPLACE_KILL_SCRIPT = """
+set -e
+cd /usr/local/frc/bin
+if [ ! -e frcKillRobot.image.sh ]; then
+    cp -p frcKillRobot.sh frcKillRobot.image.new
+    chmod 755 frcKillRobot.image.new
+    sync
+    mv frcKillRobot.image.new frcKillRobot.image.sh
+fi
+printf %s {text} > frcKillRobot.new
+chmod 755 frcKillRobot.new
+sync
+mv frcKillRobot.new frcKillRobot.sh
+"""
+
+
+def _repair_stop() -> AdministratorTask:
+    """Return the task that installs pyfrc's kill script.
+
+    The season's own tools recognize the image's script by its hash and always replace it. pyfrc replaces a script only
+    after it has failed. The working script of another tool therefore stays, and other tools may replace pyfrc's script.
+    """
+    text = files(__package__).joinpath("frcKillRobot.sh").read_text("utf-8")
+    return AdministratorTask(
+        _REPLACE_KILL_SCRIPT.format(text=quote(text)),
+        "frcKillRobot.sh was replaced; the old script is kept as frcKillRobot.image.sh",
+        "frcKillRobot.sh, which did not end the old program, could not be replaced",
+    )
+
+
+_START_COMMANDS = " ".join(f"{_HOME}/{name}" for name in (_LAYOUT.command, _LAYOUT.debug_command))
+# A program in Python keeps running, with its start command.
+_REMOVE_LEFTOVERS = f"""
+for paths in {" ".join(_PROFILES)}; do
+    [ ! -r $paths ] || . $paths
+done
+for command in {_START_COMMANDS}; do
+    if grep -qE {quote(_LAYOUT.other_start)} $command 2> /dev/null; then
+        rm -f $command || exit 1
+        echo "$command"
+        stop=yes
+    fi
+done
+[ -z "$stop" ] || {_KILL_SCRIPT} -t > /dev/null 2>&1
+for path in {" ".join(_PROGRAMS)} {_HOME}/deploy {_LIBRARIES}; do
+    if [ -e "$path" ]; then
+        rm -rf "$path" || exit 1
+        echo "$path"
+    fi
+done
+packages=$(opkg list-installed 'frc*-openjdk-*')
+if [ -n "$packages" ]; then
+    opkg remove 'frc*-openjdk*' > /dev/null || exit 1
+    echo "$packages"
+fi
+sync
+"""
+
+ROBORIO = Controller(
+    layout=_LAYOUT,
+    python=_PYTHON,
+    password="",
+    shared_hosts=(_USB_CABLE,),
+    machine="arm",
+    marker_machine="roborio",
+    image_it="Image it with the roboRIO Imaging Tool of this season",
+    leftovers=f"Java's and C++'s robot programs, their libraries, Java itself, and {_HOME}/deploy",
+    remove_leftovers=_REMOVE_LEFTOVERS,
+    save_memory=AdministratorTask(
+        f"sed -i -e 's/^StartupDLLs/;StartupDLLs/' {_MEMORY_SETTINGS}",
+        "StartupDLLs was switched off: 24 MB more memory after the robot's next start",
+        "StartupDLLs, which costs 24 MB of memory, could not be switched off",
+    ),
+    addresses=_addresses,
+    team_of_host=_team_of_host,
+    image_in=_image_in,
+    image_problem=_image_problem,
+    wastes_memory=_wastes_memory,
+    repair_stop=_repair_stop,
+)

@@ -1,0 +1,106 @@
+"""Controllers: only `deploy.targets` names them, and the agent works with the layout of any."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from core.agent_disk import AgentDisk
+
+import pyfrc_core.deploy
+from pyfrc_core.deploy.agent.host import RealRobot
+from pyfrc_core.deploy.agent.layout import Layout
+from pyfrc_core.deploy.targets import CONTROLLERS, Controller
+
+#: One user, one file with the start command, a service manager.
+ONE_USER = Layout(
+    name="Other Controller",
+    user="pilot",
+    owner="pilot:pilot",
+    administrator="pilot",
+    home="/srv/pilot",
+    code="/srv/pilot/program",
+    start="/srv/pilot/venv/bin/python3 -O -m robotpy --main {main} run\n",
+    start_debug="/srv/pilot/venv/bin/python3 -m robotpy --main {main} -v run\n",
+    command="start",
+    debug_command="",
+    debug_flag="",
+    stop=("/usr/bin/service", "stop", "robot"),
+    restart=("/usr/bin/service", "restart", "robot"),
+    profiles=(),
+    texts={},
+    other_start="[.]jar",
+    other_files=("/srv/pilot/*.jar",),
+)
+LAYOUTS = [*(each.layout for each in CONTROLLERS), ONE_USER]
+
+
+def test_no_other_module_names_a_controller() -> None:
+    directory = Path(pyfrc_core.deploy.__file__).parent
+    names = re.compile(r"roborio|systemcore|lvuser|frcKillRobot|natinst|/usr/local/frc|/home/", re.IGNORECASE)
+    # `.deploy_cfg` of pyfrc 2019 has names of roboRIOs; the room's description names its controllers.
+    allowed = {directory / "team.py", directory / "__init__.py"}
+    modules = [file for file in directory.rglob("*.py") if file not in allowed and "targets" not in file.parts]
+    assert [file.name for file in modules if names.search(file.read_text("utf-8"))] == []
+
+
+@pytest.fixture(params=LAYOUTS, ids=lambda layout: layout.name)
+def robot(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> AgentDisk:
+    monkeypatch.setattr(RealRobot, "processes", lambda robot: set())
+    return AgentDisk(tmp_path / "disk", request.param)
+
+
+def test_deploys_and_going_back(robot: AgentDisk) -> None:
+    code = Path(robot.places.layout.code).name
+    robot.deploy({"robot.py": "# 1\n"}, "# 1\n")
+    assert robot.startable() == f"{code}/robot.py: # 1"
+    assert "-v" not in robot.places.start_command()
+    robot.deploy({"robot.py": "# 2\n"}, "# 2\n", debug=True)
+    assert robot.startable() == f"{code}/robot.py: # 2"
+    assert "-v" in robot.places.start_command()
+    robot.ask({"op": "rollback", "release": None})
+    assert robot.startable() == f"{code}/robot.py: # 1"
+    assert "-v" not in robot.places.start_command()
+
+
+def test_the_program_is_stopped_by_the_controllers_command(robot: AgentDisk) -> None:
+    robot.deploy({"robot.py": "# 1\n"}, "# 1\n")
+    layout, calls = robot.places.layout, robot.root / "calls"
+    command = robot.places.of(layout.restart[0])
+    (missing,) = robot.ask({"op": "restart"})
+    assert layout.restart[0] in missing["message"]
+    command.parent.mkdir(parents=True)
+    command.write_text(f'#!/bin/sh\necho "$@" >> {calls}\n')
+    command.chmod(0o755)
+    assert robot.ask({"op": "restart"}) == [{"done": {"survived": False}}]
+    assert robot.ask({"op": "undeploy"}) == [{"done": {"removed": True}}]
+    assert calls.read_text().splitlines() == [" ".join(layout.restart[1:]), " ".join(layout.stop[1:])]
+    assert robot.startable() == "nothing"
+
+
+def test_another_tools_directory_is_kept_as_a_release(robot: AgentDisk) -> None:
+    robot.places.code.mkdir()
+    (robot.places.code / "robot.py").write_text("# old\n")
+    old = robot.places.layout.start.replace("{main}", f"{robot.places.layout.code}/robot.py")
+    (robot.home / robot.places.layout.command).write_text(old)
+    *_, done = robot.deploy({"robot.py": "# 1\n"}, "# 1\n")
+    assert (done["done"]["release"], done["done"]["taken"]) == (2, 1)
+    robot.ask({"op": "rollback", "release": 1})
+    assert robot.startable().endswith("robot.py: # old")
+
+
+def test_programs_of_other_languages_are_found(robot: AgentDisk) -> None:
+    layout = robot.places.layout
+    (robot.home / "Robot.jar").write_text("")
+    (robot.home / layout.command).write_text(f"java -jar {layout.home}/Robot.jar")
+    (facts,) = robot.ask({"op": "info"})
+    assert facts["done"]["other_languages"] == [f"{layout.home}/{layout.command}", f"{layout.home}/Robot.jar"]
+
+
+@pytest.mark.parametrize("controller", CONTROLLERS, ids=lambda each: each.name)
+def test_the_hosts_of_a_team_belong_to_it(controller: Controller) -> None:
+    hosts = [host for host, _ in controller.addresses(1234)]
+    teams = {host: controller.team_of_host(host) for host in hosts}
+    assert {host for host in hosts if teams[host] is None} == set(controller.shared_hosts)
+    assert set(teams.values()) <= {1234, None}
