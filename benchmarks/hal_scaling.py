@@ -3,8 +3,8 @@
     pip install robotpy-rev phoenix6
     python benchmarks/hal_scaling.py
 
-Each row is a process of its own, with so many devices and nothing else. The figures are microseconds, medians. A
-curve is flat when the rows of a kind of device have the same figures.
+Each row is a process of its own, with so many devices and nothing else. The figures are microseconds, medians. A look
+reads every value, so they grow with the number of values.
 """
 
 from __future__ import annotations

@@ -11,19 +11,17 @@ from collections.abc import Iterator
 import hal
 import pytest
 import wpilib
-from announced_resets import announced_resets
 from hal import simulation as hs
 from wpilib import simulation as sim
 
 from pyfrc_core.hal import HalData
 
 
-@pytest.fixture(params=[False, True], ids=["", "announced"])
-def tree(request: pytest.FixtureRequest) -> Iterator[HalData]:
-    with announced_resets(request.param):
-        hs.resetDriverStationData()
-        yield HalData()
-        hs.resetDriverStationData()
+@pytest.fixture
+def tree() -> Iterator[HalData]:
+    hs.resetDriverStationData()
+    yield HalData()
+    hs.resetDriverStationData()
 
 
 def test_leaves_show_devices_as_they_are_made_and_unmade(tree: HalData) -> None:

@@ -49,7 +49,7 @@ STATE_OF_MACHINE = PrivateName(
 )
 NATIVE_HAL = PrivateName(
     "native.wpihal._init_robotpy_native_wpihal:__lib",
-    "hal_data shows the channels of an encoder by it, and compat.hal_callbacks has the HAL report changes by it",
+    "hal_data shows the channels of an encoder by it",
 )
 NETWORK_LOG = PrivateName(
     "ntcore._logutil:NtLogForwarder.onInstanceStart",

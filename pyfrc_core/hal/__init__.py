@@ -4,6 +4,10 @@ In: the HAL of this process. Out: `HalData`, dicts and lists that read and write
 that the HAL has, so no two users of a run can see different values. Paths into it, such as ``joysticks[0].axes[1]``,
 are also the language of input scripts and traces (`paths`). Each device is a row of a table (`devices`).
 
+Traces and recordings find what has changed by one mechanism: `tree_reader` reads every value of the devices that exist
+through WPILib's bindings, and `change_reader` compares. Which of the roboRIO's 290 possible devices exist, the HAL
+reports (`created_devices`). It reports no SimDevices to Python, so these are listed at each look (`sim_device_list`).
+
 This is the only package that names simulated devices. Importing it does not change the HAL, and imports WPILib only
 when the tree is used: the simulator's window needs paths and no tree.
 

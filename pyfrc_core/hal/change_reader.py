@@ -1,10 +1,14 @@
-"""What has changed in `hal_data` between two looks of one reader. Several readers do not affect each other."""
+"""What has changed in `hal_data` between two looks of one reader. Several readers do not affect each other.
+
+Each look reads every value, through WPILib's own functions, and compares it with the one before.
+"""
 
 from __future__ import annotations
 
+from itertools import compress
+from math import copysign
+from operator import ne
 from typing import Any, NamedTuple, Protocol
-
-from .changing_values import same
 
 
 class _Missing:
@@ -19,6 +23,8 @@ MISSING: Any = _Missing()
 #: A value that has changed, or come: its path, the old value or `MISSING`, and the new one. Not a named tuple, because
 #: a trace has dozens of them in each packet.
 Change = tuple[str, Any, Any]
+
+_SCALARS = frozenset((float, int, bool, str, bytes))
 
 
 class Changes(NamedTuple):
@@ -35,42 +41,31 @@ class Changes(NamedTuple):
 class Source(Protocol):
     """What is read: see `TreeReader`."""
 
-    paths: list[str]
-    values: list[Any]
-    version: int
-
-    def refresh(self) -> None:
-        """Update the attributes."""
-
-    def changed_since(self, version: int) -> list[int]:
-        """Return the positions of values that may have changed since a version with the same `paths`, in order."""
+    def read(self) -> tuple[list[str], list[Any]]:
+        """Return all paths, in a list that stays the same while they do, and a new list of their values."""
 
 
 class ChangeReader:
-    """Finds what has changed since its last look, in a time that depends on the number of changes only."""
+    """Finds what has changed since its last look."""
 
     def __init__(self, source: Source) -> None:
         self._source = source
-        self._version = -1
         self._paths: list[str] = []
         self._values: list[Any] = []
 
     def look(self) -> Changes:
         """Return what has changed since the last look; at first, all values."""
-        source, version = self._source, self._version
-        source.refresh()
-        self._version = source.version
-        if source.version == version:
-            return Changes([], [])
-        if source.paths is not self._paths:
-            return self._compare_all()
-        changed: list[Change] = []
-        paths, before, now = self._paths, self._values, source.values
-        for position in source.changed_since(version):
-            old, new = before[position], now[position]
-            if (old != new and new == new) or not same(old, new):  # NaN differs from itself
-                before[position] = new
-                changed.append((paths[position], old, new))
+        paths, before = self._paths, self._values
+        self.skip()
+        now = self._values
+        if self._paths is not paths:
+            return self._compare_paths(paths, before)
+        changed = [
+            (path, old, new)
+            for path, old, new in zip(paths, before, now, strict=True)
+            # Most are the same object, or equal: only then 0.0 and -0.0, True and 1, or parts of a list may differ.
+            if old is not new and not (old == new and new and type(old) is type(new) in _SCALARS) and not same(old, new)
+        ]
         return Changes(changed, [])
 
     def look_at_values(self) -> tuple[dict[str, Any], list[str]]:
@@ -78,44 +73,41 @@ class ChangeReader:
 
         Values that compare equal to the old ones, such as 0.0 and -0.0, are left out.
         """
-        source, version = self._source, self._version
-        source.refresh()
-        self._version = source.version
-        changed: dict[str, Any] = {}
-        if source.version == version:
-            return changed, []
-        if source.paths is not self._paths:
-            found, gone = self._compare_all()
+        paths, before = self._paths, self._values
+        self.skip()
+        now = self._values
+        if self._paths is not paths:
+            found, gone = self._compare_paths(paths, before)
             return {path: new for path, old, new in found if old != new}, gone
-        paths, before, now = self._paths, self._values, source.values
-        for position in source.changed_since(version):
-            old, new = before[position], now[position]
-            before[position] = new
-            if old != new and (old == old or new == new):  # NaN differs from itself
-                changed[paths[position]] = new
+        differing = compress(zip(paths, before, now, strict=True), map(ne, before, now))
+        # NaN differs from itself, also in a list.
+        changed = {
+            path: new for path, old, new in differing if (new == new and type(new) is not list) or not same(old, new)
+        }
         return changed, []
 
-    def skip(self, refresh: bool = True) -> None:
-        """Look without finding what has changed, which takes less time.
+    def skip(self) -> None:
+        """Look without finding what has changed."""
+        self._paths, self._values = self._source.read()
 
-        :param refresh: False when nothing can have changed since any reader of the same tree has looked
-        """
-        source = self._source
-        if refresh:
-            source.refresh()
-        version, self._version = self._version, source.version
-        if source.paths is not self._paths:
-            self._paths, self._values = source.paths, source.values.copy()
-        elif source.version != version:
-            for position in source.changed_since(version):
-                self._values[position] = source.values[position]
-
-    def _compare_all(self) -> Changes:
-        before = dict(zip(self._paths, self._values, strict=True))
-        self._paths, self._values = self._source.paths, self._source.values.copy()
+    def _compare_paths(self, paths: list[str], values: list[Any]) -> Changes:
+        """Return what has changed since these paths had these values."""
+        before = dict(zip(paths, values, strict=True))
         changed: list[Change] = []
         for path, new in zip(self._paths, self._values, strict=True):
             old = before.pop(path, MISSING)
             if not same(old, new):
                 changed.append((path, old, new))
         return Changes(changed, list(before))
+
+
+def same(old: Any, new: Any) -> bool:
+    """Return whether two values are written alike: -0.0 is not 0.0, True is not 1, and NaN is NaN."""
+    if old is new:
+        return True
+    kind = type(old)
+    if kind is type(new) and kind in _SCALARS:  # texts take long to make
+        if kind is not float:
+            return bool(old == new)
+        return copysign(1, old) == copysign(1, new) if old == new else old != old and new != new
+    return repr(old) == repr(new)

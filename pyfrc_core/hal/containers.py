@@ -13,23 +13,11 @@ from typing import Any, NamedTuple
 
 from pyfrc_core.errors import nearest
 
-from ..compat.hal_callbacks import Report
 from .builtin_types import LiveMapping, LiveSequence
 from .kinds import ANY, UnknownKey, ValueKind, WrongIndex, WrongType, WrongValue
 from .paths import join
 
 Callback = Callable[[Any, Any], object]
-
-
-class Raw(NamedTuple):
-    """A value in a form that can be read and compared quickly.
-
-    :param read: returns it
-    :param convert: returns the value of `hal_data`
-    """
-
-    read: Callable[[], Any]
-    convert: Callable[[Any], Any]
 
 
 class Slot(NamedTuple):
@@ -43,8 +31,7 @@ class Slot(NamedTuple):
     :param recorded: whether the value cannot be derived from other fields
     :param remedy: the advice in the error when the value cannot be written
     :param unset: the value to write for None, at an output of the robot; None where None cannot be written
-    :param reports: what the HAL reports when the value may have changed; none where it may change without a report
-    :param raw: another way to read a value that takes long to read
+    :param plain: reads the value as recordings have it, where `get` returns another form of it
     """
 
     get: Callable[[], Any]
@@ -55,8 +42,7 @@ class Slot(NamedTuple):
     recorded: bool = True
     remedy: str | None = None
     unset: Any = None
-    reports: tuple[Report, ...] = ()
-    raw: Raw | None = None
+    plain: Callable[[], Any] | None = None
 
 
 #: The number that stands for None in the HAL: robots never set it, and it acts like 0.

@@ -4,30 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
+from weakref import WeakSet
 
-from ..compat.hal_callbacks import resets
 from .containers import Slot
+
+_all: WeakSet[CreatedDevices] = WeakSet()
 
 
 class CreatedDevices:
     """The devices that the robot has created.
 
-    The HAL calls back when a device is created. When its data are reset, it does not: unless resets are announced,
-    created devices are therefore checked each time.
+    The HAL calls back when a device is created, and no longer after a reset of its data: call `prepare_reset` before
+    it. Another reset is noticed as long as it has removed a device.
     """
 
     def __init__(self, slots: list[Slot]) -> None:
         self._slots = slots
         self._changed = True
-        self._resets = 0
         self._watches: list[object] = []
         self._created: list[bool] = []
         self._still_created: list[Callable[[], Any]] = []
+        _all.add(self)
 
     def created(self) -> list[bool]:
         """Return, for each device, whether it was created; the same list object as long as nothing changes."""
-        if self._changed or self._reset():
-            self._changed, self._resets = False, resets.number
+        if self._changed or False in [still_created() for still_created in self._still_created]:
+            self.stop_watching()
+            self._changed = False
             self._watches = [slot.watch(self._note) for slot in self._slots if slot.watch is not None]
             self._created = [bool(slot.get()) for slot in self._slots]
             self._still_created = [
@@ -35,20 +38,19 @@ class CreatedDevices:
             ]
         return self._created
 
-    def _reset(self) -> bool:
-        """Return whether a device may have been reset."""
-        if resets.announced:
-            return self._resets != resets.number
-        return False in [exists() for exists in self._still_created]
-
-    def created_now(self) -> list[bool]:
-        """Return the same, also after a reset of the HAL, which ends all watches without a report."""
+    def stop_watching(self) -> None:
+        """Remove the callbacks from the HAL, until the next call of `created`."""
+        self._watches.clear()
         self._changed = True
-        return self.created()
-
-    def any_created(self) -> bool:
-        """Return whether any device was created, also after a reset of the HAL."""
-        return any(slot.get() for slot in self._slots)
 
     def _note(self) -> None:
         self._changed = True
+
+
+def prepare_reset() -> None:
+    """Prepare a reset of the roboRIO's data in the HAL, which removes all callbacks of a device without a sign.
+
+    They are removed before it: afterwards, their numbers are those of other callbacks.
+    """
+    for devices in list(_all):
+        devices.stop_watching()

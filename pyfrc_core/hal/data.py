@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
 from typing import Any
 
 import hal
@@ -15,6 +16,7 @@ from .fields import group
 from .kinds import UnknownKey, WrongPath, WrongType
 from .modules import Modules
 from .paths import Segment, format_path, join, parse_path
+from .robot_devices import RobotDevices
 from .sim_devices import RobotDict, SimDevices
 from .tree_reader import TreeReader
 
@@ -35,7 +37,6 @@ class HalData(LiveDict):
     def __init__(self, defaults: bool = True) -> None:
         super().__init__("", self._values)
         self.modules = Modules()
-        self._reader: TreeReader | None = None
         self._branches: dict[Any, Any] = {"custom": {}, "reports": {}}
         self._builders = self._branch_builders()
         if defaults:
@@ -51,8 +52,8 @@ class HalData(LiveDict):
     @staticmethod
     def _values() -> dict[str, Slot]:
         return {
-            "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim, "DriverStation"),
-            "fpga_button": devices.FPGA_BUTTON.slot(sim.RoboRioSim, "RoboRio"),
+            "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim),
+            "fpga_button": devices.FPGA_BUTTON.slot(sim.RoboRioSim),
             "user_program_state": Slot(driver_station.program_state, None),
             "error_data": stored(),
             "pwm_loop_timing": stored(40),
@@ -62,22 +63,20 @@ class HalData(LiveDict):
     def _branch_builders(self) -> dict[str, Callable[[], Any]]:
         modules = self.modules
         return {
-            "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL, "DriverStation"),
-            "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME, "DriverStation"),
+            "control": lambda: group("control", sim.DriverStationSim, driver_station.CONTROL),
+            "time": lambda: group("time", sim.DriverStationSim, driver_station.TIME),
             "event": driver_station.EventData,
             "joysticks": driver_station.joysticks,
             "robot": lambda: RobotDict(self["CAN"]),
-            "accelerometer": lambda: group(
-                "accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER, "Accelerometer", 0
-            ),
+            "accelerometer": lambda: group("accelerometer", sim.BuiltInAccelerometerSim(), devices.ACCELEROMETER),
             **{kind.name: kind.devices for kind in devices.KINDS},
             "pcm": lambda: modules.pcm,
             "ph": lambda: modules.ph,
             "pcm_compressor": lambda: modules.pcm_compressor,
             "ph_compressor": lambda: modules.ph_compressor,
             "pdp": lambda: modules.pdp,
-            "power": lambda: group("power", sim.RoboRioSim, devices.POWER, "RoboRio"),
-            "roborio": lambda: group("roborio", sim.RoboRioSim, devices.ROBORIO, "RoboRio"),
+            "power": lambda: group("power", sim.RoboRioSim, devices.POWER),
+            "roborio": lambda: group("roborio", sim.RoboRioSim, devices.ROBORIO),
             "CAN": SimDevices,
         }
 
@@ -188,11 +187,11 @@ class HalData(LiveDict):
 
     def any_exist(self) -> bool:
         """Return whether any device exists in the HAL."""
-        return self._tree_reader().any_exist()
+        return self._robot_devices.any_exist()
 
     def existing(self) -> list[str]:
         """Return the devices that exist in the HAL, such as ``pwm[3]``."""
-        return self._tree_reader().existing()
+        return self._robot_devices.existing()
 
     def leaves(self) -> list[tuple[str, Any]]:
         """Return the current state of the robot and its inputs as pairs of path and plain value, in a fixed order.
@@ -207,18 +206,22 @@ class HalData(LiveDict):
 
         The list of paths stays the same object while it does not change.
         """
-        reader = self._tree_reader()
-        reader.refresh()
-        return reader.paths, reader.values.copy()
+        return self._reader.read()
 
     def changes(self) -> ChangeReader:
         """Return a reader of what changes in `leaves` from now on; its first look finds all values."""
-        return ChangeReader(self._tree_reader())
+        return ChangeReader(self._new_reader())
 
-    def _tree_reader(self) -> TreeReader:
-        if self._reader is None:
-            self._reader = TreeReader(self, self.modules)
-        return self._reader
+    def _new_reader(self) -> TreeReader:
+        return TreeReader(self, self.modules, self._robot_devices)
+
+    @cached_property
+    def _reader(self) -> TreeReader:
+        return self._new_reader()
+
+    @cached_property
+    def _robot_devices(self) -> RobotDevices:
+        return RobotDevices(self, self.modules)
 
     def snapshot(self) -> dict[str, Any]:
         """Return a copy of the whole tree in dicts, lists, numbers, strings, bools and None, ready for ``json``."""

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from functools import partial
+from operator import attrgetter
 from typing import Any
 
 import hal
 import wpilib
 from wpilib import simulation as sim
 
-from ..compat import hal_callbacks, wpilib_private
-from .containers import NOT_SET, Raw
+from ..compat import wpilib_private
+from .containers import NOT_SET
 from .counters import COUNTERS, CounterSim
 from .digital import DigitalSim
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, DeviceKind
@@ -19,6 +19,7 @@ from .kinds import BOOL, FLOAT, INT32, INT64, ValueKind, choice, number, text, w
 RANGE = choice({"2G": 0, "4G": 1, "8G": 2}, hal.AccelerometerRange)
 LED_STATE = choice({"off": 0, "green": 1, "red": 2, "orange": 3}, wpilib.RadioLEDState)
 
+_RGB = attrgetter("r", "g", "b")
 _LSB = 1220703e-9  # volts per count of the 12-bit converter, as in the HAL
 
 
@@ -40,16 +41,7 @@ def encoder_channels(index: int) -> dict[str, int | None]:
 
 def led_data(strip: sim.AddressableLEDSim) -> list[list[int]]:
     """Return the colours as ``[red, green, blue]``, 0 to 255."""
-    return [[led.r, led.g, led.b] for led in strip.getData()]
-
-
-def raw_led_data(index: int) -> Raw:
-    """Return the colours of a strip as the HAL stores them."""
-    return Raw(partial(hal_callbacks.led_bytes, index, hal_callbacks.led_buffer()), _led_colours)
-
-
-def _led_colours(stored: bytes) -> list[list[int]]:
-    return [[red, green, blue] for blue, green, red in zip(stored[::4], stored[1::4], stored[2::4], strict=True)]
+    return list(map(list, map(_RGB, strip.getData())))
 
 
 def _colours(value: Any) -> list[list[int]]:
@@ -79,7 +71,6 @@ KINDS = (
             F("zero_latch", "ZeroLatch", BOOL),
             F("elim_deadband", default=False),
         ),
-        reported_as="PWM",
     ),
     DeviceKind(
         "dio",
@@ -93,7 +84,6 @@ KINDS = (
             F("pulse_length", "PulseLength", FLOAT),
             F("filter_idx", "FilterIndex", INT32),
         ),
-        reported_as="DIO",
     ),
     DeviceKind(
         "encoder",
@@ -116,7 +106,6 @@ KINDS = (
             F("min_rate", default=0.0),
         ),
         config=encoder_channels,
-        reported_as="Encoder",
     ),
     DeviceKind(
         "analog_in",
@@ -151,7 +140,6 @@ KINDS = (
             F("lsb_weight", default=1),
             F("offset", default=65535),
         ),
-        reported_as="AnalogIn",
     ),
     DeviceKind(
         "analog_out",
@@ -159,7 +147,6 @@ KINDS = (
         sim.AnalogOutputSim,
         (INITIALIZED, F("voltage", "Voltage", FLOAT, unset=NOT_SET)),
         real=2,
-        reported_as="AnalogOut",
     ),
     DeviceKind(
         "analog_gyro",
@@ -174,7 +161,6 @@ KINDS = (
             F("offset", default=0.0),
             F("center", default=0),
         ),
-        reported_as="AnalogGyro",
     ),
     DeviceKind(
         "analog_trigger",
@@ -188,7 +174,6 @@ KINDS = (
             F("trig_type"),
             F("trig_state", default=False),
         ),
-        reported_as="AnalogTrigger",
     ),
     DeviceKind(
         "relay",
@@ -206,7 +191,6 @@ KINDS = (
             F("fwd", "Forward", BOOL, unset=False),
             F("rev", "Reverse", BOOL, unset=False),
         ),
-        reported_as="Relay",
     ),
     DeviceKind(
         "d0_pwm",
@@ -214,14 +198,12 @@ KINDS = (
         sim.DigitalPWMSim.createForIndex,
         (INITIALIZED, F("duty_cycle", "DutyCycle", FLOAT, unset=NOT_SET), F("pin", "Pin", INT32)),
         real=6,
-        reported_as="DigitalPWM",
     ),
     DeviceKind(
         "duty_cycle",
         8,
         sim.DutyCycleSim.createForIndex,
         (INITIALIZED, F("frequency", "Frequency", INT32), F("output", "Output", FLOAT)),
-        reported_as="DutyCycle",
     ),
     DeviceKind(
         "addressable_led",
@@ -238,11 +220,8 @@ KINDS = (
                 ValueKind("a list of [red, green, blue], each 0 to 255", _colours, []),
                 get=led_data,
                 put=_set_led_data,
-                also_reported=("Length",),
-                raw=raw_led_data,
             ),
         ),
-        reported_as="AddressableLED",
     ),
     DeviceKind("mxp", 16, None, (F("initialized", default=False),)),
     DeviceKind("filter", 3, None, (F("enabled", default=False), F("period", default=0))),

@@ -11,17 +11,9 @@ from typing import Any
 
 import hal
 from hal import simulation as hs
-from hal.simulation import (
-    getJoystickAxes,
-    getJoystickButtons,
-    getJoystickCounts,
-    getJoystickOutputs,
-    getJoystickPOVs,
-)
 from wpilib import DriverStation
 from wpilib.simulation import DriverStationSim
 
-from ..compat.hal_callbacks import Report
 from .containers import LiveDict, LiveList, Slot, ValueList, stored
 from .fields import HAS_SOURCE, DeviceField
 from .kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
@@ -72,19 +64,28 @@ def program_state() -> str | None:
 class EventData(LiveDict):
     """The match, as sent by the field."""
 
-    #: What the HAL reports after a change.
-    reports = (Report("MatchInfo", ()),)
+    #: The keys of `plain_values`.
+    recorded = ("name", "match_type", "match_number", "replay_number", "game_specific_message")
 
     def __init__(self) -> None:
         super().__init__("event", self._all)
         self._info = hal.MatchInfo()
 
-    def fingerprint(self) -> object:
-        """Return a value that differs after any change."""
+    def plain_values(self) -> list[Any]:
+        """Return the values of `recorded`."""
         info = self._info
         hs.getMatchInfo(info)
-        texts = info.eventName.tobytes(), info.gameSpecificMessage.tobytes(), info.gameSpecificMessageSize
-        return texts, info.matchType, info.matchNumber, info.replayNumber
+        return [
+            _c_text(info.eventName),
+            int(info.matchType),
+            info.matchNumber,
+            info.replayNumber,
+            self._message(),
+        ]
+
+    def _message(self) -> str:
+        info = self._info
+        return info.gameSpecificMessage.tobytes()[: info.gameSpecificMessageSize].decode(errors="replace")
 
     def _all(self) -> dict[str, Slot]:
         info, station, named = self._info, DriverStationSim, MATCH_TYPE.load or int
@@ -96,15 +97,12 @@ class EventData(LiveDict):
 
             return current
 
-        def message() -> str:
-            return info.gameSpecificMessage.tobytes()[: info.gameSpecificMessageSize].decode(errors="replace")
-
         return {
             "name": Slot(get(lambda: _c_text(info.eventName)), station.setEventName, text(63)),
             "match_type": Slot(get(lambda: named(info.matchType)), station.setMatchType, MATCH_TYPE),
             "match_number": Slot(get(lambda: info.matchNumber), station.setMatchNumber, whole(0, 65535)),
             "replay_number": Slot(get(lambda: info.replayNumber), station.setReplayNumber, whole(0, 255)),
-            "game_specific_message": Slot(get(message), station.setGameSpecificMessage, text(64)),
+            "game_specific_message": Slot(get(self._message), station.setGameSpecificMessage, text(64)),
             "has_source": stored(False),
         }
 
@@ -124,10 +122,6 @@ class JoystickData(LiveDict):
     The robot sees `axis_count` axes, `button_count` buttons and `pov_count` POVs; writing a later one raises its count.
     Values are read from WPILib's buffer, so an axis has the precision of a C float.
     """
-
-    #: What the HAL reports after a change of the controls, and of the data sent back: of any joystick.
-    reports = tuple(Report(f"Joystick{what}", (0,)) for what in ("Axes", "Buttons", "POVs"))
-    output_reports = (Report("JoystickOutputs", (0,)),)
 
     def __init__(self, port: int) -> None:
         super().__init__(join("joysticks", port), self._all)
@@ -220,25 +214,24 @@ class JoystickData(LiveDict):
         hs.getJoystickAxes(self._port, self._axes)
         return self._axis_values.tolist()  # type: ignore[return-value]
 
-    def outputs(self) -> tuple[int, int, int]:
+    def controls(self, axes: int, buttons: int, povs: int) -> list[list[Any]]:
+        """Return the axes, buttons and POVs that the robot sees: a list for each of them that it has.
+
+        :param axes, buttons, povs: the result of `counts`
+        """
+        found: list[list[Any]] = []
+        if axes:
+            found.append(self._load_axes()[:axes])
+        if buttons:
+            bits = self._bits()
+            found.append([False, *[bits >> index & 1 == 1 for index in range(buttons)]])
+        if povs:
+            found.append(self._load_povs()[:povs])
+        return found
+
+    def sent_back(self) -> tuple[int, int, int]:
         """Return what the robot sends back: the outputs' bits, the left and the right rumble."""
-        return getJoystickOutputs(self._port)
-
-    def fingerprint(self) -> object:
-        """Return a value that differs after any change of the controls."""
-        port = self._port
-        counts = getJoystickCounts(port)
-        if counts == (0, 0, 0):
-            return counts
-        getJoystickAxes(port, self._axes)
-        getJoystickPOVs(port, self._povs)
-        getJoystickButtons(port, self._buttons)
-        return self._axis_values.tobytes(), self._pov_values.tobytes(), self._buttons.buttons, counts
-
-    def controls(self) -> tuple[list[float], list[bool], list[int]]:
-        """Return the axes, buttons and POVs that the robot sees."""
-        axes, buttons, povs = self.counts()
-        return self._load_axes()[:axes], [False, *self._load_buttons()[1 : buttons + 1]], self._load_povs()[:povs]
+        return hs.getJoystickOutputs(self._port)
 
     def _set_axis(self, index: int, value: float) -> None:
         hs.setJoystickAxis(self._port, index, value)

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from ..compat.hal_callbacks import Report
-from .containers import LiveDict, LiveList, Raw, Slot, stored
+from .containers import LiveDict, LiveList, Slot, stored
 from .kinds import ANY, BOOL, ValueKind
 from .paths import join
 
@@ -31,8 +30,6 @@ class DeviceField:
     :param unset: for an output of the robot: the value in the HAL when a test writes None
     :param get: reads from the `*Sim` object, where that differs from WPILib's method
     :param put: writes to the `*Sim` object, where that differs from WPILib's method
-    :param also_reported: further names of WPILib's whose changes may change the value
-    :param raw: returns another way to read the value of the device with an index, where reading it takes long
     """
 
     name: str
@@ -44,31 +41,24 @@ class DeviceField:
     unset: Any = None
     get: Callable[[Any], Any] | None = None
     put: Callable[[Any, Any], object] | None = None
-    also_reported: tuple[str, ...] = ()
-    raw: Callable[[int], Raw] | None = None
 
-    def slot(self, device: object, reported_as: str = "", *subject: int) -> Slot:
-        """Return the access to this field of `device`; None stands for a channel that the HAL does not have.
-
-        :param reported_as: how the names of the device's reports begin; empty if the HAL does not report its changes
-        :param subject: the device in its reports, as in `Report`
-        """
+    def slot(self, device: object) -> Slot:
+        """Return the access to this field of `device`; None stands for a channel that the HAL does not have."""
         if device is None or (self.hal is None and self.get is None):
             return stored(self.kind.default if self.default is None else self.default)
-        get = partial(self.get, device) if self.get else getattr(device, f"get{self.hal}")
+        raw = get = partial(self.get, device) if self.get else getattr(device, f"get{self.hal}")
         if self.kind.load is not None:
-            get = _loaded(get, self.kind.load)
+            get = _converted(raw, self.kind.load)
+        read_plain = None if self.kind.plain is None else _converted(raw, self.kind.plain)
         put = partial(self.put, device) if self.put else getattr(device, f"set{self.hal}", None)
         register = getattr(device, f"register{self.hal}Callback", None)
         watch = None if register is None else partial(_watch, register)
-        reported = (self.hal, *self.also_reported) if reported_as else ()
-        reports = tuple(Report(reported_as + name, subject) for name in reported if name)
         name = self.same_as or self.name
-        return Slot(get, put, self.kind, watch, name, self.recorded, unset=self.unset, reports=reports)
+        return Slot(get, put, self.kind, watch, name, self.recorded, unset=self.unset, plain=read_plain)
 
 
-def _loaded(get: Callable[[], object], load: Callable[[object], object]) -> Callable[[], Any]:
-    return lambda: load(get())
+def _converted(get: Callable[[], object], convert: Callable[[Any], object]) -> Callable[[], Any]:
+    return lambda: convert(get())
 
 
 def _watch(register: Callable[..., object], fire: Callable[[], None]) -> object:
@@ -89,7 +79,6 @@ class DeviceKind:
     :param fields: the fields of each device
     :param real: how many of them the HAL has; the others are stored values
     :param config: returns the read-only value at ``config``, for kinds that have one
-    :param reported_as: how the names of its reports begin; empty if the HAL does not report its changes
     """
 
     name: str
@@ -98,15 +87,11 @@ class DeviceKind:
     fields: tuple[DeviceField, ...]
     real: int = 64
     config: Callable[[int], Any] | None = None
-    reported_as: str = ""
 
     def device(self, path: str, index: int) -> LiveDict:
         def build() -> dict[str, Slot]:
             device = self.make(index) if self.make and index < self.real else None
-            slots = {field.name: field.slot(device, self.reported_as, index) for field in self.fields}
-            for field in self.fields:
-                if field.raw is not None:
-                    slots[field.name] = slots[field.name]._replace(raw=field.raw(index))
+            slots = {field.name: field.slot(device) for field in self.fields}
             if self.config is not None:
                 slots["config"] = Slot(partial(self.config, index), None, recorded=False, remedy="the robot sets it")
             return slots
@@ -124,9 +109,6 @@ class DeviceKind:
         return [initialized.slot(self.make(i)) for i in range(min(self.count, self.real))]
 
 
-def group(path: str, device: object, fields: tuple[DeviceField, ...], reported_as: str = "", *subject: int) -> LiveDict:
-    """Return one dict for a device that exists only once.
-
-    :param reported_as, subject: as for `DeviceField.slot`
-    """
-    return LiveDict(path, lambda: {field.name: field.slot(device, reported_as, *subject) for field in fields})
+def group(path: str, device: object, fields: tuple[DeviceField, ...]) -> LiveDict:
+    """Return one dict for a device that exists only once."""
+    return LiveDict(path, lambda: {field.name: field.slot(device) for field in fields})

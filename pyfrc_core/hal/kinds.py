@@ -75,7 +75,7 @@ class ValueKind:
     :param convert: returns the value to store; raises TypeError or ValueError for an invalid one
     :param default: the value of a field of this kind where the HAL has no such channel
     :param load: returns the value to show, from WPILib's value
-    :param plain: returns the value to record, where that differs from the value to show
+    :param plain: returns the value to record, from WPILib's value, where that differs from the value to show
     """
 
     expected: str

@@ -31,7 +31,6 @@ from hal.simulation import (
 )
 from wpilib.simulation import DriverStationSim
 
-from ..compat.hal_callbacks import resets
 from ..errors import UsageError
 
 #: The four modes that `TestController.get_mode` returns.
@@ -48,7 +47,6 @@ NOT_PRESSED = -1
 
 def reset_driver_station() -> None:
     """Set the initial data of the driver station: attached, disabled, red 1, six joysticks with nothing pressed."""
-    resets.announce()
     resetDriverStationData()
     setDriverStationDsAttached(True)
     setDriverStationAllianceStationId(AllianceStationID.kRed1)

@@ -8,9 +8,7 @@ from typing import Any
 
 from wpilib import simulation as sim
 
-from ..compat import hal_callbacks
-from ..compat.hal_callbacks import Report
-from .containers import LiveDict, LiveList, Raw, Slot, ValueList
+from .containers import LiveDict, LiveList, Slot, ValueList
 from .fields import HAS_SOURCE, INITIALIZED, DeviceField, group
 from .kinds import BOOL, FLOAT, choice
 from .paths import join
@@ -19,9 +17,6 @@ HUB_COMPRESSOR = choice({"disabled": 0, "digital": 1, "analog": 2, "hybrid": 3})
 
 MODULES = 63  # CAN device numbers 0 to 62; the HAL does not check beyond
 CHANNELS = 24  # of a power distribution module
-
-#: How the names of their reports begin.
-_PCM, _HUB, _DISTRIBUTION = "CTREPCM", "REVPH", "PowerDistribution"
 
 COMPRESSOR = (
     INITIALIZED,
@@ -53,12 +48,8 @@ DISTRIBUTION = (
 )
 
 
-def solenoid(module: Any, path: str, report: Report) -> LiveDict:
-    """Return a solenoid of a pneumatics module; it is initialized when its module is.
-
-    :param report: what the HAL reports when it switches, with the numbers of the module and of the channel
-    """
-    channel = report.subject[1]
+def solenoid(module: Any, path: str, channel: int) -> LiveDict:
+    """Return a solenoid of a pneumatics module; it is initialized when its module is."""
 
     def build() -> dict[str, Slot]:
         def watch(fire: Callable[[], None]) -> object:
@@ -67,21 +58,19 @@ def solenoid(module: Any, path: str, report: Report) -> LiveDict:
         get, put = partial(module.getSolenoidOutput, channel), partial(module.setSolenoidOutput, channel)
         return {
             "initialized": INITIALIZED.slot(module),
-            "value": Slot(get, put, BOOL, watch, unset=False, reports=(report,)),
+            "value": Slot(get, put, BOOL, watch, unset=False),
         }
 
     return LiveDict(path, build)
 
 
-def distribution(path: str, number: int, module: sim.PowerDistributionSim) -> LiveDict:
+def distribution(path: str, module: sim.PowerDistributionSim) -> LiveDict:
     """Return a power distribution module. Both kinds show the HAL's 24 channels."""
 
     def build() -> dict[str, Slot]:
-        slots = {field.name: field.slot(module, _DISTRIBUTION, number) for field in DISTRIBUTION}
+        slots = {field.name: field.slot(module) for field in DISTRIBUTION}
         currents = ValueList(join(path, "current"), FLOAT, lambda: CHANNELS, module.getCurrent, module.setCurrent)
-        read = partial(hal_callbacks.current_bytes, number, hal_callbacks.current_buffer(CHANNELS))
-        reports = tuple(Report(f"{_DISTRIBUTION}Current", (number, channel)) for channel in range(CHANNELS))
-        slots["current"] = Slot(lambda: currents, None, watch=watch, reports=reports, raw=Raw(read, _currents))
+        slots["current"] = Slot(lambda: currents, None, watch=watch, plain=partial(list, currents))
         # Computed like the HAL's value for the robot.
         slots["total_current"] = Slot(
             lambda: float(sum(currents)),
@@ -97,10 +86,6 @@ def distribution(path: str, number: int, module: sim.PowerDistributionSim) -> Li
         return [module.registerCurrentCallback(i, lambda *_: fire(), False) for i in range(CHANNELS)]
 
     return LiveDict(path, build)
-
-
-def _currents(stored: bytes) -> list[float]:
-    return memoryview(stored).cast("d").tolist()  # type: ignore[return-value]
 
 
 class ModuleDict(LiveDict):
@@ -140,15 +125,15 @@ class Modules:
         self._pcm_sim = lru_cache(None)(sim.CTREPCMSim)
         self._hub_sim = lru_cache(None)(sim.REVPHSim)
         self._power_sim = lru_cache(None)(sim.PowerDistributionSim)
-        self._hub_solenoids = lru_cache(None)(lambda n: self._solenoids("ph", self._hub_sim(n), _HUB, n, 16))
-        self._pcm_solenoids = lru_cache(None)(lambda n: self._solenoids("pcm", self._pcm_sim(n), _PCM, n, 8))
+        self._hub_solenoids = lru_cache(None)(lambda n: self._solenoids(join("ph", n), self._hub_sim(n), 16))
+        self._pcm_solenoids = lru_cache(None)(lambda n: self._solenoids(join("pcm", n), self._pcm_sim(n), 8))
         self._hub_compressor = lru_cache(None)(
-            lambda n: group(join("ph_compressor", n), self._hub_sim(n), HUB_COMPRESSOR_FIELDS, _HUB, n)
+            lambda n: group(join("ph_compressor", n), self._hub_sim(n), HUB_COMPRESSOR_FIELDS)
         )
         self._pcm_compressor = lru_cache(None)(
-            lambda n: group(join("pcm_compressor", n), self._pcm_sim(n), PCM_COMPRESSOR, _PCM, n)
+            lambda n: group(join("pcm_compressor", n), self._pcm_sim(n), PCM_COMPRESSOR)
         )
-        distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), n, self._power_sim(n)))
+        distributions = lru_cache(None)(lambda n: distribution(join("pdp", n), self._power_sim(n)))
         self.ph = ModuleDict("ph", self._has_hub, self._hub_solenoids)
         self.pcm = ModuleDict("pcm", lambda n: self._has_pcm(n) or self._has_hub(n), self._either, early=0)
         self.ph_compressor = ModuleDict("ph_compressor", self._has_hub, self._hub_compressor)
@@ -167,10 +152,8 @@ class Modules:
         return self._hub_solenoids(module) if is_hub else self._pcm_solenoids(module)
 
     @staticmethod
-    def _solenoids(key: str, module: Any, reported_as: str, number: int, count: int) -> LiveList:
-        path = join(key, number)
-        reports = [Report(f"{reported_as}SolenoidOutput", (number, channel)) for channel in range(count)]
-        return LiveList(path, [solenoid(module, join(path, at), report) for at, report in enumerate(reports)])
+    def _solenoids(path: str, module: Any, count: int) -> LiveList:
+        return LiveList(path, [solenoid(module, join(path, channel), channel) for channel in range(count)])
 
     @property
     def solenoid(self) -> LiveList:

@@ -1,7 +1,6 @@
 """`CAN`: every SimDevice by name, as created by vendors and WPILib's gyros; `robot`: older names for some.
 
-In Python, WPILib does not report new SimDevices, so names are looked up on each access, which takes a tenth of a
-microsecond.
+In Python, WPILib does not report new SimDevices, so names are looked up on each access.
 """
 
 from __future__ import annotations
@@ -14,7 +13,6 @@ import hal
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
-from ..compat.hal_callbacks import Report
 from ..compat.real_time_devices import real_time_devices
 from .containers import LiveDict, Slot
 from .kinds import ANY, BOOL, FLOAT, INT32, INT64, UnknownKey, choice
@@ -38,7 +36,7 @@ class SimDevice(LiveDict):
         if self._handle:
             device = SimDeviceSim(self._name)
             for value, _readonly in device.enumerateValues():
-                found[value] = _slot(device, self._handle, value)
+                found[value] = _slot(device, value)
         self._built = found
         for watch_name, watch in self._watches.items():
             if watch_name in found and (connect := found[watch_name].watch):
@@ -68,7 +66,7 @@ class SimDevice(LiveDict):
         return iter([name for name, _ in SimDeviceSim(self._name).enumerateValues()])
 
 
-def _slot(device: SimDeviceSim, handle: int, name: str) -> Slot:
+def _slot(device: SimDeviceSim, name: str) -> Slot:
     raw = device.getValue(name)
     make, kind = {
         hal.Type.BOOLEAN: (device.getBoolean, BOOL),
@@ -87,8 +85,7 @@ def _slot(device: SimDeviceSim, handle: int, name: str) -> Slot:
         kind = choice({option: i for i, option in enumerate(SimDeviceSim.getEnumOptions(value))})
         load = kind.load or int
         get = lambda: load(value.get())  # noqa: E731
-    report = Report("SimValueChanged", (hs.getSimValueHandle(handle, name),))
-    return Slot(get, value.set, kind, watch, reports=(report,))
+    return Slot(get, value.set, kind, watch, plain=value.get)
 
 
 class SimDevices(LiveDict):

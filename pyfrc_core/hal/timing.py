@@ -19,8 +19,8 @@ from hal.simulation import (
     stepTiming,
 )
 
-from ..compat.hal_callbacks import resets
 from .counters import forget_written_counts
+from .created_devices import prepare_reset
 
 #: Advance HAL time by this many microseconds; wake the notifiers of C++ code that become due.
 step_us = stepTiming
@@ -31,7 +31,7 @@ deliver_packet = notifyDriverStationNewData
 
 def forget_inputs() -> None:
     """Reset all sensors and outputs to their initial values."""
-    resets.announce()
+    prepare_reset()
     resetAllSimData()
     forget_written_counts()
 

@@ -47,8 +47,6 @@ class Clock:
         #: Delivers a packet. A run delivers it over its connection, which may be lost.
         self.deliver_packet: Action = deliver_packet
         self._recurring: list[tuple[int, int, Action]] = []
-        #: How many actions have been called.
-        self.actions = 0
         #: Stands for the innermost call of `run_until` or `run_while` that has not returned; None between two calls.
         self.call: object = None
         #: The first number is the time in microseconds. It may be memory that another process reads.
@@ -128,7 +126,6 @@ class Clock:
                 if due_us > self.now_us:
                     step_us(due_us - self.now_us)
                     self.now_us = self.moment[0] = due_us
-                self.actions += 1
                 action()
                 if self.halted:
                     raise TestEnded
@@ -170,7 +167,6 @@ class Clock:
         due_us, _, _, action = heappop(self._queue)
         if due_us > self.now_us:  # most of what is due falls together with a packet
             self._move_to(due_us)
-        self.actions += 1
         action()
 
     def _move_to(self, time_us: int) -> None:

@@ -1,7 +1,7 @@
 """Replace the functions by which tests and robot code reset data of the simulated HAL.
 
-A reset removes all callbacks of a device without a sign, and `hal_data` relies on them. So it is announced first.
-A reset of the driver station's data must not end the connection.
+A reset of devices removes their callbacks, by which `hal_data` finds new devices: `prepare_reset` comes first. A reset
+of the driver station's data must not end the connection.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 import hal.simulation
 import wpilib.simulation
 
-from ..compat.hal_callbacks import resets
+from ..hal.created_devices import prepare_reset
 from .patch_table import Patch
 
 if TYPE_CHECKING:
     from .robot import RobotRun
 
-#: The driver station is below; resets of SimDevices are noticed without help.
+#: The driver station is below; SimDevices have no callbacks.
 _NOT_HERE = (wpilib.simulation.DriverStationSim, wpilib.simulation.SimDeviceSim)
 
 
@@ -29,7 +29,7 @@ def patches(current_run: Callable[[], RobotRun | None]) -> list[Patch]:
     """
     return [
         *(
-            _announced(owner, "resetData")
+            _prepared(owner, "resetData")
             for owner in vars(wpilib.simulation).values()
             if isinstance(owner, type) and "resetData" in vars(owner) and owner not in _NOT_HERE
         ),
@@ -44,11 +44,11 @@ def patches(current_run: Callable[[], RobotRun | None]) -> list[Patch]:
     ]
 
 
-def _announced(owner: type, name: str) -> Patch:
+def _prepared(owner: type, name: str) -> Patch:
     real = getattr(owner, name)
 
     def reset(*device: object) -> None:
-        resets.announce()
+        prepare_reset()
         real(*device)
 
     return Patch(owner, name, reset)
@@ -58,7 +58,7 @@ def _keeping_connection(owner: object, name: str, current_run: Callable[[], Robo
     real = getattr(owner, name)
 
     def reset() -> None:
-        resets.announce()
+        prepare_reset()
         real()
         if current_run() is not None:
             hal.simulation.setDriverStationDsAttached(True)

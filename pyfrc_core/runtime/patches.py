@@ -21,7 +21,6 @@ import wpilib
 import wpilib.simulation
 
 from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
-from ..compat.hal_callbacks import resets
 from ..compat.object_hashes import hash_by_number, object_base
 from ..compat.wpilib_noise import replace_chance
 from ..compat.wpilib_private import LOOP_FUNCTION
@@ -82,7 +81,6 @@ class Patches:
         for owner, name, replacement in self._patches():
             original = vars(owner).get(name, getattr(owner, name, None))
             self._table.patch(owner, name, as_original(owner, name, original, replacement))
-        resets.announced = True
         replace_chance()
         robot_stack.show_robots_lines(lambda: self._files)
         library_threads.begin()
@@ -90,7 +88,6 @@ class Patches:
     def uninstall(self) -> None:
         """Restore the original names."""
         self._table.undo()
-        resets.announced = False
         cooperative.scope.forget_project()
         robot_stack.show_all_lines()
 

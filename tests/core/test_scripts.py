@@ -14,7 +14,7 @@ from hal import simulation as hs
 
 from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.hal import HalData, modes
-from pyfrc_core.hal.changing_values import same
+from pyfrc_core.hal.change_reader import same
 from pyfrc_core.hal.timing import deliver_packet
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.network_entries import NETWORK

@@ -19,13 +19,9 @@ class Tree:
     def __init__(self) -> None:
         self.paths: list[str] = []
         self.values: list[Any] = []
-        self.version = 0
 
-    def refresh(self) -> None:
-        self.version += 1
-
-    def changed_since(self, version: int) -> list[int]:
-        return list(range(len(self.values)))
+    def read(self) -> tuple[list[str], list[Any]]:
+        return self.paths, self.values
 
     def changes(self) -> ChangeReader:
         return ChangeReader(self)

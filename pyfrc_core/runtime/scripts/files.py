@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -17,25 +17,17 @@ _BUFFER = 1 << 17
 
 
 @contextmanager
-def traced(run: RobotRun, file: Path, then: Callable[[], object] | None = None) -> Iterator[Trace]:
-    """Write down what the robot does while this lasts. The run is open, and not started.
-
-    :param then: called after each look
-    """
+def traced(run: RobotRun, file: Path) -> Iterator[Trace]:
+    """Write down what the robot does while this lasts. The run is open, and not started."""
     file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("w", buffering=_BUFFER, encoding="utf-8") as out:
         trace = Trace(run.hal_data, out)
-
-        def look(now: float) -> None:
-            trace.look(now)
-            if then is not None:
-                then()
 
         def write() -> None:
             trace.write_lines()
             out.flush()
 
-        run.observe(look)
+        run.observe(trace.look)
         before_sudden_exit["trace"] = write
         try:
             yield trace
@@ -49,7 +41,7 @@ def traced(run: RobotRun, file: Path, then: Callable[[], object] | None = None) 
 def recorded(run: RobotRun, file: Path, robot: str, seed: int) -> Iterator[None]:
     """Record a run while this lasts: its script, and its trace beside that. The run is open, and not started."""
     recorder = Recorder(run)
-    with traced(run, trace_beside(file), recorder.on_look) as trace:
+    with traced(run, trace_beside(file)) as trace:
         try:
             yield
         finally:

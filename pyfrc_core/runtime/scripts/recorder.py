@@ -9,12 +9,10 @@ from importlib.metadata import version
 from typing import Any
 
 import ntcore
-from hal.simulation import getNextNotifierTimeout
 
 from ...compat.real_time_devices import is_real_time
 from ...hal import modes
-from ...hal.change_reader import MISSING, Change
-from ...hal.changing_values import same
+from ...hal.change_reader import MISSING, Change, same
 from ..robot import RobotRun
 from .network_entries import NETWORK, numbers_of, struct_target
 from .script import InputScript, Step
@@ -55,8 +53,6 @@ class Recorder:
         self._start_us = 0
         #: When the step that is being taken from outside began, if one is.
         self._stepping_since: int | None = None
-        #: How many actions the clock had called at the trace's last look; None: native code may run after it.
-        self._looked_at: int | None = None
         self._skip()
         run.recorder = self
 
@@ -72,15 +68,7 @@ class Recorder:
             self._left = modes.match_time()
             self._network.skip_later()
             return
-        # Nothing has changed if the clock has called only the packet since the look. What code between two calls of the
-        # clock has done, was looked at when it ended.
-        self._skip(refresh=not stepping or self._looked_at != self._run.clock.actions - 1)
-
-    def on_look(self) -> None:
-        """Note that the trace has just looked at everything, for the external writes of the next packet."""
-        clock = self._run.clock
-        calm = getNextNotifierTimeout() > clock.next_packet_us
-        self._looked_at = clock.actions if calm else None
+        self._skip()
 
     def on_packet_out_of_turn(self) -> None:
         """Deliver a packet with the external writes up to now."""
@@ -128,13 +116,10 @@ class Recorder:
         del self._steps[: index - self._forgotten]
         self._forgotten = index
 
-    def _skip(self, refresh: bool = True) -> None:
-        """Look at everything, to know what changes from now on.
-
-        :param refresh: False if `hal_data` is as it was when it was last looked at
-        """
+    def _skip(self) -> None:
+        """Look at everything, to know what changes from now on."""
         self._mode = modes.mode_name()
-        self._changes.skip(refresh)
+        self._changes.skip()
         self._left = modes.match_time()
         list(self._look_at_sticks())
         self._network.skip()

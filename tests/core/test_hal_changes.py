@@ -1,0 +1,372 @@
+"""What a look at `hal_data` finds: each change of each value, and each device that comes or goes."""
+
+from __future__ import annotations
+
+import gc
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import hal
+import pytest
+import wpilib
+from hal import simulation as hs
+from wpilib import simulation as sim
+
+from pyfrc_core.hal import HalData
+from pyfrc_core.hal.change_reader import MISSING, ChangeReader, Changes
+from pyfrc_core.hal.devices import KINDS
+from pyfrc_core.hal.output_gate import OutputGate
+from pyfrc_core.runtime.hal_resets import patches
+from pyfrc_core.runtime.patch_table import patched
+
+
+@pytest.fixture
+def tree() -> Iterator[HalData]:
+    with patched(patches(lambda: None)):
+        hs.resetAllSimData()
+        yield HalData()
+        gc.collect()
+        hs.resetAllSimData()
+
+
+def looking(tree: HalData) -> ChangeReader:
+    """Return a reader that has looked, and finds nothing new."""
+    changes = tree.changes()
+    changes.look()
+    assert changes.look() == ([], [])
+    return changes
+
+
+def found(changes: Changes) -> dict[str, Any]:
+    return {path: new for path, _old, new in changes.changed}
+
+
+# -- the roboRIO's devices, modules, joysticks and the match ----------------------------------------------------------
+
+
+def create_all(tree: HalData) -> None:
+    """Create one device of each kind, or two."""
+    for kind in KINDS:
+        for device in tree[kind.name][:2] if kind.make and kind.name != "counter" else ():
+            device["initialized"] = True
+    tree["accelerometer"]["active"] = True
+    for module in (sim.CTREPCMSim(3), sim.REVPHSim(4), sim.PowerDistributionSim(5)):
+        module.setInitialized(True)
+    for port in (0, 2):
+        tree["joysticks"][port]["axis_count"] = 2
+        tree["joysticks"][port]["button_count"] = 3
+        tree["joysticks"][port]["pov_count"] = 1
+
+
+def changed(value: Any) -> Any:
+    """Another value that may stand in the same place."""
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, str):
+        return value + "x"
+    if isinstance(value, list):
+        return [changed(each) for each in value]
+    if isinstance(value, int):
+        return 90 if value == -1 else 1 - value if value in (0, 1) else value - 1
+    return 0.5 if value != 0.5 else -0.25
+
+
+def test_each_value_is_found_when_it_changes(tree: HalData) -> None:
+    create_all(tree)
+    changes = looking(tree)
+    written = 0
+    for path, value in tree.leaves():
+        if not tree.can_write(path) or path == "control.dsAttached":
+            continue
+        for new in (changed(value), value):
+            new = [[1, 2, 3]] if path.endswith(".data") and new == [] else new
+            if path.endswith(".length"):
+                new = 3
+            before = tree.read(path)
+            tree.write(path, new)
+            look, after = changes.look(), dict(HalData(defaults=False).leaves())
+            if path in after:
+                assert found(look).get(path, before) == after[path], path
+            else:
+                assert path in look.gone
+            written += path in found(look)
+    assert written > 150
+
+
+@pytest.mark.parametrize("reset", ["one device", "the driver station", "everything"])
+def test_changes_after_a_reset_are_found(tree: HalData, reset: str) -> None:
+    motor, other = wpilib.PWMSparkMax(3), wpilib.PWMSparkMax(4)
+    changes = looking(tree)
+    if reset == "one device":
+        sim.PWMSim(3).resetData()
+    elif reset == "the driver station":
+        sim.DriverStationSim.resetData()
+    else:
+        hs.resetAllSimData()
+    for number in (3, 4):
+        sim.PWMSim(number).setInitialized(True)  # at once: at the next look, all devices are as before
+    changes.look()
+    motor.set(1.0)
+    other.set(-1.0)
+    later = wpilib.PWMSparkMax(5)
+    sim.DriverStationSim.setEnabled(True)
+    sim.DriverStationSim.setJoystickAxisCount(2, 1)
+    sim.DriverStationSim.setJoystickAxis(2, 0, 0.5)
+    sim.DriverStationSim.setGameSpecificMessage("LRL")
+    values = found(changes.look())
+    assert values["pwm[3].value"] == 1.0
+    assert values["pwm[4].value"] == -1.0
+    assert values["pwm[5].value"] == 0.0
+    assert values["control.enabled"] is True
+    assert values["joysticks[2].axes"] == [0.5]
+    assert values["event.game_specific_message"] == "LRL"
+    del later
+
+
+def test_a_reset_that_is_not_announced_is_noticed() -> None:
+    hs.resetAllSimData()
+    tree = HalData()
+    hub = wpilib.PneumaticHub(7)
+    changes = looking(tree)
+    sim.REVPHSim(7).resetData()
+    assert "ph[7][4].value" in changes.look().gone
+    sim.REVPHSim(7).setInitialized(True)
+    assert "ph[7][4].value" in found(changes.look())
+    del hub
+
+
+#: One device of each class: how robot code creates it, and a path that it has then.
+DEVICES: dict[str, tuple[Callable[[], object], str]] = {
+    "pwm": (lambda: wpilib.PWMSparkMax(7), "pwm[7].value"),
+    "digital input": (lambda: wpilib.DigitalInput(7), "dio[7].value"),
+    "encoder": (lambda: wpilib.Encoder(1, 2), "encoder[0].count"),
+    "analog input": (lambda: wpilib.AnalogInput(2), "analog_in[2].voltage"),
+    "relay": (lambda: wpilib.Relay(1), "relay[1].fwd"),
+    "duty cycle": (lambda: wpilib.DutyCycle(wpilib.DigitalInput(5)), "duty_cycle[0].output"),
+    "LED strip": (lambda: wpilib.AddressableLED(1), "addressable_led[0].length"),
+    "hub": (lambda: wpilib.PneumaticHub(4), "ph[4][0].value"),
+    "PCM": (lambda: wpilib.PneumaticsControlModule(3), "pcm[3][0].value"),
+    "power distribution": (
+        lambda: wpilib.PowerDistribution(1, wpilib.PowerDistribution.ModuleType.kRev),
+        "pdp[1].voltage",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DEVICES)
+def test_a_device_that_comes_and_one_that_goes_are_found(tree: HalData, name: str) -> None:
+    create, path = DEVICES[name]
+    changes = looking(tree)
+    device = create()
+    assert path in found(changes.look())
+    del device
+    gc.collect()
+    there = dict(HalData().leaves())  # the HAL keeps some
+    assert (path in changes.look().gone) is (path not in there)
+
+
+def test_joysticks_that_are_plugged_in_and_unplugged(tree: HalData) -> None:
+    changes = looking(tree)
+    sim.DriverStationSim.setJoystickButtonCount(1, 3)
+    sim.DriverStationSim.setJoystickButton(1, 2, True)
+    assert changes.look().changed == [
+        ("joysticks[1].buttons", MISSING, [False, False, True, False]),
+        ("joysticks[1].outputs", MISSING, 0),
+        ("joysticks[1].left_rumble", MISSING, 0),
+        ("joysticks[1].right_rumble", MISSING, 0),
+    ]
+    sim.DriverStationSim.setJoystickButtonCount(1, 0)
+    assert len(changes.look().gone) == 4
+
+
+def test_a_colour_and_the_length_of_a_led_strip(tree: HalData) -> None:
+    strip = wpilib.AddressableLED(9)
+    strip.setLength(2)
+    changes = looking(tree)
+    for number in range(4):
+        strip.setData([wpilib.AddressableLED.LEDData(1, 2, number // 2 + 1)] * 2)
+        expected = {} if number % 2 else {"addressable_led[0].data": [[1, 2, number // 2 + 1]] * 2}
+        assert found(changes.look()) == expected
+    strip.setLength(300)
+    strip.setData([wpilib.AddressableLED.LEDData(1, 2, 3)] * 299 + [wpilib.AddressableLED.LEDData(7, 8, 9)])
+    data = found(changes.look())["addressable_led[0].data"]
+    assert data == tree["addressable_led"][0]["data"]
+    assert data[-2:] == [[1, 2, 3], [7, 8, 9]]
+
+
+def test_currents_of_a_power_distribution_module_are_found(tree: HalData) -> None:
+    module = wpilib.PowerDistribution(1, wpilib.PowerDistribution.ModuleType.kRev)
+    changes = looking(tree)
+    for channel in (0, 23):
+        tree["pdp"][1]["current"][channel] = 2.5 + channel
+        assert found(changes.look()) == {"pdp[1].current": list(tree["pdp"][1]["current"])}
+        assert changes.look() == ([], [])
+    tree["pdp"][1]["current"][3] = math.nan
+    assert changes.look_at_values()[0].keys() == {"pdp[1].current"}
+    assert changes.look_at_values() == ({}, [])
+    del module
+
+
+def test_free_keys_that_come_change_and_go(tree: HalData) -> None:
+    changes = looking(tree)
+    tree["custom"]["lift"] = 1
+    tree["robot"]["my_arm"] = 12
+    assert changes.look().changed == [("robot.my_arm", MISSING, 12), ("custom.lift", MISSING, 1)]
+    tree["custom"]["lift"] = True  # equal, and not the same
+    assert found(changes.look()) == {"custom.lift": True}
+    tree["custom"] = {}
+    assert changes.look() == ([], ["custom.lift"])
+
+
+# -- SimDevices -------------------------------------------------------------------------------------------------------
+
+
+def make(count: int) -> list[Any]:
+    """Create SimDevices with 25 values each. Return them and their values."""
+    devices = [hal.SimDevice(f"Motor[{number}]") for number in range(count)]
+    return [devices, [device.createDouble(f"v{n}", 2, float(n)) for device in devices for n in range(25)]]
+
+
+def test_values_of_the_same_name_in_two_devices(tree: HalData) -> None:
+    devices, values = make(2)
+    changes = looking(tree)
+    values[3].set(100.0)
+    values[28].set(200.0)
+    assert found(changes.look()) == {'CAN["Motor[0]"].v3': 100.0, 'CAN["Motor[1]"].v3': 200.0}
+    values[3].set(values[3].get())
+    assert changes.look() == ([], [])
+    del devices
+
+
+@pytest.mark.parametrize("values_only", [False, True])
+def test_signs_of_zero_and_nan_beside_other_changes(tree: HalData, values_only: bool) -> None:
+    devices, values = make(1)
+    changes, path = looking(tree), 'CAN["Motor[0]"].v0'
+    before = 0.0
+    for number, value in enumerate((-0.0, 0.0, float("nan"), float("nan"), -0.0, 1.0, 1.0)):
+        values[0].set(value)
+        values[5].set(100.0 + number)
+        alike = before == value if values_only else repr(value) == repr(before)
+        expected = {} if alike or repr(before) == repr(value) else {path: value}
+        now = changes.look_at_values()[0] if values_only else found(changes.look())
+        assert repr(now) == repr(expected | {'CAN["Motor[0]"].v5': 100.0 + number})
+        assert changes.look() == ([], [])
+        before = value
+    del devices
+
+
+def test_all_paths_of_one_value_are_found(tree: HalData) -> None:
+    gyro = wpilib.ADXRS450_Gyro()
+    changes = looking(tree)
+    tree["robot"]["adxrs450_spi_0_angle"] = 30.0
+    assert found(changes.look()) == {
+        'CAN["Gyro:ADXRS450[0]"].angle_x': 30.0,
+        "robot.adxrs450_spi_0_angle": 30.0,
+    }
+    del gyro
+
+
+def test_devices_and_values_that_come_and_go(tree: HalData) -> None:
+    devices, values = make(1)
+    changes = looking(tree)
+    later = devices[0].createDouble("later", 0, 1.0)
+    assert changes.look().changed == [('CAN["Motor[0]"].later', MISSING, 1.0)]
+    # A device that is freed and created again within one look has the same paths.
+    del devices, values, later
+    gc.collect()
+    again, values = make(1)
+    assert changes.look() == ([], ['CAN["Motor[0]"].later'])
+    values[1].set(7.0)
+    assert found(changes.look()) == {'CAN["Motor[0]"].v1': 7.0}
+    # Here the names of the values are the same, too.
+    del again, values
+    gc.collect()
+    again, values = make(1)
+    assert changes.look().changed == [('CAN["Motor[0]"].v1', 7.0, 1.0)]
+    values[1].set(8.0)
+    assert found(changes.look()) == {'CAN["Motor[0]"].v1': 8.0}
+    del again
+
+
+def test_devices_of_the_same_names_with_other_handles(tree: HalData) -> None:
+    first, second = hal.SimDevice("A"), hal.SimDevice("B")
+    angles = [device.createDouble("angle", 2, 1.0) for device in (first, second)]
+    changes = looking(tree)
+    del first, second, angles
+    gc.collect()
+    before = hal.SimDevice("before them")
+    first, second = hal.SimDevice("A"), hal.SimDevice("B")
+    angles = [device.createDouble("angle", 2, 1.0) for device in (first, second)]
+    del before
+    gc.collect()
+    assert changes.look() == ([], [])
+    angles[0].set(2.0)
+    angles[1].set(3.0)
+    assert found(changes.look()) == {"CAN.A.angle": 2.0, "CAN.B.angle": 3.0}
+
+
+def test_all_trees_see_a_device_that_is_created_again(tree: HalData) -> None:
+    devices, values = make(1)
+    changes = [looking(each) for each in (tree, HalData())]
+    for number in range(3):
+        del devices, values
+        gc.collect()
+        devices, values = make(1)
+        for each in reversed(changes):
+            each.look()
+        values[1].set(7.0 + number)
+        assert [found(each.look()) for each in changes] == [{'CAN["Motor[0]"].v1': 7.0 + number}] * 2
+        changes.reverse()
+    del devices
+
+
+def test_a_reset_of_all_sim_devices_is_noticed(tree: HalData) -> None:
+    before = make(1)
+    changes = looking(tree)
+    hs.resetSimDeviceData()
+    again = make(1)  # with the same handles as before
+    assert changes.look() == ([], [])
+    again[1][4].set(9.0)
+    assert found(changes.look()) == {'CAN["Motor[0]"].v4': 9.0}
+    hs.resetSimDeviceData()
+    assert len(changes.look().gone) == 25
+    del before, again
+
+
+def test_an_output_that_is_created_later_is_turned_off_too(tree: HalData) -> None:
+    gate = OutputGate()
+    motor = hal.SimDevice("SPARK MAX [1]")
+    first = motor.createDouble("Applied Output", 2, 1.0)
+    with gate.closed_while_disabled():
+        assert first.get() == 0.0
+    second = motor.createDouble("Motor Voltage", 2, 12.0)
+    with gate.closed_while_disabled():
+        assert (first.get(), second.get()) == (0.0, 0.0)
+    assert (first.get(), second.get()) == (1.0, 12.0)
+
+
+# -- readers ----------------------------------------------------------------------------------------------------------
+
+
+def test_readers_do_not_affect_each_other(tree: HalData) -> None:
+    devices, values = make(1)
+    first, second = looking(tree), looking(tree)
+    other_tree = looking(HalData())
+    values[0].set(5.0)
+    assert [found(reader.look()) for reader in (first, first)] == [{'CAN["Motor[0]"].v0': 5.0}, {}]
+    values[0].set(0.0)
+    assert first.look().changed == [('CAN["Motor[0]"].v0', 5.0, 0.0)]
+    assert second.look() == other_tree.look() == ([], [])  # it is as it was at their last look
+    del devices
+
+
+def test_a_reader_that_skips_finds_only_what_changes_later(tree: HalData) -> None:
+    devices, values = make(1)
+    changes = looking(tree)
+    values[0].set(5.0)
+    changes.skip()
+    assert changes.look() == ([], [])
+    values[0].set(7.0)
+    assert changes.look().changed == [('CAN["Motor[0]"].v0', 5.0, 7.0)]
+    del devices
