@@ -44,13 +44,15 @@ def project_options(command: Function) -> Function:
 def chosen_project(directory: Path | None, main: Path | None, robot_class: str | None) -> Project:
     """Return the project that the options choose.
 
-    :raises ProjectError: when there is none, or one of its files hides a library
+    :raises ProjectError: when there is none, one of its files hides a library, or WPILib is of another season
     """
     from pyfrc_core.project import find_project
     from pyfrc_core.project.hidden_libraries import refuse_hidden_libraries
+    from pyfrc_core.project.robot_season import refuse_other_season
 
     project = find_project(directory, main, robot_class)
     refuse_hidden_libraries(project.root, project.main_file)
+    refuse_other_season(project)
     return project
 
 

@@ -10,13 +10,14 @@ from .._version import __version__
 from ..compat.real_time_devices import real_time_libraries
 from ..config.packages import quoted_requirement
 from ..config.robotpy import load_robot_packages, unknown_components
-from ..errors import PyfrcError, SettingsError
+from ..errors import ProjectError, PyfrcError, SettingsError
 from ..processes.call import run_in_subprocess
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_libraries
 from ..runtime.code_checks import find_code_warnings
 from ..runtime.code_warning import CodeWarning
 from ..runtime.loading import load_robot
+from ..season import refuse_other_season
 from .check_result import CheckResult, hint, ok, problem
 from .installed import Installed, fits
 
@@ -72,6 +73,12 @@ def _asked_for(project: Project, installed: Installed) -> Iterator[CheckResult]:
         text = f"{name} begins with a byte-order mark, which robotpy and plain pytest do not read"
         yield hint("project", text, "Save it as UTF-8 without a byte-order mark (VS Code: UTF-8, not UTF-8 with BOM).")
     wpilib = installed.get("wpilib")
+    try:
+        if wpilib is not None:
+            refuse_other_season(wpilib.version, wanted.version, wanted.lines.get("robotpy_version"))
+    except ProjectError as contradiction:
+        yield problem_from_error("project", contradiction, "")
+        wpilib = None
     if wanted.version is not None and wpilib is not None and wanted.version != wpilib.version:
         yield hint(
             "project",
