@@ -12,7 +12,7 @@ from ..errors import text_of
 from ..project.robot_files import RobotFiles
 from ..wording import counted
 from .explanation import Explanation
-from .places import calls_at, users_frame
+from .places import calls_at, users_frame, value_of
 
 _INCOMPATIBLE = re.compile(
     r"TypeError: (?:\w+\.)*(?P<name>\w+)\(\): incompatible (?:function|constructor) arguments\..*?\n"
@@ -20,7 +20,7 @@ _INCOMPATIBLE = re.compile(
     re.DOTALL,
 )
 _FORM = re.compile(r"    \d+\. (?:[\w.]+)?\((?P<parameters>.*)\)(?: -> .*)?\n")
-_PARAMETER = re.compile(r"(\w+): ")
+_PARAMETER = re.compile(r"(?<![.\w])(\w+): ")
 _NOT_CALLABLE = re.compile(r"assert (?:\w+ is None or )?callable\((\w+)\)")
 #: Annotations of numbers, as the bindings of C++ write them.
 _NUMBER = re.compile(r"typing\.Supports\w+(?: \| typing\.Supports\w+)*|\b(?:float|int)\b")
@@ -50,6 +50,15 @@ def _incompatible(found: re.Match[str], error: BaseException, files: RobotFiles)
     takes = " or ".join(f"{name}({', '.join(form)})" for form in dict.fromkeys(map(tuple, forms)))
     if call is None:
         return Explanation(f"{name}() got arguments that it does not take", f"It takes: {takes}")
+    owner = value_of(call.func.value, where[0]) if where is not None and isinstance(call.func, ast.Attribute) else None
+    if isinstance(owner, type) and all("self: " in form for form in found["forms"].strip().splitlines()):
+        cls = ast.unparse(call.func.value) if isinstance(call.func, ast.Attribute) else ""
+        if where is not None and isinstance(where[0].f_locals.get("self"), owner):
+            return Explanation(f"{cls}.{name}() is called without self", f"Write super().{name}(), with what it takes.")
+        return Explanation(
+            f"{name}() is called on the class {cls}, and not on an object of it",
+            f"Create an object in robotInit, as in: self.it = {cls}(...). Then call: self.it.{name}(...)",
+        )
     got = _written(call)
     values = _values(found["got"], len(call.args) + len(call.keywords))
     none = next((at for at, value in enumerate(values) if value == "None"), None)
@@ -127,7 +136,7 @@ def _not_callable(error: BaseException, files: RobotFiles) -> Explanation | None
     if found is None:
         return None
     value: Any = entry.tb_frame.f_locals.get(found[1])
-    kind = "None" if value is None else f"a {type(value).__name__}"
+    kind = "None" if value is None else f"of type {type(value).__name__}"
     argument = next((each for call in calls_at(*where, "") for each in call.args if isinstance(each, ast.Call)), None)
     written = ast.unparse(argument) if argument is not None else ""
     without = f"Pass the function itself: {_without_brackets(written)} without (). " if written else ""

@@ -6,13 +6,12 @@ import ast
 import inspect
 import re
 from types import FrameType, ModuleType
-from typing import Any
 
 from ..errors import text_of
 from ..project.robot_files import RobotFiles
 from ..wording import counted
 from .explanation import Explanation
-from .places import calls_at, last_name, statement_at, users_frame
+from .places import calls_at, last_name, statement_at, users_frame, value_of
 
 _OPERAND = re.compile(
     r"TypeError: (bad operand|unsupported operand|'.+' not supported between).*"
@@ -42,7 +41,7 @@ def _not_called(frame: FrameType, line: int) -> Explanation | None:
     """Explain a method among numbers, such as ``self.timer.get < 2``."""
     for node in ast.walk(statement_at(frame, line)):
         for each in _operands(node):
-            if isinstance(each, (ast.Attribute, ast.Name)) and callable(_value(each, frame)):
+            if isinstance(each, (ast.Attribute, ast.Name)) and callable(value_of(each, frame)):
                 written = ast.unparse(each)
                 return Explanation(f"{written} is a function, and not its value", f"Write {written}()")
     return None
@@ -51,6 +50,8 @@ def _not_called(frame: FrameType, line: int) -> Explanation | None:
 def _operands(node: ast.AST) -> list[ast.expr]:
     if isinstance(node, ast.UnaryOp):
         return [node.operand]
+    if isinstance(node, ast.Call) and last_name(node.func) in ("abs", "max", "min", "round"):
+        return node.args
     if isinstance(node, ast.BinOp):
         return [node.left, node.right]
     return [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
@@ -59,7 +60,7 @@ def _operands(node: ast.AST) -> list[ast.expr]:
 def _module(frame: FrameType, line: int) -> Explanation | None:
     """Explain ``arm()`` for ``arm.Arm()``, and ``time()`` for ``time.time()``."""
     for call in calls_at(frame, line, ""):
-        module = _value(call.func, frame)
+        module = value_of(call.func, frame)
         if not isinstance(module, ModuleType):
             continue
         name = ast.unparse(call.func)
@@ -73,7 +74,7 @@ def _module(frame: FrameType, line: int) -> Explanation | None:
 def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles) -> Explanation | None:
     """Explain a call with the wrong number of values, or a wrong name; Python counts `self` among them."""
     for call in calls_at(frame, line, ""):
-        called = _value(call.func, frame)
+        called = value_of(call.func, frame)
         name = ast.unparse(call.func)
         function = vars(called).get("__init__") if isinstance(called, type) else called
         if getattr(function, "__name__", "") != found["name"]:
@@ -89,13 +90,4 @@ def _count(found: re.Match[str], frame: FrameType, line: int, files: RobotFiles)
         if found["keyword"]:
             got = f"with {found['keyword']}="
         return Explanation(f"{name}() was called {got}", f"It takes: {name}({', '.join(parameters)}){at}")
-    return None
-
-
-def _value(expression: ast.expr, frame: FrameType) -> Any:
-    """Return the value of a dotted name, such as ``self.timer.get``; None for other expressions."""
-    if isinstance(expression, ast.Attribute):
-        return getattr(_value(expression.value, frame), expression.attr, None)
-    if isinstance(expression, ast.Name):
-        return frame.f_locals.get(expression.id, frame.f_globals.get(expression.id))
     return None

@@ -222,6 +222,18 @@ ROWS = (
     ),
     # -- Python
     Row(
+        r"TypeError: can only concatenate str",
+        "",
+        'Write the value into the text, as in: f"speed: {{value}}"',
+    ),
+    Row(r"TypeError: 'int' object is not iterable", "", "To count, write range, as in: for number in range(5):"),
+    Row(r"IndexError: list index out of range", "", "Indexes begin with 0: the last one is the length - 1."),
+    Row(
+        r"TypeError: (?:\w+\.)*(?P<name>\w+): No constructor defined",
+        "no object of {name} can be created",
+        "Call its functions on the class, as in: wpilib.SmartDashboard.putNumber(name, value)",
+    ),
+    Row(
         r"TypeError: '(?P<type>\w+)' object is not callable",
         "",
         "The name before () is a {type}, and no function. Was it to be passed as a function: lambda: ...?",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import re
 import sys
 from difflib import get_close_matches
 from importlib.util import find_spec
@@ -47,6 +48,9 @@ GONE = {
     "getY": "getLeftY() or getRightY()",
     "hasPeriodPassed": "hasElapsed(seconds), or advanceIfElapsed(seconds) for something that repeats",
     "getInstance": "the methods of the class itself, such as wpilib.DriverStation.isEnabled()",
+    "addDefault": "setDefaultOption",
+    "addObject": "addOption",
+    "setSpeed": "set",
     "isOperatorControl": "isTeleop",
     "getBumper": "getLeftBumper and getRightBumper",
     "getTriggerAxis": "getLeftTriggerAxis and getRightTriggerAxis",
@@ -102,6 +106,8 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
         return _attribute(error, error.name, files)
     if isinstance(error, ImportError) and error.name and (wanted := imported_name(error)):
         return _import(wanted, error.name)
+    if isinstance(error, UnboundLocalError):
+        return _unbound(error, files)
     if isinstance(error, NameError) and error.name:
         if error.name in _ELSEWHERE:
             return Explanation(remedy=f"Did you mean {_ELSEWHERE[error.name]}?")
@@ -113,6 +119,18 @@ def explain(error: BaseException, files: RobotFiles) -> Explanation | None:
             return Explanation(remedy=f"Did you mean self.{error.name}?")
         return Explanation(remedy=f"Nothing has given {error.name} a value: is it misspelt, or is an import missing?")
     return None
+
+
+def _unbound(error: UnboundLocalError, files: RobotFiles) -> Explanation | None:
+    found, frame = re.search(r"variable '(\w+)'", str(error)), users_frame(error, files)
+    if found is None or frame is None:
+        return None
+    name = found[1]
+    if name in frame[0].f_globals:
+        return Explanation(
+            remedy=f"Keep the value in the robot, as self.{name}; or write first in the function: global {name}"
+        )
+    return Explanation(remedy=f"Not every way through the function sets {name}: give it a value at the beginning.")
 
 
 def _attribute(error: AttributeError, name: str, files: RobotFiles) -> Explanation | None:

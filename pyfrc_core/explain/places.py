@@ -115,6 +115,15 @@ def calls_at(frame: FrameType, line: int, name: str) -> list[ast.Call]:
     ]
 
 
+def value_of(expression: ast.expr, frame: FrameType) -> Any:
+    """Return the value of a dotted name, such as ``self.timer.get``; None for other expressions."""
+    if isinstance(expression, ast.Attribute):
+        return getattr(value_of(expression.value, frame), expression.attr, None)
+    if isinstance(expression, ast.Name):
+        return frame.f_locals.get(expression.id, frame.f_globals.get(expression.id))
+    return None
+
+
 def last_name(expression: ast.expr) -> str:
     """Return ``set`` of ``self.motor.set``; empty for other expressions."""
     if isinstance(expression, ast.Attribute):

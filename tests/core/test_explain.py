@@ -130,6 +130,37 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ),
         ("x = None\nx * 2", "TypeError: unsupported operand type(s) for *: 'NoneType' and 'int'", "A value is None"),
         # Calls
+        (
+            "wpilib.Encoder(0)",
+            "Encoder() was called with 1 value, but takes 2 to 4",
+            "encodingType: EncodingType = EncodingType.k4X)",
+        ),
+        (
+            "wpilib.Timer.get()",
+            "get() is called on the class wpilib.Timer, and not on an object of it",
+            "self.it = wpilib.Timer(...). Then call: self.it.get(...)",
+        ),
+        (
+            "class Mine(wpilib.Timer):\n    def get(self): return wpilib.Timer.get()\nMine().get()",
+            "wpilib.Timer.get() is called without self",
+            "Write super().get(), with what it takes.",
+        ),
+        ("t = wpilib.Timer()\nmin(t.get, 2)", "t.get is a function, and not its value", "Write t.get()"),
+        ("wpilib.SmartDashboard()", "no object of SmartDashboard can be created", "wpilib.SmartDashboard.putNumber("),
+        ("'a' + 3", 'can only concatenate str (not "int") to str', 'f"speed: {value}"'),
+        ("[1][1]", "IndexError: list index out of range", "Indexes begin with 0"),
+        ("for each in 5: pass", "'int' object is not iterable", "for number in range(5):"),
+        (
+            "if not self:\n    speed = 1\nprint(speed)",
+            "UnboundLocalError",
+            "Not every way through the function sets speed",
+        ),
+        (
+            "global count\ncount = 0\ndef up():\n    count += 1\nup()",
+            "UnboundLocalError",
+            "as self.count; or write first",
+        ),
+        ("commands2.cmd.run(3)", "toRun must be a function, but is of type int", ""),
         ("t = wpilib.Timer()\nt.get < 2", "t.get is a function, and not its value", "Write t.get()"),
         (
             "c = wpilib.XboxController(0)\nspeed = 1 if -c.getLeftY else 0",
@@ -184,6 +215,7 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ("wpilib.Timer().hasPeriodPassed(1)", "Timer has no hasPeriodPassed any more", "Instead: hasElapsed(seconds)"),
         ("commands2.button.Trigger().whenHeld(1)", "Trigger has no whenHeld any more", "Instead: whileTrue."),
         ("wpilib.XboxController(0).getY(1)", "XboxController has no getY any more", "getLeftY() or getRightY()"),
+        ("wpilib.SendableChooser().addObject('a', 1)", "SendableChooser has no addObject any more", "addOption"),
         ("x = true", "NameError: name 'true' is not defined", "Did you mean True?"),
         ("x = null", "NameError: name 'null' is not defined", "Did you mean None?"),
         ("this.x = 1", "NameError: name 'this' is not defined", "Did you mean self?"),
