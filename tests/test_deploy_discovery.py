@@ -72,10 +72,8 @@ def servers() -> Iterator[Servers]:
 
 
 def find(servers: Servers, *candidates: Address, station: Address | None = None, **how: bool) -> discovery.FoundRobot:
-    where = station or servers.nobody()
-    return find_robot(
-        [(address, "a place") for address in candidates], "team 1234", driver_station=(where.host, where.port), **how
-    )
+    port = (station or servers.nobody()).port
+    return find_robot([(each, "a place") for each in candidates], "team 1234", ROBORIO, station_port=port, **how)
 
 
 def station_says(servers: Servers, robot: int = 0, on_field: bool = False, **more: object) -> Address:

@@ -7,7 +7,6 @@ import json
 import queue
 import re
 import socket
-import struct
 import threading
 import time
 from collections.abc import Sequence
@@ -19,9 +18,6 @@ from typing import Any
 from ..errors import UsageError
 from .errors import DeployError, OnTheFieldError
 from .targets import Controller, team_of_host
-
-#: Where the Driver Station on this computer provides the address of its robot.
-DRIVER_STATION = ("127.0.0.1", 1742)
 
 #: Time limit for each address, in seconds: enough for a radio that loses packets.
 CONNECT_SECONDS = 5.0
@@ -154,15 +150,16 @@ def team_of(address: Address) -> int | None:
 def find_robot(
     candidates: Sequence[tuple[Address, str]],
     whose: str,
+    controller: Controller,
     *,
-    driver_station: tuple[str, int] = DRIVER_STATION,
+    station_port: int | None = None,
     take_its_robot: bool = True,
 ) -> FoundRobot:
     """Connect to the first robot that responds.
 
     :param candidates: addresses, each with a description
     :param whose: the robot in the error message, such as ``team 1234``
-    :param driver_station: host and port of the Driver Station
+    :param station_port: the Driver Station's port on this computer; default: the controller's
     :param take_its_robot: also try the robot that the Driver Station is connected to
     :raises OnTheFieldError: if the Driver Station is connected to a competition field
     :raises RobotNotFoundError: with a table of all failed attempts
@@ -170,7 +167,7 @@ def find_robot(
     race = _Race()
     for address, kind in candidates:
         race.enter(address, kind)
-    race.ask_driver_station(driver_station, take_its_robot)
+    race.ask_driver_station(controller, station_port or controller.station_port, take_its_robot)
     found = race.winner()
     if race.on_field:
         if found is not None:
@@ -233,8 +230,8 @@ class _Race:
         self._entered[address] = kind
         self._start(self._resolve, address, kind)
 
-    def ask_driver_station(self, where: tuple[str, int], take_its_robot: bool) -> None:
-        self._start(self._driver_station, where, take_its_robot)
+    def ask_driver_station(self, controller: Controller, port: int, take_its_robot: bool) -> None:
+        self._start(self._driver_station, controller, port, take_its_robot)
 
     def winner(self) -> FoundRobot | None:
         found: FoundRobot | None = None
@@ -311,18 +308,16 @@ class _Race:
             address, kind, "a server responds, but not an SSH server" if banner else "closed the connection"
         )
 
-    def _driver_station(self, where: tuple[str, int], take_its_robot: bool) -> Any:
+    def _driver_station(self, controller: Controller, port: int, take_its_robot: bool) -> Any:
         following: list[Any] = []
         try:
-            with socket.create_connection(where, timeout=DRIVER_STATION_SECONDS) as station:
+            with socket.create_connection(("127.0.0.1", port), timeout=DRIVER_STATION_SECONDS) as station:
                 station.settimeout(CONNECT_SECONDS)
                 with station.makefile("rb") as lines:
                     said = json.loads(lines.readline(10_000))
-            self.on_field = said.get("FMS Connected") is True
-            robot = said.get("robotIP")
-            if take_its_robot and type(robot) is int and 0 < robot < 1 << 32:
-                address = Address(socket.inet_ntoa(struct.pack("!I", robot)))
-                following = [partial(self.enter, address, "the Driver Station's robot")]
+            robot, self.on_field = controller.station_robot(said)
+            if take_its_robot and robot is not None:
+                following = [partial(self.enter, Address(robot), "the Driver Station's robot")]
         except (OSError, ValueError, AttributeError, RecursionError):
             pass  # usually, no Driver Station runs on this computer
         self._station_responded = True

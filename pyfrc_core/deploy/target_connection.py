@@ -80,10 +80,10 @@ def locate(target: RobotTarget, choice: RobotChoice) -> FoundRobot:
     load_in_background()
     if target.robot is not None:
         address = parse_address(target.robot)
-        return find_robot([(address, f"by {target.source}")], str(address), take_its_robot=False)
+        return find_robot([(address, f"by {target.source}")], str(address), target.controller, take_its_robot=False)
     assert target.team is not None
     whose = f"team {target.team} (by {target.source})"
-    return find_robot(addresses_of(target.team, target.controller, choice.resolve), whose)
+    return find_robot(addresses_of(target.team, target.controller, choice.resolve), whose, target.controller)
 
 
 def load_robot_keys(project: Project | None, target: RobotTarget, found: FoundRobot) -> RobotKeys:

@@ -101,7 +101,7 @@ class RobotSearch:
             assert target.team is not None
             self._whose = f"team {target.team}"
             candidates = addresses_of(target.team, target.controller)
-        found = find_robot(candidates, self._whose, take_its_robot=target.robot is None)
+        found = find_robot(candidates, self._whose, target.controller, take_its_robot=target.robot is None)
         with found.connected:
             self._found = True
             yield ok(_TOPIC, f"{self._whose} found at {found.address} ({found.kind})")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from ..agent.layout import Layout
 
@@ -40,6 +41,9 @@ class Controller:
     :param remove_leftovers: a shell script for the administrator, which removes programs in other languages and prints
         a line for each removed path or package
     :param save_memory:      frees memory that the image wastes
+    :param station_port:     the port on this computer at which its Driver Station sends a line of JSON
+    :param station_robot:    returns from that JSON the host of the connected robot (None: not connected), and whether
+        that is on a competition field
     :param addresses:        returns the hosts of a team's robot, each with a description
     :param team_of_host:     returns the team to which a host belongs, or None
     :param image_in:         returns the version of its image, or None if it is another computer
@@ -59,6 +63,8 @@ class Controller:
     leftovers: str
     remove_leftovers: str
     save_memory: AdministratorTask
+    station_port: int
+    station_robot: Callable[[Mapping[str, Any]], tuple[str | None, bool]]
     addresses: Callable[[int], list[tuple[str, str]]]
     team_of_host: Callable[[str], int | None]
     image_in: Callable[[Texts], str | None]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ipaddress
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from shlex import quote
+from typing import Any
 
 from ..agent.layout import Layout
 from .controller import AdministratorTask, Controller, Texts
@@ -61,6 +63,13 @@ def _team_of_host(host: str) -> int | None:
     if numbers := re.fullmatch(r"10\.([0-9]{1,3})\.([0-9]{1,2})\.2", host):
         return int(numbers[1]) * 100 + int(numbers[2])
     return None
+
+
+def _station_robot(message: Mapping[str, Any]) -> tuple[str | None, bool]:
+    number = message.get("robotIP")
+    is_host = type(number) is int and 0 < number < 1 << 32
+    host = str(ipaddress.IPv4Address(number)) if is_host else None
+    return host, message.get("FMS Connected") is True
 
 
 def _image_in(texts: Texts) -> str | None:
@@ -160,6 +169,8 @@ ROBORIO = Controller(
         "StartupDLLs was switched off: 24 MB more memory after the robot's next start",
         "StartupDLLs, which costs 24 MB of memory, could not be switched off",
     ),
+    station_port=1742,
+    station_robot=_station_robot,
     addresses=_addresses,
     team_of_host=_team_of_host,
     image_in=_image_in,
