@@ -37,7 +37,10 @@ def without_first_alarm() -> Iterator[None]:
 
 @contextmanager
 def refused(files: RobotFiles) -> Iterator[None]:
-    """Refuse robots that are made while the program is imported: WPILib makes the robot, and its time would stand."""
+    """Refuse robots that are made, or run, while the program is imported.
+
+    WPILib makes the robot, and its time would stand.
+    """
 
     def refusing(robot_class: type[Any]) -> Patch:
         original = robot_class.__init__
@@ -59,8 +62,16 @@ def refused(files: RobotFiles) -> Iterator[None]:
 
         return Patch(robot_class, "__init__", __init__)
 
+    def run(robot_class: type[Any], **kwargs: Any) -> None:
+        __tracebackhide__ = True
+        raise RobotCodeError(
+            "wpilib.run() is called while the program is imported",
+            where=files.line_of_frame(get_frame(1)),
+            remedy="Remove this line: pyfrc and WPILib find the robot class and run it.",
+        )
+
     bases = [wpilib.RobotBase, wpilib.IterativeRobotBase, wpilib.TimedRobot, wpilib.TimesliceRobot]
-    with patched([refusing(base) for base in bases]):
+    with patched([*(refusing(base) for base in bases), Patch(wpilib, "run", run)]):
         yield
 
 

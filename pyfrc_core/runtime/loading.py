@@ -87,8 +87,6 @@ def _import_error(project: Project, file: Path, error: BaseException) -> RobotCo
         return RobotCodeError(text.rstrip("."), where=place, remedy=f"{_WHILE_IMPORTED} {advice}")
     explained = explain(error, project.files) or Explanation()
     remedy = explained.remedy or ("" if isinstance(error, SyntaxError) else _WHILE_IMPORTED)
-    if isinstance(error, SystemExit):
-        remedy += ' Does it call wpilib.run()? Remove that, or put it under: if __name__ == "__main__":'
     if isinstance(error, (ImportError, AttributeError)):
         for hidden in find_hidden_by_any_name(project.root, project.main_file):
             remedy += f" {hidden.text}. {hidden.remedy}"

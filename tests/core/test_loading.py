@@ -89,7 +89,13 @@ def test_a_module_of_the_same_name_from_elsewhere_is_not_taken(make_project: Mak
     [
         ("x = 1\ny = 1 / 0\n", "robot.py:2", "ZeroDivisionError: division by zero", "imported."),
         ("x = 1\n\ndef f(:\n", "robot.py:3", "SyntaxError: invalid syntax\n    def f(:", ""),
-        ("import sys\nsys.exit(3)\n", "robot.py:2", "exit(3)", "Remove that, or put it under: if __name__"),
+        (
+            "import sys\nsys.exit(3)\n",
+            "robot.py:2",
+            "exit(3)",
+            "A robot program must not end by itself: remove that line.",
+        ),
+        ("import wpilib\nwpilib.run(None)\n", "robot.py:2", "wpilib.run() is called", "Remove this line"),
         ("import none_such\n", "robot.py:1", "there is no module none_such", "is the name right"),
         ("x = wpilib.Timer()\n", "robot.py:1", "name 'wpilib' is not defined", "at the top: import wpilib"),
         ("x = math.pi\n", "robot.py:1", "name 'math' is not defined", "at the top: import math"),
