@@ -12,8 +12,7 @@ from browser_pages import HOSTILE, ROBOT, shared_browser  # noqa: F401 - `browse
 from recorded_pages import run_in
 from sim_robots import FILES
 
-from pyfrc_core.sim.ui.web.columns import MISSING
-from pyfrc_core.sim.ui.web.history import History
+from pyfrc_core.sim.ui.web.history import MISSING, History
 from pyfrc_core.sim.ui.web.packing import packed
 from pyfrc_core.sim.ui.web.recorded_page import cleaner
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from functools import partial
 
 import pytest
 from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
@@ -18,6 +19,8 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`, `server`
 from sim_robots import PATIENCE
 from skips import require
 from web_pages import served
+
+from pyfrc_core.sim.ui.web.runs import Runs
 
 require("the page of pyfrc sim in a browser", missing_browser())
 
@@ -352,6 +355,25 @@ def test_a_second_window_sees_the_same_and_a_viewer_cannot_drive(browser, server
         viewer.state("Teleoperated disabled")
         context.close()
         person.page.get_by_text("2 windows").wait_for(state="detached")
+
+
+def test_the_page_says_which_values_are_forgotten(browser, make_project, monkeypatch) -> None:
+    monkeypatch.setattr("pyfrc_core.sim.ui.web.collector.Runs", partial(Runs, 1))
+    with served(make_project(ROBOT)) as server, page_of(browser, server) as person:
+        page = person.page
+        person.simulation.enable()
+        person.simulation.set_axis(0, 0, 0.5)  # it turns, so that something changes
+        person.simulation.set_speed(0)
+        person.until(lambda: person.simulation.snapshot.time > 60)
+        person.pause()
+        timeline = page.get_by_role("slider", name="Timeline")
+        timeline.press("Home")
+        page.locator(".state em", has_text="past").wait_for()
+        sentence = "were forgotten, since memory for them is limited."
+        page.locator(".notice", has_text=sentence).wait_for()
+        assert float(timeline.get_attribute("aria-valuenow") or 0) > 10
+        timeline.hover(position={"x": 30, "y": 10})
+        page.locator(".timeline-tip", has_text=sentence).wait_for()
 
 
 def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> None:

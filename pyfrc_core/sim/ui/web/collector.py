@@ -38,6 +38,7 @@ class State:
     :param network: the values of NetworkTables with their types, by path
     :param wants_to_run: whether robot time is to go on
     :param run: the number of the present run, and the moment where it went on
+    :param known_from: the moment from which on values are known; 0 until the oldest are forgotten
     """
 
     snapshot: Snapshot | None
@@ -48,6 +49,7 @@ class State:
     branches: tuple[Branch, ...]
     wants_to_run: bool
     run: tuple[int, float]
+    known_from: float
 
 
 def _moment_of(state: State) -> float:
@@ -173,6 +175,7 @@ class Collector:
             branches=self.runs.branches,
             wants_to_run=simulation.wants_to_run,
             run=self._run,
+            known_from=self.runs.known_from,
         )
 
     # -- events ---------------------------------------------------------------------------------------------------

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from itertools import zip_longest
 from typing import Any
 
-from .columns import MISSING
-from .history import History
+from .history import MISSING, History
 from .plots import picked, resolve
 
 #: The most paths that are named.
@@ -54,13 +53,11 @@ def _changes(history: History, path: str, begin: float, end: float) -> Iterator[
     whole, index = resolve(history, path)
     before = picked(history.value_at(whole, begin), index)
     yield begin, before
-    for piece in history.pieces(whole, begin, end):
-        times = piece.change_times()
-        for number in range(piece.begin, piece.end):
-            value = picked(piece.column.value(number), index)
-            if not _same(value, before):
-                before = value
-                yield times[number - piece.begin], value
+    for time, each in zip(*history.changes(whole, begin, end), strict=True):
+        value = picked(each, index)
+        if not _same(value, before):
+            before = value
+            yield time, value
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
@@ -24,8 +23,6 @@ if TYPE_CHECKING:
 
 #: The interval of looks whether the simulation is to end, in seconds: on Windows, Ctrl-C does not end a wait.
 _LOOK_SECONDS = 0.5
-#: Seconds after which a thread lets another one run: Python's 5 ms are a tenth of the time from a key to its motor.
-_SWITCH_SECONDS = 0.0005
 
 
 class WebFrontEnd(FrontEnd):
@@ -51,8 +48,6 @@ class WebFrontEnd(FrontEnd):
         self.server = server = Server(self._options, self._access)
         access = replace(self._access, origins=(*self._allowed, *codespace_origins(server.port)))
         self.collector = collector = Collector(simulation, server.wake)
-        switch_seconds = sys.getswitchinterval()
-        sys.setswitchinterval(_SWITCH_SECONDS)
         try:
             server.start(WebApp(simulation, collector, self.close, access, self._options.watching))
             collector.start()
@@ -65,7 +60,6 @@ class WebFrontEnd(FrontEnd):
             collector.close()
             server.close()
             simulation.close()
-            sys.setswitchinterval(switch_seconds)
             if self._redirection is not None:
                 self._redirection.unlink(missing_ok=True)
         return 0

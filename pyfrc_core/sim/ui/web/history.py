@@ -1,56 +1,93 @@
-"""Every changed value of every packet, kept so that any moment and any plot is there at once.
+"""Every changed value of every packet of a run, in memory, so that any moment and any plot is there at once.
 
-The changes are in chunks of `_PACKETS` packets. A chunk knows all values at its beginning, so the values of any moment
-need one chunk. Memory is limited: beyond `MOST_BYTES`, the oldest chunks are moved to a temporary file; beyond
-`MOST_STORED_BYTES` in it, former runs and the oldest chunks are forgotten.
+Memory is limited: `Runs` forgets former runs and then the oldest packets, and pages say from when on values are known.
 """
 
 from __future__ import annotations
 
 from array import array
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
-from .chunks import Chunk, ChunkFile
-from .columns import MISSING, Column
+#: A value that a path does not have, or no longer has.
+MISSING: Any = object()
 
-#: The number of packets in a chunk, about 20 s of robot time.
-_PACKETS = 1024
-#: About how much memory the histories may take together, and how much space in a temporary file.
-MOST_BYTES, MOST_STORED_BYTES = 64 << 20, 2 << 30
+#: About the size of an object, of a dict, and of the changes of one value besides the values, in bytes.
+_OBJECT_SIZE, _DICT_SIZE, _CHANGES_SIZE = 120, 280, 400
+#: After how many objects their size is estimated again.
+_SIZED = 64
+#: The share of the packets that is forgotten at once.
+_FORGOTTEN = 1 / 8
 
 
-@dataclass(frozen=True)
-class Piece:
-    """Consecutive changes of one value.
+def _size_of(value: Any) -> int:
+    """Return about how many bytes an object takes, such as a struct, which has dicts in dicts."""
+    if isinstance(value, Mapping):
+        return _DICT_SIZE + sum(map(_size_of, value.values()))
+    if isinstance(value, tuple):
+        return _OBJECT_SIZE + sum(map(_size_of, value))
+    return _OBJECT_SIZE if isinstance(value, str) else 24
 
-    :param times: the times of all packets of its chunk
-    :param column: the changes; `begin` is the number of the first one, and `end` of the one after the last
+
+class Changes:
+    """The changes of one value: the numbers of packets, and the value after each.
+
+    Most values are numbers, which take 8 bytes each in an array. Other values are objects in a list.
     """
 
-    times: array[float]
-    column: Column
-    begin: int
-    end: int
+    def __init__(self) -> None:
+        self.packets = array("I")
+        self.values: array[float] | list[Any] = array("d")
+        self._object_size = 0
 
-    def change_times(self) -> array[float]:
-        """Return the time of each change."""
-        packets = self.column.packets[self.begin : self.end]
-        if packets[-1] - packets[0] == len(packets) - 1:  # it changed in every packet
-            return self.times[packets[0] : packets[-1] + 1]
-        return array("d", map(self.times.__getitem__, packets))
+    def append(self, packet: int, value: Any) -> None:
+        """Add a change."""
+        values = self.values
+        if isinstance(values, array):
+            if type(value) is float or (type(value) is int and abs(value) < 1 << 53):
+                self.packets.append(packet)
+                values.append(value)
+                return
+            self.values = values = list(values)
+        if not len(values) % _SIZED or not self._object_size:
+            self._object_size = max(self._object_size, 8 + _size_of(value))
+        self.packets.append(packet)
+        values.append(value)
+
+    @property
+    def size(self) -> int:
+        """About how many bytes it takes."""
+        each = 8 if isinstance(self.values, array) else self._object_size
+        return _CHANGES_SIZE + (self.packets.itemsize + each) * len(self.packets)
+
+    def at(self, packet: int) -> Any:
+        """Return the value after a packet; `MISSING` if there was no change until then."""
+        after = bisect_right(self.packets, packet)
+        return self.values[after - 1] if after else MISSING
+
+    def until(self, packet: int) -> Changes:
+        """Return a copy of the changes until a packet."""
+        part, end = Changes(), bisect_right(self.packets, packet)
+        part.packets, part.values, part._object_size = self.packets[:end], self.values[:end], self._object_size
+        return part
+
+    def forget_before(self, packet: int) -> None:
+        """Forget the changes before a packet; the value that it began with counts as its change."""
+        if before := bisect_right(self.packets, packet):
+            del self.packets[: before - 1], self.values[: before - 1]
+            self.packets[0] = packet
 
 
 class History:
     """The values of one run. Use it from one thread at a time."""
 
     def __init__(self) -> None:
-        self._chunks: list[Chunk] = []
-        #: The number of packets that were forgotten.
-        self._forgotten = 0
+        self._times = array("d")
+        #: The number of the first packet that is known; packets count from 0.
+        self._first = 0
+        self._changes: dict[str, Changes] = {}
         self._now: dict[str, Any] = {}
 
     @property
@@ -59,139 +96,101 @@ class History:
         return MappingProxyType(self._now)
 
     @property
-    def begin(self) -> float:
-        """The time of the first change that is known."""
-        return next((chunk.times[0] for chunk in self._chunks if chunk.times), 0.0)
+    def known_from(self) -> float:
+        """The time from which on values are known: 0 until the oldest are forgotten."""
+        return self._times[0] if self._first and self._times else 0.0
 
     @property
     def end(self) -> float:
         """The time of the last change."""
-        return next((chunk.times[-1] for chunk in reversed(self._chunks) if chunk.times), 0.0)
+        return self._times[-1] if self._times else 0.0
 
     @property
-    def chunks(self) -> tuple[Chunk, ...]:
-        """All packets, in order."""
-        return tuple(self._chunks)
+    def times(self) -> array[float]:
+        """The times of all packets that are known."""
+        return self._times
+
+    @property
+    def packets(self) -> int:
+        """The number of packets so far, also of those that are forgotten."""
+        return self._first + len(self._times)
 
     @property
     def size(self) -> int:
         """About how many bytes it takes."""
-        return sum(chunk.size for chunk in self._chunks)
+        return 8 * len(self._times) + sum(changes.size for changes in self._changes.values())
 
     def add(self, time: float, values: Mapping[str, Any], gone: Iterable[str] = ()) -> None:
         """Add the changes of one packet, which is not earlier than those before."""
-        chunk = self._chunks[-1] if self._chunks else self._next_chunk()
-        if len(chunk.times) >= _PACKETS:
-            chunk = self._next_chunk()
-        packet, now = chunk.add(time, values), self._now
-        now.update(values)
+        packet, known = self.packets, self._changes
+        self._times.append(time)
+        for path, value in values.items():
+            changes = known.get(path)
+            if changes is None:
+                changes = known[path] = Changes()
+            changes.append(packet, value)
+        self._now.update(values)
         for path in gone:
-            chunk.add_gone(packet, path)
-            now.pop(path, None)
-
-    def _next_chunk(self) -> Chunk:
-        if self._chunks:
-            self._chunks[-1].close()
-        self._chunks.append(Chunk(dict(self._now)))
-        return self._chunks[-1]
+            if self._now.pop(path, MISSING) is not MISSING:
+                known[path].append(packet, MISSING)
 
     def forget_oldest(self) -> bool:
-        """Forget the oldest chunk, and return whether there was one besides the last."""
-        if len(self._chunks) < 2:
+        """Forget some of the oldest packets, and return whether there were any besides the last."""
+        count = min(int(len(self._times) * _FORGOTTEN) + 1, len(self._times) - 1)
+        if count <= 0:
             return False
-        self._forgotten += len(self._chunks.pop(0).times)
+        del self._times[:count]
+        self._first += count
+        for path, changes in list(self._changes.items()):
+            changes.forget_before(self._first)
+            if len(changes.values) == 1 and changes.values[0] is MISSING:
+                del self._changes[path]
         return True
 
-    def forget_file(self, file: ChunkFile) -> None:
-        """Forget the chunks that are in a file, which are the oldest."""
-        while self._chunks[0].is_in(file):
-            self.forget_oldest()
-
-    def store_oldest(self, file: ChunkFile) -> bool:
-        """Move the oldest chunk that is in memory to a file, and return whether there was one besides the last.
-
-        :raises OSError: when the disk is full
-        """
-        former: Chunk | None = None
-        for chunk in self._chunks[:-1]:
-            if not chunk.is_stored:
-                chunk.store(file, former)
-                return True
-            former = chunk
-        return False
-
     def until(self, time: float) -> History:
-        """Return the part until a moment, which can grow differently. The two share the chunks before."""
-        part = History()
-        whole = bisect_right(self._chunks, time, key=lambda chunk: chunk.times[-1] if chunk.times else time)
-        part._chunks = self._chunks[:whole]
-        part._forgotten = self._forgotten
-        if whole < len(self._chunks):
-            part._chunks.append(self._chunks[whole].until(time))
-        elif part._chunks:  # the last chunk grows: the two may not share it
-            part._chunks[-1] = part._chunks[-1].until(time)
-        part._now = dict(part.values_at(time))
+        """Return a copy of the part until a moment, which can grow differently."""
+        part, last = History(), self._packet_at(time)
+        part._first, part._times = self._first, self._times[: last + 1 - self._first]
+        copies = ((path, changes.until(last)) for path, changes in self._changes.items())
+        part._changes = {path: changes for path, changes in copies if changes.packets}
+        part._now = part.values_at(time)
         return part
 
     def values_at(self, time: float) -> dict[str, Any]:
         """Return all values at a moment; those at the first known moment if it is earlier."""
-        number = max(self._chunk_at(time), 0)
-        if number >= len(self._chunks):
-            return {}
-        chunk = self._chunks[number]
-        packet = max(chunk.packet_at(time), 0)
-        values = dict(chunk.base)
-        for path, column in chunk.columns.items():
-            values[path] = column.value_at(packet, values.get(path, MISSING))
-        return {path: value for path, value in values.items() if value is not MISSING}
+        packet = max(self._packet_at(time), self._first)
+        values = ((path, changes.at(packet)) for path, changes in self._changes.items())
+        return {path: value for path, value in values if value is not MISSING}
 
     def value_at(self, path: str, time: float) -> Any:
         """Return one value at a moment; `MISSING` if there was none."""
-        number = self._chunk_at(time)
-        if number < 0:
-            return MISSING
-        chunk = self._chunks[number]
-        base = chunk.base.get(path, MISSING)
-        column = chunk.columns.get(path)
-        return base if column is None else column.value_at(chunk.packet_at(time), base)
+        changes = self._changes.get(path)
+        return MISSING if changes is None else changes.at(self._packet_at(time))
 
-    def _chunk_at(self, time: float) -> int:
-        """Return the number of the last chunk that begins until a moment; -1 before the first."""
-        return bisect_right(self._chunks, time, key=lambda chunk: chunk.times[0] if chunk.times else time) - 1
+    def _packet_at(self, time: float) -> int:
+        """Return the number of the last packet until a moment; the one before the first if there is none."""
+        return self._first + bisect_right(self._times, time) - 1
 
-    def pieces(self, path: str, begin: float, end: float) -> Iterator[Piece]:
-        """Yield the changes of a value after one moment, until another one."""
-        for chunk in self._chunks:
-            if not chunk.times or chunk.times[-1] <= begin or chunk.times[0] > end:
-                continue
-            column = chunk.columns.get(path)
-            if column is not None:
-                first, after = column.between(chunk.packet_at(begin) + 1, chunk.packet_at(end))
-                if first < after:
-                    yield Piece(chunk.times, column, first, after)
+    def paths(self) -> Iterable[str]:
+        """Return the paths of all values that there were."""
+        return self._changes.keys()
 
-    def changes(self, path: str) -> int:
-        """Return how often a value has changed."""
-        return sum(len(chunk.columns[path]) for chunk in self._chunks if path in chunk.columns)
-
-    # -- for readers that follow it -------------------------------------------------------------------------------
-
-    @property
-    def packets(self) -> int:
-        """The number of packets so far."""
-        return self._forgotten + sum(len(chunk.times) for chunk in self._chunks)
+    def changes(self, path: str, begin: float = -1.0, end: float | None = None) -> tuple[list[float], Any]:
+        """Return the changes of a value after one moment, until another one: their times, and the values."""
+        last = self.packets if end is None else self._packet_at(end)
+        return self._between(path, self._packet_at(begin) + 1, last)
 
     def since(self, packet: int, path: str) -> Iterator[tuple[float, Any]]:
         """Yield a value's changes from the packet with this number on: their times, and the values."""
-        after = self.packets
-        found: list[list[tuple[float, Any]]] = []
-        for chunk in reversed(self._chunks):
-            before = after - len(chunk.times)
-            if (column := chunk.columns.get(path)) is not None:
-                first, end = column.between(max(packet - before, 0), len(chunk.times))
-                found.append([(chunk.times[column.packets[each]], column.value(each)) for each in range(first, end)])
-            after = before
-            if before <= packet:
-                break
-        for part in reversed(found):
-            yield from part
+        return zip(*self._between(path, packet, self.packets), strict=True)
+
+    def _between(self, path: str, first: int, last: int) -> tuple[list[float], Any]:
+        changes = self._changes.get(path)
+        if changes is None:
+            return [], []
+        begin, end = bisect_left(changes.packets, first), bisect_right(changes.packets, last)
+        return [self._times[packet - self._first] for packet in changes.packets[begin:end]], changes.values[begin:end]
+
+    def change_numbers(self, path: str) -> array[int]:
+        """Return which of the packets that are known have changed a value: 0 is the first of `times`."""
+        return array("I", [packet - self._first for packet in self._changes[path].packets])

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import json
 import math
+from array import array
 from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
 from typing import Any
 
 from ...engine.network_paths import TYPE
-from .columns import MISSING
-from .history import History
+from .history import MISSING, History
 
 #: The digits of a number that are kept: more than a plot or a panel shows.
 _DIGITS = 7
@@ -30,26 +30,19 @@ def packed(history: History, clean: Callable[[str], str]) -> dict[str, Any]:
 
     :param clean: changes each text
     """
-    times: list[int] = []
     columns: dict[str, _PackedColumn] = {}
-    for chunk in history.chunks:
-        before = len(times)
-        times += [round(time * 1_000_000) for time in chunk.times]
-        if not before:
-            for path, value in chunk.base.items():
-                columns.setdefault(path, _PackedColumn(clean)).add(0, value)
-        for path, column in chunk.columns.items():
-            whole = columns.get(path)
-            if whole is None:
-                whole = columns[path] = _PackedColumn(clean)
-            numbers = column.numbers(0, len(column))
-            if numbers is not None and all(map(math.isfinite, numbers)):
-                whole.add_numbers((before + packet for packet in column.packets), numbers)
-            else:
-                for number, packet in enumerate(column.packets):
-                    whole.add(before + packet, column.value(number))
-    values = {path: column.plain() for path, column in columns.items() if not path.startswith(TYPE)}
-    return {"times": _differences(times), "values": values}
+    for path in history.paths():
+        if path.startswith(TYPE):
+            continue
+        columns[path] = column = _PackedColumn(clean)
+        packets, (_, values) = history.change_numbers(path), history.changes(path)
+        if isinstance(values, array) and all(map(math.isfinite, values)):
+            column.add_numbers(packets, values)
+        else:
+            for packet, value in zip(packets, values, strict=True):
+                column.add(packet, value)
+    times = [round(time * 1_000_000) for time in history.times]
+    return {"times": _differences(times), "values": {path: column.plain() for path, column in columns.items()}}
 
 
 class _PackedColumn:

@@ -7,8 +7,7 @@ import re
 from array import array
 from typing import Any
 
-from .columns import MISSING
-from .history import History
+from .history import MISSING, History
 
 _ELEMENT = re.compile(r"(?P<whole>.+)\[(?P<index>\d+)\]")
 #: The most points of a curve, whatever is asked for.
@@ -42,21 +41,10 @@ def series(history: History, path: str, begin: float, end: float, points: int) -
     """
     path, index = resolve(history, path)
     points = min(max(points, 2), MOST_POINTS)
-    times, values, plain = array("d"), array("d"), True
-    others: list[Any] = []
+    all_times, values = history.changes(path, begin, end)
+    plain = isinstance(values, array) and index is None
+    found = list(values) if plain else [picked(value, index) for value in values]
     first = picked(history.value_at(path, begin), index)
-    for piece in history.pieces(path, begin, end):
-        column = piece.column
-        times.extend(piece.change_times())
-        numbers = column.numbers(piece.begin, piece.end) if index is None and plain else None
-        if numbers is None:
-            if plain:
-                plain, others = False, list(values)
-            others += [picked(column.value(number), index) for number in range(piece.begin, piece.end)]
-        else:
-            values.extend(numbers)
-    found = list(values) if plain else others
-    all_times = list(times)
     if first is not MISSING:
         all_times.insert(0, begin)
         found.insert(0, first)

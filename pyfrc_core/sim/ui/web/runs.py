@@ -10,15 +10,15 @@ from typing import Any, Literal
 from ...engine.changes import Change, RunBegan
 from ...engine.network_paths import MODE, POSE, TYPE, VALUE
 from ..models.wording import clock
-from .chunks import ChunkFile
-from .columns import MISSING
 from .comparison import FirstDifference
-from .history import MOST_BYTES, MOST_STORED_BYTES, History
+from .history import MISSING, History
 from .packing import packed
 from .plots import MOST_POINTS, picked, resolve, series
 
 Source = Literal["hal", "network"]
 
+#: About how much memory the values of all runs may take together.
+MOST_BYTES = 256 << 20
 #: Times that are equal but for rounding.
 _ROUNDING = 1e-6
 #: The most former runs that are kept.
@@ -49,15 +49,11 @@ class Runs:
     """May be used from any thread.
 
     :param most_bytes: about how much memory the values may take
-    :param most_stored: about how much space they may take in a temporary file besides
     """
 
-    def __init__(self, most_bytes: int = MOST_BYTES, most_stored: int = MOST_STORED_BYTES) -> None:
+    def __init__(self, most_bytes: int = MOST_BYTES) -> None:
         self._lock = threading.Lock()
-        self._most_bytes, self._most_stored = most_bytes, most_stored
-        #: Where the oldest values are, and those that are older still.
-        self._file: ChunkFile | None = None
-        self._former_file: ChunkFile | None = None
+        self._most_bytes = most_bytes
         self._histories: dict[Source, History] = {"hal": History(), "network": History()}
         #: The number of the run that each of the histories has.
         self._numbers: dict[Source, int] = {"hal": 0, "network": 0}
@@ -111,41 +107,21 @@ class Runs:
             self.branches = (*self.branches, leaving)[-_MOST_BRANCHES:]
 
     def _limit(self) -> None:
-        """Keep the values within the memory and the space that they may take."""
+        """Forget former runs, and then the oldest values, until the others fit into the memory that they may take."""
         while self.size > self._most_bytes:
-            if self._store_oldest():
-                continue
             if self.branches:
                 self.branches, self._leaving = self.branches[1:], None
-                continue
-            larger = max(self._histories.values(), key=lambda history: history.size)
-            if not larger.forget_oldest():
+            elif not max(self._histories.values(), key=lambda history: history.size).forget_oldest():
                 break
-        if self._file is not None and self._file.size > self._most_stored // 2:
-            self._next_file()
 
-    def _next_file(self) -> None:
-        """Forget what is in the former one of two files, and begin another."""
-        if self._former_file is not None:
-            self.branches, self._leaving = (), None
-            for history in self._histories.values():
-                history.forget_file(self._former_file)
-        self._former_file, self._file = self._file, None
-
-    def _store_oldest(self) -> bool:
-        """Move the oldest values to a file, and return whether there were any that can be moved."""
-        kept = [history for branch in self.branches for history in branch.histories.values()]
-        try:
-            if self._file is None:
-                self._file = ChunkFile()
-            file = self._file
-            return any(history.store_oldest(file) for history in (*kept, *self._histories.values()))
-        except OSError:  # the disk is full
-            return False
+    @property
+    def known_from(self) -> float:
+        """The moment from which on all values of the present run are known; 0 until the oldest are forgotten."""
+        return max(history.known_from for history in self._histories.values())
 
     @property
     def size(self) -> int:
-        """About how many bytes all values take; runs share the values of their common past, which count for each."""
+        """About how many bytes all values take."""
         kept = [history for branch in self.branches for history in branch.histories.values()]
         return sum(history.size for history in (*self._histories.values(), *kept))
 
@@ -225,7 +201,7 @@ class Runs:
     def change_counts(self, paths: Iterable[str]) -> dict[str, int]:
         """Return how often each of some values has changed in the present run."""
         with self._lock:
-            return {path: self._histories[source_of(path)].changes(path) for path in paths}
+            return {path: len(self._histories[source_of(path)].changes(path)[0]) for path in paths}
 
     def packed(self, clean: Callable[[str], str]) -> dict[str, Any]:
         """Return the values of the present run for a page without a server.

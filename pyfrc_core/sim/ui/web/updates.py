@@ -16,8 +16,8 @@ from ...engine.snapshot import Snapshot, Status
 from ..models.devices import SETTABLE, Panel
 from ..models.wording import STATIONS, mode_text, station_name
 from .collector import Collector, State
-from .columns import MISSING
 from .console import plain_lines
+from .history import MISSING
 from .plain_field import plain_field
 from .runs import Position
 
@@ -74,6 +74,7 @@ class UpdateBuilder:
         if before is None or state.status.former_trail is not before.status.former_trail:
             found["former_trail"] = _rounded(state.status.former_trail)
         self._part(found, "clients", clients)
+        self._part(found, "known_from", round(state.known_from, 6))
         self._add_lines(found)
         self._add_samples(found)
         self._state = state

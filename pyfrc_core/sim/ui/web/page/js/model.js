@@ -29,6 +29,7 @@ class Model {
   branches = [];
   run = { number: 1, t: 0 };
   clients = 1;
+  knownFrom = 0; // the moment from which on values are known: more than 0 when the oldest were forgotten
   problem = "";
   hint = ""; // what a person who drives a disabled robot should do
   past = null; // { t, values } while the panels show a moment of the past
@@ -130,6 +131,7 @@ class Model {
     for (const part of ["panels", "robot", "drawings", "targets", "choosers", "branches", "clients"]) {
       if (part in message) this[part] = message[part];
     }
+    if (message.known_from !== undefined) this.knownFrom = message.known_from;
     if (message.samples) for (const listener of this.#sampleListeners) listener("samples", message.samples);
     this.announce(...Object.keys(message));
   }

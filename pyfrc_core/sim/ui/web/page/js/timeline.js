@@ -3,7 +3,7 @@ import { ElementSize, font, sizeCanvas } from "./canvas.js";
 import { compared } from "./compare.js";
 import { clock } from "./format.js";
 import { model } from "./model.js";
-import { length, live, look, lookBy, lookByPackets } from "./past.js";
+import { forgottenText, isForgotten, length, live, look, lookBy, lookByPackets } from "./past.js";
 import { isRecorded } from "./recorded.js";
 import { watch, unwatch } from "./series.js";
 import { color } from "./settings.js";
@@ -18,7 +18,7 @@ const EDGE = 8; // pixels at both ends
 const SHORTEST = isRecorded ? 0.1 : 10; // seconds on the timeline at least
 
 export class Timeline extends Live {
-  parts = ["t", "status", "shown", "series", "marks", "settings", "window", "branches", "compared"];
+  parts = ["t", "status", "shown", "series", "marks", "settings", "window", "branches", "compared", "known_from"];
   canvas = createRef();
   state = { hover: null };
 
@@ -45,7 +45,7 @@ export class Timeline extends Live {
         onPointerDown=${this.begin} onPointerMove=${this.move} onPointerUp=${this.end} onPointerLeave=${this.leave} onKeyDown=${this.key}>
       <canvas ref=${this.canvas}></canvas>
       ${hover && html`<div class="timeline-tip" style=${{ left: `${hover.left}px` }}>
-        <b>${clock(hover.t)}</b>${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
+        <b>${clock(hover.t)}</b>${isForgotten(hover.t) && html`<span>${forgottenText()}</span>`}${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
     </div>`;
   }
 
@@ -88,15 +88,16 @@ export class Timeline extends Live {
     context.save();
     context.clip();
     context.fillStyle = color("mode-disabled");
-    context.fillRect(0, top, this.x(length()) + (length() >= this.whole ? EDGE : 0), height);
+    const known = model.knownFrom ? this.x(model.knownFrom) : 0;
+    context.fillRect(known, top, this.x(length()) + (length() >= this.whole ? EDGE : 0) - known, height);
     const { t, v } = this.modes;
     for (let index = 0; index < t.length; index++) {
       const name = MODE_COLORS[v[index]];
       if (!name) continue;
-      const from = this.x(t[index]);
+      const from = this.x(Math.max(t[index], model.knownFrom));
       const to = this.x(index + 1 < t.length ? t[index + 1] : length());
       context.fillStyle = color(name);
-      context.fillRect(from, top, Math.max(to - from, 1), height);
+      if (to >= from) context.fillRect(from, top, Math.max(to - from, 1), height);
     }
     for (const branch of model.branches) {
       if (branch.id !== model.compared) continue;
