@@ -131,6 +131,21 @@ def _environment() -> dict[str, str]:
     }
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option for the tests that take long."""
+    parser.addoption("--run-slow", action="store_true", help="run the tests that are marked as slow, too")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the slow tests, unless they are asked for: all of them, or one by its name."""
+    if config.getoption("run_slow") or any("::" in each for each in config.args):
+        return
+    slow = [item for item in items if item.get_closest_marker("slow")]
+    if slow:
+        config.hook.pytest_deselected(items=slow)
+        items[:] = [item for item in items if not item.get_closest_marker("slow")]
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Compile our packages, as installing them does: commands would do it each time, since they keep nothing."""
     config.stash[_STDERR] = os.dup(2)  # while a test runs, its own goes to pytest's capture

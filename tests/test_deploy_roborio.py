@@ -20,6 +20,8 @@ from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest,
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError
 from pyfrc_core.deploy.manifest import Manifest
 
+pytestmark = pytest.mark.bare
+
 ROBOT = """\
 import wpilib
 

@@ -18,6 +18,8 @@ from skips import missing_programs, require
 
 from pyfrc_core._version import __version__, requirement
 
+pytestmark = pytest.mark.bare
+
 ROOT = Path(__file__).parents[1]
 OLD = "2026.0.3"
 PAGE = (ROOT / "docs/getting_started.md").read_text("utf-8")

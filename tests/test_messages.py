@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 from conftest import MakeProject, Result
 
+pytestmark = pytest.mark.bare
+
 ROBOT = """
     import wpilib
 

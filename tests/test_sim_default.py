@@ -15,6 +15,8 @@ from pyfrc_core import browser
 from pyfrc_core.browser import open_in_browser, why_no_browser
 from pyfrc_core.sim.ui import choose
 
+pytestmark = pytest.mark.bare
+
 SSH = {"SSH_CONNECTION": "10.0.0.2 50000 10.0.0.3 22"}
 DESKTOP = {"DISPLAY": ":0"}
 

@@ -16,6 +16,8 @@ from virtual_display import VirtualDisplay, virtual_display
 
 from pyfrc_core.interruption import ending_like_ctrl_c
 
+pytestmark = pytest.mark.bare
+
 ROBOT = """
     import sys
 

@@ -14,6 +14,8 @@ from pyfrc_core.sim.engine.extensions import check_installed
 from pyfrc_core.sim.ui.headless import WholeLines
 from pyfrc_core.sim.ui.picture import check_pictures
 
+pytestmark = pytest.mark.bare
+
 #: As on a machine without a screen.
 NO_DISPLAY = {"DISPLAY": "", "WAYLAND_DISPLAY": ""}
 

@@ -18,6 +18,8 @@ from pyfrc_core.sim.ui.web.front_end import WebFrontEnd
 from pyfrc_core.sim.ui.web.runs import Runs
 from pyfrc_core.sim.ui.web.server import WebOptions
 
+pytestmark = pytest.mark.bare
+
 DASHBOARD = {
     "robot.py": """
         import math

@@ -6,7 +6,11 @@ import hashlib
 import json
 import re
 
+import pytest
+
 from pyfrc_core.sim.ui.web.single_file import PAGE
+
+pytestmark = pytest.mark.bare
 
 
 def test_libraries_are_files_of_their_packages_with_licences() -> None:

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 import skips
 
+pytestmark = pytest.mark.bare
+
 HERE = Path(__file__).parent
 
 TESTS = """

@@ -33,6 +33,8 @@ from pyfrc_core.virtual_robot.control import Control
 from pyfrc_core.virtual_robot.disk import RobotDisk
 from pyfrc_core.virtual_robot.supervisor import Supervisor
 
+pytestmark = pytest.mark.bare
+
 #: Wall seconds after which a test gives up, and after which a robot is killed. They decide nothing else.
 SECONDS, ROBOT_SECONDS = 120, 240
 
