@@ -115,6 +115,7 @@ def test_every_robot_has_its_bug() -> None:
         assert (ROBOTS / name / bug.file).read_text("utf-8").count(MARK) == 1
 
 
+@pytest.mark.slow
 def test_the_ready_made_tests_do_not_find_it(project) -> None:
     result = project.run("test", "--builtin", "--", "-v")
     assert result.code == 0, result.output

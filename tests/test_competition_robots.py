@@ -21,7 +21,7 @@ DO_NOT_REPEAT = {"ctre_swerve"}
 SETTINGS = "\n[tool.pyfrc.match]\nautonomous = 2\npause = 0.1\nteleop = 2\n"
 
 
-@pytest.fixture(params=NAMES)
+@pytest.fixture(params=[pytest.param(name, marks=pytest.mark.slow) if name == "tank_arm" else name for name in NAMES])
 def project(request: pytest.FixtureRequest, make_project: MakeProject) -> RobotProject:
     made = make_project({})
     made.copy(ROBOTS / request.param)

@@ -308,6 +308,7 @@ def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
     assert project.run("config", "check").stdout == "sim/config.json: no mistakes\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("template", "says"),
     [
@@ -437,7 +438,7 @@ def test_a_lift_moves_its_encoder(make_project: MakeProject) -> None:
     assert "no drivetrain recognised" in printed
     assert "four_motor_swerve_drivetrain" in printed
     assert "PWM 4 (lift.motor) with lift.encoder (DIO 8, 9), which you need to complete\n" in printed
-    failed = "tests/test_lift.py::test_lift - robot.py:10: AssertionError: assert 0.0 == 2.0 ± 0.05"
+    failed = "tests/test_lift.py::test_lift - tests/test_lift.py:6: AssertionError: assert 0.0 == 2.0 ± 0.05"
     assert f"those that fail now failed without it, too:\n  {failed}\n" in printed
     unknown = "Not simulated, since their purpose is unknown: PWM 5 (spare)."
     assert f"note: {unknown}" in printed

@@ -36,6 +36,8 @@ del RENAMED["robot.py"]
 WRITTEN: Files = {"log.txt": b"1\n2\n", "state/odometer": b"17"}
 
 SCENARIOS = ["first", "update", "renamed", "taken over"]
+#: Cut at each step: by day, an update; by night, all.
+SAMPLED_SCENARIOS = [name if name == "update" else pytest.param(name, marks=pytest.mark.slow) for name in SCENARIOS]
 
 
 #: By scenario, the disks on which a deploy after a cut was seen to work.
@@ -106,7 +108,7 @@ def directory() -> Generator[Path]:
         yield directory
 
 
-@pytest.mark.parametrize("name", ["first", "update"])
+@pytest.mark.parametrize("name", [pytest.param("first", marks=pytest.mark.slow), "update"])
 @pytest.mark.parametrize("way", ["to", "from"])
 def test_cut_after_every_kth_byte(name: str, way: str, directory: Path, agents: Agents) -> None:
     """More than 300 places in all, the last of them within the last bytes."""
@@ -120,7 +122,7 @@ def test_cut_after_every_kth_byte(name: str, way: str, directory: Path, agents: 
         assert outcomes[-1], "the last byte comes when all is done"
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("name", SAMPLED_SCENARIOS)
 def test_agent_killed_at_each_step(name: str, directory: Path, agents: Agents) -> None:
     """Killed: its last step is the one before; what it had written stays."""
     scenario = Scenario(name, directory, agents)
@@ -130,7 +132,7 @@ def test_agent_killed_at_each_step(name: str, directory: Path, agents: Agents) -
     assert {True, False} == set(outcomes)
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("name", SAMPLED_SCENARIOS)
 def test_power_lost_at_each_step(name: str, directory: Path, agents: Agents) -> None:
     """As killed; and what was written since the disk was last flushed is lost, while names have changed."""
     scenario = Scenario(name, directory, agents)
@@ -149,7 +151,7 @@ def agent(robot: LocalRobot, agents: Agents, **options: int | bool) -> Generator
         session.close()
 
 
-@pytest.mark.parametrize("loses", [False, True])
+@pytest.mark.parametrize("loses", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_rollback_killed_at_each_step(directory: Path, agents: Agents, loses: bool) -> None:
     """From a program with another start command, and with files that it has written."""
     before = LocalRobot.new(directory / "before")

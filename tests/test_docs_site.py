@@ -15,6 +15,8 @@ from test_specification_names import FIXTURES, SPECIFICATION
 
 import pyfrc
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[1]
 COMMAND = ("sphinx", "-q", "-E", "-W", "--keep-going")
 
