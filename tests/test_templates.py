@@ -78,6 +78,16 @@ def template(request: pytest.FixtureRequest) -> str:
 
 every_template = pytest.mark.parametrize("project", TEMPLATES, indirect=True)
 
+#: By day, the one that people begin with, and one for each library of commands; by night, all.
+sampled_templates = pytest.mark.parametrize(
+    "project",
+    [
+        name if name in ("timed", "command", "magic") else pytest.param(name, marks=pytest.mark.slow)
+        for name in TEMPLATES
+    ],
+    indirect=True,
+)
+
 
 def workflow(project: RobotProject) -> list[list[str]]:
     """The commands of a project's workflow for tests: each what stands behind ``python -m``."""
@@ -87,7 +97,7 @@ def workflow(project: RobotProject) -> list[list[str]]:
     return [command[2:] for command in commands]
 
 
-@every_template
+@sampled_templates
 def test_its_workflow_passes_as_it_stands_in_the_file(project: RobotProject, tmp_path: Path) -> None:
     """Checking the config, and the tests with more than 80 % of the robot's lines run, when all is installed.
 
@@ -120,7 +130,7 @@ def test_what_the_workflows_install_is_installed_here(project_of: Callable[[str]
     assert "Downloading" not in result.output
 
 
-@every_template
+@sampled_templates
 def test_it_goes_through_a_match_in_the_simulator(project: RobotProject, template: str) -> None:
     result = project.run("sim", "--ui", "none", "--mode", "practice")
     assert result.code == 0, result.output
@@ -146,7 +156,7 @@ def robot() -> Iterator[Roborio]:
         yield robot
 
 
-@every_template
+@sampled_templates
 def test_it_starts_on_a_robot(
     project: RobotProject, template: str, robot: Roborio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -186,6 +196,7 @@ def _install_real_packages(there: Path) -> None:
         shutil.copytree(libraries, there / libraries.name)
 
 
+@pytest.mark.slow
 def test_types_and_style_are_clean(pytestconfig: pytest.Config, make_shared_project: MakeProject) -> None:
     # The types of wpilib and of pyfrc, which take mypy most of its time, are kept from run to run.
     cache = pytestconfig.cache
