@@ -135,7 +135,7 @@ def command(
         if not each.is_dir():
             raise click.BadParameter(f"there is no directory {each}", param_hint="DIRECTORIES")
     with collector_paused():
-        from pyfrc_core.compat.real_time_devices import explain_real_time
+        from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.fuzz.campaign import run_campaign
         from pyfrc_core.fuzz.campaign_data import CampaignOptions
         from pyfrc_core.fuzz.stream import Shard
@@ -165,8 +165,8 @@ def command(
         _write_pages(project, campaign, pages)
     for text in campaign.hints.texts():
         hint(f"hint: {text}")
-    if campaign.real_time:
-        hint(explain_real_time(campaign.real_time))
+    if campaign.unrepeatable:
+        hint(explain_unrepeatable(campaign.unrepeatable))
     if campaign.always_fails:
         click.echo("The robot fails at its start in every match: the campaign ends until this is repaired.")
     if campaign.interrupted:

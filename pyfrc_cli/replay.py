@@ -53,7 +53,7 @@ def command(
     1 it differs, or the robot's code failed; 2 wrong usage, or no such script.
     """
     with collector_paused():
-        from pyfrc_core.compat.real_time_devices import explain_real_time
+        from pyfrc_core.compat.unrepeatable import explain_unrepeatable
         from pyfrc_core.replay import replay
 
     project = chosen_project(directory, main, robot_class)
@@ -77,11 +77,11 @@ def command(
         hint(f"The script starts the robot program {result.starts} times: the trace is that of the last start.")
     if result.failure is not None:
         click.secho(f"then {result.failure}", fg="red")
-    if result.real_time:
-        hint(explain_real_time(result.real_time))
+    if result.unrepeatable:
+        hint(explain_unrepeatable(result.unrepeatable))
     if result.difference is not None:
         where = result.difference
-        color = None if result.real_time else "red"
+        color = None if result.unrepeatable else "red"
         click.secho(f"The trace differs from the recorded one, first at {where.now:.2f} s:", fg=color)
         click.echo(f"  {where.path} was {json.dumps(where.recorded)}, is {json.dumps(where.replayed)}")
     elif result.equal:
@@ -89,5 +89,5 @@ def command(
     elif result.equal is not None:
         click.echo("The trace differs from the recorded one.")
     # A difference may come from devices that do not repeat: then it is no failure of this robot program.
-    differs = not result.real_time and (result.difference is not None or result.equal is False)
+    differs = not result.unrepeatable and (result.difference is not None or result.equal is False)
     sys.exit(1 if result.failure is not None or differs else 0)

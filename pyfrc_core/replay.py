@@ -44,7 +44,7 @@ class ReplayResult:
     :param digest: the hash of the trace
     :param equal: whether the trace equals the recorded one; None when the recording has no hash
     :param difference: the first difference, if the recording has a trace
-    :param real_time: the devices that do not repeat, as `compat.real_time_devices` names them
+    :param unrepeatable: the devices that do not repeat, as `compat.unrepeatable` names them
     :param starts: how many times the script starts the robot program; the trace is that of the last one
     """
 
@@ -53,7 +53,7 @@ class ReplayResult:
     digest: str
     equal: bool | None
     difference: Difference | None
-    real_time: tuple[str, ...] = ()
+    unrepeatable: tuple[str, ...] = ()
     starts: int = 1
 
 
@@ -103,7 +103,7 @@ def _replay_here(
                         construct(project, run, robot_class)
                         Player(script, run).play(until_us)
                     seconds = run.clock.now
-                    real_time = run.hal_data["CAN"].real_time_devices()
+                    unrepeatable = run.hal_data["CAN"].unrepeatable_devices()
             finally:
                 with _collected(failures, project):
                     run.close()
@@ -114,7 +114,7 @@ def _replay_here(
     if script.trace and whole:
         # The same values have another hash if another version of pyfrc or pydantic wrote their numbers in another form.
         equal = script.trace == recorder.digest() or (beside.is_file() and difference is None)
-    return ReplayResult(seconds, failures[0] if failures else None, recorder.digest(), equal, difference, real_time)
+    return ReplayResult(seconds, failures[0] if failures else None, recorder.digest(), equal, difference, unrepeatable)
 
 
 def _replay_boots(project: Project, script: InputScript, until: float | None, trace: Path | None) -> ReplayResult:

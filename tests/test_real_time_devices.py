@@ -16,7 +16,7 @@ from textwrap import dedent
 import pytest
 from conftest import MakeProject, RobotProject
 
-from pyfrc_core.compat import real_time_devices as real_time
+from pyfrc_core.compat import unrepeatable
 from pyfrc_core.runtime.scripts.script import ScriptError, load_script, parse_script
 from pyfrc_core.runtime.trace_lines import hashed_part
 from pyfrc_core.sim.engine.changes import change_of
@@ -145,27 +145,29 @@ def test_devices_count_only_where_the_library_is_loaded(monkeypatch: pytest.Monk
     """The same names may be those of other simulations."""
     names = ["CANMotor:Talon FX (v6)[11]", "CANEncoder:Talon FX (v6)[11]/Rotor Sensor", "SPARK MAX [3]"]
     monkeypatch.delitem(sys.modules, "phoenix6", raising=False)
-    assert real_time.real_time_devices(names) == ()
-    assert not real_time.is_real_time(names[0])
-    monkeypatch.setitem(sys.modules, "phoenix6", real_time)
-    assert real_time.real_time_devices(names) == ("phoenix6 Talon FX 11",)
-    assert [real_time.is_real_time(name) for name in names] == [True, True, False]
-    assert real_time.is_real_time('CAN["CANGyro:Pigeon 2 (v6)[1]"].yaw')
+    assert unrepeatable.unrepeatable_devices(names) == ()
+    assert not unrepeatable.is_unrepeatable(names[0])
+    monkeypatch.setitem(sys.modules, "phoenix6", unrepeatable)
+    assert unrepeatable.unrepeatable_devices(names) == ("phoenix6 Talon FX 11",)
+    assert [unrepeatable.is_unrepeatable(name) for name in names] == [True, True, False]
+    assert unrepeatable.is_unrepeatable('CAN["CANGyro:Pigeon 2 (v6)[1]"].yaw')
 
 
 def test_devices_are_in_the_order_of_their_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     """9 comes before 10."""
-    monkeypatch.setitem(sys.modules, "phoenix6", real_time)
+    monkeypatch.setitem(sys.modules, "phoenix6", unrepeatable)
     names = [f"CANEncoder:CANcoder (v6)[{number}]" for number in (10, 9)]
-    assert real_time.real_time_devices(names) == ("phoenix6 CANcoder 9", "phoenix6 CANcoder 10")
+    assert unrepeatable.unrepeatable_devices(names) == ("phoenix6 CANcoder 9", "phoenix6 CANcoder 10")
 
 
 def test_one_sentence_names_the_device_the_reason_and_the_remedy() -> None:
     """For one device, two and many."""
-    one, two = (real_time.explain_real_time([f"phoenix6 Talon FX {each}" for each in range(count)]) for count in (1, 2))
+    one, two = (
+        unrepeatable.explain_unrepeatable([f"phoenix6 Talon FX {each}" for each in range(count)]) for count in (1, 2)
+    )
     assert one.startswith("Talon FX 0 does not repeat exactly, because phoenix6 simulates it in real time: ")
     assert two.startswith("Talon FX 0 and Talon FX 1 do not repeat exactly, because phoenix6 simulates them ")
-    assert real_time.explain_real_time([f"phoenix6 Talon FX {each}" for each in (11, 12, 21)]) == SENTENCE
+    assert unrepeatable.explain_unrepeatable([f"phoenix6 Talon FX {each}" for each in (11, 12, 21)]) == SENTENCE
 
 
 # -- traces ------------------------------------------------------------------------------------------------------------
@@ -175,13 +177,13 @@ def test_a_line_is_hashed_without_its_marked_values() -> None:
     """A line that has nothing else does not count at all."""
     plain = '{"t":1.0,"set":{"pwm[0].value":0.5}}'
     assert hashed_part(plain) == plain
-    assert hashed_part('{"t":1.0,"set":{"pwm[0].value":0.5},"real_time":{"CAN":1}}') == plain
-    assert hashed_part('{"t":1.0,"set":{},"real_time":{"CAN":1}}') == ""
+    assert hashed_part('{"t":1.0,"set":{"pwm[0].value":0.5},"unrepeatable":{"CAN":1}}') == plain
+    assert hashed_part('{"t":1.0,"set":{},"unrepeatable":{"CAN":1}}') == ""
 
 
 def test_marked_values_are_changes_like_others() -> None:
     """The window and its plots show them."""
-    change = change_of('{"real_time": {"CAN": 1}, "set": {"pwm[0].value": 0.5}, "t": 1.0}')
+    change = change_of('{"unrepeatable": {"CAN": 1}, "set": {"pwm[0].value": 0.5}, "t": 1.0}')
     assert dict(change.values) == {"CAN": 1, "pwm[0].value": 0.5}
 
 
@@ -190,7 +192,7 @@ def test_recordings_have_the_same_hash_and_mark_the_values(with_phoenix: Phoenix
     first, second = (with_phoenix.record(directory) for directory in ("first", "second"))
     assert load_script(first).trace == load_script(second).trace
     lines = first.with_name(f"{first.stem}.trace.jsonl").read_text("utf-8").splitlines()
-    assert any('"real_time":{"CAN[' in line for line in lines)
+    assert any('"unrepeatable":{"CAN[' in line for line in lines)
     changes = [json.loads(line) for line in lines[1:-1]]
     assert not any("(v6)" in path for change in changes for path in change["set"])
     expected = hashlib.sha256("".join(map(hashed_part, lines[1:-1])).encode()).hexdigest()

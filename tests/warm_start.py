@@ -308,7 +308,6 @@ def main() -> None:
     prepare_pytest()
     from pyfrc_cli import main as commands
     from pyfrc_cli import start
-    from pyfrc_core.compat.wpilib_noise import replace_chance
     from pyfrc_core.config import settings
     from pyfrc_core.deploy.agent_package import agent_package
     from pyfrc_core.project.loaded_modules import loaded_modules
@@ -320,7 +319,6 @@ def main() -> None:
     assert callable(start._restart_with_fixed_seed)  # under another name, each command would start cold
     start._restart_with_fixed_seed = _fix_the_seed
     inspect.stack()  # resolves the files of all modules, which measuring coverage begins with
-    replace_chance()
     loaded_modules.look()
     modules = list(sys.modules)
     gc.collect()

@@ -5,6 +5,6 @@ module uses a private name of theirs (`tests/test_compat_boundary.py`), and each
 depends on it (`tests/test_compat_*.py`). To support a new version of a library, change these modules until the tests
 pass. `CONTRIBUTING.md` lists the steps.
 
-Four modules depend on how libraries behave: `real_time_devices` (phoenix6), `rev_noise` (REV), `wpilib_noise`,
-and `library_output` (what they print). `object_hashes` gives the objects of these libraries hashes that repeat.
+Two modules depend on how libraries behave: `unrepeatable` (phoenix6, REV, WPILib) and `library_output` (what they
+print). `object_hashes` gives the objects of these libraries hashes that repeat.
 """

@@ -77,7 +77,7 @@ class TestSettings:
     #: autonomous or test mode has the length of the autonomous period, where that is longer.
     loop_seconds: Seconds = 2.0
     #: How many times as fast as real time robot time passes at most, in a robot with devices that a vendor's library
-    #: simulates in real time (`compat.real_time_devices`). Replays and fuzzing have the same limit.
+    #: simulates in real time (`compat.unrepeatable`). Replays and fuzzing have the same limit.
     real_time_speed: Annotated[float, _Positive] = 8.0
 
     __test__ = False  # pytest: not a test class, for all its name

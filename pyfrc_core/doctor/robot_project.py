@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, TypeVar
 
 from .._version import __version__
-from ..compat.real_time_devices import real_time_libraries
+from ..compat.unrepeatable import real_time_libraries
 from ..config.packages import quoted_requirement
 from ..config.robotpy import load_robot_packages, unknown_components
 from ..errors import ProjectError, PyfrcError, SettingsError

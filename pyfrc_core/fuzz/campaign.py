@@ -43,7 +43,7 @@ _LEAST_SECONDS, _MOST_SECONDS = 3.0, 60.0
 _START_US = 2_000_000
 
 #: The maximum number of runs to shrink a script of a robot that does not repeat: runs that fail by chance prove little.
-_MOST_REAL_TIME_RUNS = 50
+_MOST_UNREPEATABLE_RUNS = 50
 
 
 def run_campaign(project: Project, options: CampaignOptions, listener: CampaignListener) -> Campaign:
@@ -195,7 +195,7 @@ class _Runner:
 
     def _next_shrinking(self) -> ShrinkTask:
         failed = self._waiting.popleft()
-        most_runs = _MOST_REAL_TIME_RUNS if self.campaign.real_time else MOST_RUNS
+        most_runs = _MOST_UNREPEATABLE_RUNS if self.campaign.unrepeatable else MOST_RUNS
         seconds = None
         if (left := self._seconds_left()) is not None:  # shared with those that wait
             seconds = max(_LEAST_SECONDS, min(_MOST_SECONDS, left / (1 + len(self._waiting))))
@@ -241,7 +241,7 @@ class _Runner:
         match.stream.learn(match.schedule, match.number, played)
         self.campaign.hints.add(played.hints)
         self._reached |= played.reached.keys()
-        self.campaign.real_time = self.campaign.real_time or played.real_time
+        self.campaign.unrepeatable = self.campaign.unrepeatable or played.unrepeatable
         progress.matches += 1
         progress.simulated += played.script.end_us / 1e6
         progress.covered = share(self._reached, self._all_lines) if self._reached else None

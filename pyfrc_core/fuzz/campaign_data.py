@@ -90,7 +90,7 @@ class Campaign:
     :param progress: how far it came
     :param findings: the failures that it found
     :param interrupted: whether the user interrupted it
-    :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
+    :param unrepeatable: the robot's devices that do not repeat, as `compat.unrepeatable` names them
     :param hints: what is no failure, but may be a mistake, in words
     :param always_fails: whether it ended because the robot fails at its start in every match
     """
@@ -98,7 +98,7 @@ class Campaign:
     progress: CampaignProgress = field(default_factory=CampaignProgress)
     findings: list[FuzzFinding] = field(default_factory=list)
     interrupted: bool = False
-    real_time: tuple[str, ...] = ()
+    unrepeatable: tuple[str, ...] = ()
     always_fails: bool = False
     hints: CampaignHints = field(default_factory=CampaignHints)
 

@@ -120,7 +120,7 @@ class MatchResult:
     :param script: the inputs until the end
     :param reached: the goals that were reached for the first time, and when, in microseconds
     :param inputs: the robot's inputs, by target
-    :param real_time: the robot's devices that do not repeat, as `compat.real_time_devices` names them
+    :param unrepeatable: the robot's devices that do not repeat, as `compat.unrepeatable` names them
     :param noted: the failures after which the match went on
     :param went_on: whether the match went on after this failure
     :param hints: what is no failure, but may be a mistake
@@ -134,7 +134,7 @@ class MatchResult:
     script: InputScript
     reached: dict[Goal, int] = field(default_factory=dict)
     inputs: dict[str, Input] = field(default_factory=dict)
-    real_time: tuple[str, ...] = ()
+    unrepeatable: tuple[str, ...] = ()
     noted: tuple[NotedFailure, ...] = ()
     went_on: bool = False
     hints: MatchHints = field(default_factory=MatchHints)
@@ -266,7 +266,7 @@ def _fuzz(
             except BaseException as error:  # robot code may call exit(), too
                 failure = failure_of(error, project.files)
         script = fuzz_run.script(project.main_file.name, ROBOT_SEED)
-        real_time = run.hal_data["CAN"].real_time_devices()
+        unrepeatable = run.hal_data["CAN"].unrepeatable_devices()
         restarts = fuzz_run.restarts and failure is None and run.clock.now_us < ends_us
         next_boot = NextBoot.after(boot.number, run.clock.now_us, rng.getstate()) if restarts else None
         played = MatchResult(
@@ -274,7 +274,7 @@ def _fuzz(
             script,
             dict(reached) | states.reached,
             generator.inputs,
-            real_time,
+            unrepeatable,
             tuple(notes.found),
             hints=watch.hints(),
             next_boot=next_boot,
@@ -295,7 +295,7 @@ def _joined(before: MatchResult | None, played: MatchResult) -> MatchResult:
         played,
         reached=played.reached | before.reached,
         inputs=before.inputs | played.inputs,
-        real_time=before.real_time or played.real_time,
+        unrepeatable=before.unrepeatable or played.unrepeatable,
         noted=(*before.noted, *played.noted),
     )
 

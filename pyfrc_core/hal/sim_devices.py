@@ -13,7 +13,7 @@ import hal
 from hal import simulation as hs
 from wpilib.simulation import SimDeviceSim
 
-from ..compat.real_time_devices import real_time_devices
+from ..compat.unrepeatable import unrepeatable_devices
 from .containers import LiveDict, Slot
 from .kinds import ANY, BOOL, FLOAT, INT32, INT64, UnknownKey, choice
 from .paths import join
@@ -117,9 +117,9 @@ class SimDevices(LiveDict):
     def __iter__(self) -> Iterator[str]:
         return iter(SimDeviceSim.enumerateDevices(""))
 
-    def real_time_devices(self) -> tuple[str, ...]:
-        """Return the devices whose values do not repeat, as `compat.real_time_devices` names them."""
-        return real_time_devices(self)
+    def unrepeatable_devices(self) -> tuple[str, ...]:
+        """Return the devices whose values do not repeat, as `compat.unrepeatable` names them."""
+        return unrepeatable_devices(self)
 
     def signature(self) -> Signature:
         """Return the devices and their values, as the same object until one is created or removed.

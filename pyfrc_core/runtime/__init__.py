@@ -20,8 +20,8 @@ Like the robot. A run boots without a driver station; packets come only while on
 periodic function that waits for too long has stopped the robot, and is a failure (`loop_limit`).
 
 Repeatable. Random generators are seeded (`seeds`), and a trace has one hash over all that happened (`trace`). What a
-vendor simulates in real time does not repeat: it is marked, and robot time waits for it where the robot depends on it
-(`real_time_pace`).
+library simulates in real time, or with noise by chance (`noise`), does not repeat: it is marked. Robot time waits for
+what is simulated in real time where the robot depends on it (`real_time_pace`).
 
 The end. `exceptions.TestEnded` is raised wherever code waits, until none waits. Code that catches it gains nothing:
 each further wait raises it at once. The first failure is stored, so that no `except` hides it. `hang_detector` finds

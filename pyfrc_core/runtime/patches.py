@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable
 from operator import index
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import hal
@@ -22,7 +23,6 @@ import wpilib.simulation
 
 from ..compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
 from ..compat.object_hashes import hash_by_number, object_base
-from ..compat.wpilib_noise import replace_chance
 from ..compat.wpilib_private import LOOP_FUNCTION
 from ..hal import timing
 from . import (
@@ -33,10 +33,12 @@ from . import (
     event_loops,
     hal_resets,
     locks,
+    noise,
     robot_stack,
     sysid_logs,
     udp_ports,
 )
+from .after_import import after_import
 from .clock import KICKOFF as KICKOFF
 from .clock import to_us
 from .exceptions import TestEnded
@@ -78,12 +80,20 @@ class Patches:
             return
         if hasattr(os, "register_at_fork"):
             os.register_at_fork(after_in_child=_return_to_real_time)
-        for owner, name, replacement in self._patches():
-            original = vars(owner).get(name, getattr(owner, name, None))
-            self._table.patch(owner, name, as_original(owner, name, original, replacement))
-        replace_chance()
+        for patch in self._patches():
+            self._patch(patch)
+        after_import("rev", self._watch_sparks)
         robot_stack.show_robots_lines(lambda: self._files)
         library_threads.begin()
+
+    def _patch(self, patch: Patch) -> None:
+        owner, name, replacement = patch
+        original = vars(owner).get(name, getattr(owner, name, None))
+        self._table.patch(owner, name, as_original(owner, name, original, replacement))
+
+    def _watch_sparks(self, rev: ModuleType) -> None:
+        if self.installed:
+            self._patch(noise.spark_patch(rev))
 
     def uninstall(self) -> None:
         """Restore the original names."""
@@ -109,6 +119,7 @@ class Patches:
             *data_logs.patches(lambda: None if active_run.run is None else active_run.run.data_logs),
             *sysid_logs.patches(),
             *udp_ports.patches(),
+            *noise.patches(),
             Patch(object_base(), "__hash__", hash_by_number),
         ]
 

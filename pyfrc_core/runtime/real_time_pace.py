@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ..compat.real_time_devices import real_time_libraries
+from ..compat.unrepeatable import real_time_libraries
 from ..hal import modes
 from .patch_table import PatchTable
 from .real_time_loops import RealTimeLoops

@@ -2,8 +2,8 @@
 
 Two runs with the same hash did the same, bit for bit. As JSON lines, two traces can be compared with any diff.
 
-Values of devices that are simulated in real time (`compat.real_time_devices`) do not repeat. They are marked: a line
-has them under ``real_time``, and the hash leaves them out.
+Values of some vendors' simulated devices do not repeat (`compat.unrepeatable`). They are marked: a line has them under
+``unrepeatable``, and the hash leaves them out.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import hashlib
 import json
 from typing import IO, TYPE_CHECKING, Any
 
-from ..compat.real_time_devices import is_real_time, real_time_libraries
-from .trace_lines import trace_line, with_real_time
+from ..compat.unrepeatable import is_unrepeatable, unrepeatable_libraries
+from .trace_lines import trace_line, with_unrepeatable
 
 if TYPE_CHECKING:
     from ..hal import HalData
@@ -36,7 +36,8 @@ class Trace:
         self._out = out
         #: The changes whose lines have not been made: the robot time, the new values by path, and paths that have gone.
         self._waiting: list[tuple[float, dict[str, Any], list[str]]] = []
-        #: Whether the values of a path do not repeat.
+        #: The libraries whose devices do not repeat, and whether the values of a path are of one.
+        self._libraries: tuple[str, ...] = ()
         self._known: dict[str, bool] = {}
         self._hash = hashlib.sha256()
         if out is not None:
@@ -57,19 +58,21 @@ class Trace:
         waiting, self._waiting = self._waiting, []
         hashed, written = [], []
         for now, changed, gone in waiting:
-            marked = self._take_marked(changed) if real_time_libraries() else {}
+            marked = self._take_marked(changed) if unrepeatable_libraries() else {}
             line = trace_line(now, changed, gone)
             if changed or gone:
                 hashed.append(line)
-            written.append(with_real_time(line, marked) if marked else line)
+            written.append(with_unrepeatable(line, marked) if marked else line)
         self._hash.update("".join(hashed).encode())
         if self._out is not None:
             self._out.write("\n".join([*written, ""]))
 
     def _take_marked(self, changed: dict[str, Any]) -> dict[str, Any]:
         """Remove the values that do not repeat, and return them."""
+        if self._libraries != unrepeatable_libraries():  # a device drew noise for the first time
+            self._libraries, self._known = unrepeatable_libraries(), {}
         for path in changed.keys() - self._known:
-            self._known[path] = is_real_time(path)
+            self._known[path] = is_unrepeatable(path)
         return {path: changed.pop(path) for path in list(changed) if self._known[path]}
 
     def digest(self) -> str:

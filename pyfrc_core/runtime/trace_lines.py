@@ -12,7 +12,7 @@ from functools import cache
 from typing import Any
 
 #: The key of a line's values that do not repeat.
-REAL_TIME = "real_time"
+UNREPEATABLE = "unrepeatable"
 
 #: What a line has before its time.
 _TIME = '{"t":'
@@ -31,9 +31,9 @@ def trace_line(now: float, changed: Mapping[str, object], gone: Collection[str] 
     return _to_json(line)
 
 
-def with_real_time(line: str, marked: Mapping[str, object]) -> str:
+def with_unrepeatable(line: str, marked: Mapping[str, object]) -> str:
     """Return a line with values that do not repeat, by path."""
-    return f'{line[:-1]},"{REAL_TIME}":{_to_json(marked)}}}'
+    return f'{line[:-1]},"{UNREPEATABLE}":{_to_json(marked)}}}'
 
 
 def line_time(line: str) -> float:
@@ -43,7 +43,7 @@ def line_time(line: str) -> float:
 
 def hashed_part(line: str) -> str:
     """Return what the hash covers of a line; empty if the line has only values that do not repeat."""
-    if f'"{REAL_TIME}"' not in line:
+    if f'"{UNREPEATABLE}"' not in line:
         return line
     change = repeatable_part(json.loads(line))
     return "" if change is None else trace_line(change["t"], change["set"], change.get("gone", ()))
@@ -51,7 +51,7 @@ def hashed_part(line: str) -> str:
 
 def repeatable_part(change: dict[str, object]) -> dict[str, Any] | None:
     """Return a line's object without the values that do not repeat; None if it has nothing else."""
-    change = {key: value for key, value in change.items() if key != REAL_TIME}
+    change = {key: value for key, value in change.items() if key != UNREPEATABLE}
     return change if change["set"] or "gone" in change else None
 
 

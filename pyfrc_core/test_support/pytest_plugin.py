@@ -41,7 +41,7 @@ from .device_misuse import warning_of_misuse
 from .fake_time import FakeTime
 from .hangs import ROBOT_FIXTURES, WatchedTests
 from .options import READY_MADE_TESTS, TestOptions
-from .reporting import BUG, REAL_TIME, bug_of, put_first
+from .reporting import BUG, UNREPEATABLE, bug_of, put_first
 
 if TYPE_CHECKING:
     from ..physics.core import PhysicsInterface
@@ -308,7 +308,7 @@ class PyFrcPlugin(WatchedTests):
         if report.when == "call" and (self.options.record_directory or self.options.trace_directory):
             run = (getattr(item, "funcargs", None) or {}).get("_robot_run")
             if isinstance(run, RobotRun):
-                setattr(report, REAL_TIME, run.hal_data["CAN"].real_time_devices())
+                setattr(report, UNREPEATABLE, run.hal_data["CAN"].unrepeatable_devices())
         if report.failed and call.excinfo is not None:
             error = call.excinfo.value
             if not explained:  # that of a unittest.TestCase, which pytest has only now

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from ..compat.real_time_devices import real_time_libraries
+from ..compat.unrepeatable import real_time_libraries
 from ..passes.contents import loaded_from_elsewhere
 from ..passes.memory import Passes
 from ..project import Project

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 BUG = "pyfrc_bug"
 
 #: The attribute of a report with the devices of the robot that do not repeat.
-REAL_TIME = "pyfrc_real_time"
+UNREPEATABLE = "pyfrc_unrepeatable"
 
 #: Numbers in a message, such as times and addresses, differ from test to test.
 _NUMBER = re.compile(r"0x[0-9a-f]+|\d+(\.\d+)?(e-?\d+)?")

@@ -17,11 +17,11 @@ from typing import Any, TextIO
 import pytest
 
 from ..compat.library_output import LibraryOutput
-from ..compat.real_time_devices import explain_real_time
+from ..compat.unrepeatable import explain_unrepeatable
 from ..project import Project
 from ..runtime.code_checks import find_code_warnings
 from .device_misuse import DeviceWarning
-from .reporting import BUG, REAL_TIME, put_first
+from .reporting import BUG, UNREPEATABLE, put_first
 from .uncollected import find_uncollected
 
 #: How many lines a failure has, if that leaves the fewest for the test's output.
@@ -64,7 +64,7 @@ class SummaryPlugin:
             _explain_each_bug_once(terminalreporter.stats)
             if config.option.verbose <= 0:
                 _shorten_output(terminalreporter.stats)
-        _explain_real_time_devices(terminalreporter)
+        _explain_unrepeatable_devices(terminalreporter)
         # Before the failures, of which they may be the reason.
         mistakes = [f"{mistake}\n  {mistake.remedy}" for mistake in find_code_warnings(self._project)]
         mistakes += _take_device_warnings(terminalreporter.stats)
@@ -104,12 +104,12 @@ def warn_of_mistakes(project: Project, stream: TextIO = sys.stderr) -> None:
         print(f"warning: {method}", file=stream)
 
 
-def _explain_real_time_devices(terminalreporter: Any) -> None:
+def _explain_unrepeatable_devices(terminalreporter: Any) -> None:
     """Explain, once, why recordings of this robot do not repeat."""
     reports = [report for group in terminalreporter.stats.values() for report in group]
-    devices = sorted({device for report in reports for device in getattr(report, REAL_TIME, ())})
+    devices = sorted({device for report in reports for device in getattr(report, UNREPEATABLE, ())})
     if devices:
-        terminalreporter.write_line(explain_real_time(devices))
+        terminalreporter.write_line(explain_unrepeatable(devices))
 
 
 def _shorten_output(stats: dict[str, list[object]]) -> None:

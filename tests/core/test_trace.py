@@ -10,7 +10,7 @@ from typing import Any
 
 from pyfrc_core.hal.change_reader import ChangeReader
 from pyfrc_core.runtime.trace import FORMAT, Trace
-from pyfrc_core.runtime.trace_lines import hashed_part, line_time, trace_line, with_real_time
+from pyfrc_core.runtime.trace_lines import hashed_part, line_time, trace_line, with_unrepeatable
 
 
 class Tree:
@@ -138,17 +138,17 @@ def test_lines_are_json_that_returns_each_value() -> None:
             assert repr(json.loads(line)) == repr(expected)
             assert line_time(line) == line_time(line + "\n") == 0.02
             assert hashed_part(line) == line
-            marked = with_real_time(line, {"CAN.z": [1.0, "}"]})
-            assert json.loads(marked)["real_time"] == {"CAN.z": [1.0, "}"]}
+            marked = with_unrepeatable(line, {"CAN.z": [1.0, "}"]})
+            assert json.loads(marked)["unrepeatable"] == {"CAN.z": [1.0, "}"]}
             assert line_time(marked) == 0.02
             assert hashed_part(marked) == (line if some or gone else "")
 
 
 def test_the_time_of_a_line_is_its_first_item() -> None:
-    nasty = {'custom["t"]': '"t": 7, {"t":8}', "t": 9, "a": ["}", {"t": 3, "real_time": {}}]}
+    nasty = {'custom["t"]': '"t": 7, {"t":8}', "t": 9, "a": ["}", {"t": 3, "unrepeatable": {}}]}
     line = trace_line(1.25, nasty, ["t"])
     assert line_time(line) == json.loads(line)["t"] == 1.25
-    assert hashed_part(line) == hashed_part(with_real_time(line, {"x": '"t": 5}'})) == line
+    assert hashed_part(line) == hashed_part(with_unrepeatable(line, {"x": '"t": 5}'})) == line
 
 
 def test_floats_are_written_with_all_their_digits() -> None:
@@ -159,4 +159,4 @@ def test_floats_are_written_with_all_their_digits() -> None:
     values: dict[str, object] = {f"p{number}": value for number, value in enumerate(some)}
     line = trace_line(0.02, values)
     assert list(json.loads(line)["set"].values()) == some
-    assert hashed_part(with_real_time(line, {"p": 1.0})) == line
+    assert hashed_part(with_unrepeatable(line, {"p": 1.0})) == line

@@ -10,7 +10,7 @@ from typing import Any
 
 import ntcore
 
-from ...compat.real_time_devices import is_real_time
+from ...compat.unrepeatable import is_real_time
 from ...hal import modes
 from ...hal.change_reader import MISSING, Change, same
 from ..robot import RobotRun

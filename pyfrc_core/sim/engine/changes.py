@@ -16,7 +16,7 @@ from itertools import islice
 from types import MappingProxyType
 from typing import Any
 
-from ...runtime.trace_lines import REAL_TIME
+from ...runtime.trace_lines import UNREPEATABLE
 from .history import History
 
 #: The types of values that cannot change, and have no parts.
@@ -57,7 +57,7 @@ class Change:
 def change_of(line: str) -> Change:
     """Return the change that a line of a trace describes."""
     change = json.loads(line)
-    found = change["set"] | change.get(REAL_TIME, {})
+    found = change["set"] | change.get(UNREPEATABLE, {})
     values = {path: value if type(value) in _PLAIN else frozen(value) for path, value in found.items()}
     return Change(change["t"], MappingProxyType(values), tuple(change.get("gone", ())))
 

@@ -22,7 +22,7 @@ from typing import Any
 import pytest
 
 from ...compat import pytest_private
-from ...compat.real_time_devices import real_time_libraries
+from ...compat.unrepeatable import real_time_libraries
 from ...processes.fork import FORK_IS_SAFE
 from ...processes.worker import wait_for_any
 from ...processors import usable_processors

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from ...compat.pytest_private import run_test_protocol
-from ...compat.real_time_devices import real_time_libraries
+from ...compat.unrepeatable import real_time_libraries
 from ...processes.worker import Send
 from ..remembered_passes import PASSES
 

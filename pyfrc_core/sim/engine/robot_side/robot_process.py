@@ -16,7 +16,7 @@ from typing import Any
 
 import hal
 
-from ....compat.real_time_devices import explain_real_time
+from ....compat.unrepeatable import explain_unrepeatable
 from ....errors import PyfrcError
 from ....physics.engine import load_physics
 from ....processes.crash_report import CrashLog
@@ -89,8 +89,8 @@ def _run(job: Job, connection: Connection, log: CrashLog) -> None:
             def ready() -> Ready:
                 tags = tags_of(project.sim_config) if job.tags is None else job.tags
                 notes = tuple(map(str, find_code_warnings(project)))
-                if devices := run.hal_data["CAN"].real_time_devices():
-                    notes += (explain_real_time(devices),)
+                if devices := run.hal_data["CAN"].unrepeatable_devices():
+                    notes += (explain_unrepeatable(devices),)
                 return Ready(tags, tuple(_libraries(project)), session.network_address, notes)
 
             try:
