@@ -35,7 +35,7 @@ _REASONS = {
     "rev": ("REV's library draws the noise of {their} velocities by chance", _TOLERANCE),
     "wpilib": (
         "WPILib draws the noise of {their} measurementStdDevs by chance",
-        "leave measurementStdDevs out in tests",
+        "leave measurementStdDevs out in tests, and add noise with random.gauss",
     ),
 }
 
