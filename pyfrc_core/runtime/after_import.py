@@ -12,7 +12,7 @@ from typing import Any
 
 
 def after_import(name: str, function: Callable[[ModuleType], object]) -> None:
-    """Call a function with a module, now or after its import. A later call for the same module replaces the function."""
+    """Call a function with a module, now or after its import. A later call for that module replaces the function."""
     if name in sys.modules:
         _after_import.functions.pop(name, None)
         function(sys.modules[name])
