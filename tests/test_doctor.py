@@ -261,7 +261,12 @@ def test_a_project_that_was_named_has_to_be_there(make_project) -> None:
         ({"sim/config.json": '{"pyfrc": {"robot": {"w": "wide"}}}'}, "sim/config.json", "robot.w", ""),
         ({"wpilib/__init__.py": ""}, "project", "wpilib/__init__.py hides a library", "another name"),
         ({"random.py": ""}, "project", "random.py hides a library", "another name"),
-        ({"physics.py": "class PhysicsEngine:"}, "physics", "physics.py:1: IndentationError", "Indent the next line"),
+        (
+            {"physics.py": "class PhysicsEngine:"},
+            "physics",
+            "physics.py:1: IndentationError",
+            "indent this one by four spaces",
+        ),
         (
             {"physics.py": "import phisics"},
             "physics",
