@@ -192,4 +192,6 @@ def test_the_successor_of_networktables_is_named(make_project, command: tuple[st
     project = make_project({"robot.py": ROBOT, "physics.py": physics})
     result = project.run(*command)
     assert result.code == 1
-    assert re.search(r"physics\.py:\d: there is no module networktables\n  Use ntcore instead\.", result.output)
+    assert re.search(
+        r"physics\.py:\d: there is no module networktables\n  Instead: import ntcore, and ntcore\.", result.output
+    )
