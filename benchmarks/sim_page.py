@@ -69,7 +69,7 @@ KEY_TO_MOTOR = f"""async (presses) => {{
 
 #: Count the values that come in some seconds: those of one update in the median.
 CHANGED = """async (seconds) => {
-  const { model } = (await import("/static/page.js")).modules["js/model.js"];
+  const { model } = await import("/static/js/model.js");
   const { take } = model;
   const counts = [];
   model.take = (message) => {
@@ -96,15 +96,15 @@ FRAMES = """(seconds) => new Promise((resolve) => {
   requestAnimationFrame(frame);
 })"""
 
-PLOT = """(paths) => import("/static/page.js").then(({ modules }) => {
-  paths.forEach((path, index) => modules["js/plotting.js"].addToPlot(path, index % 2 ? "plot:1" : "plot:2"));
+PLOT = """(paths) => import("/static/js/plotting.js").then(({ addToPlot }) => {
+  paths.forEach((path, index) => addToPlot(path, index % 2 ? "plot:1" : "plot:2"));
 })"""
 
 #: Look at moments of the whole run at random, until every panel has painted its values: milliseconds of each.
 SEEK = f"""async (moments) => {{
   {PAINTED}
-  const {{ model }} = (await import("/static/page.js")).modules["js/model.js"];
-  const {{ look, length }} = (await import("/static/page.js")).modules["js/past.js"];
+  const {{ model }} = await import("/static/js/model.js");
+  const {{ look, length }} = await import("/static/js/past.js");
   const found = [];
   for (let index = 0; index < moments; index++) {{
     const t = Math.round(Math.random() * length() / 0.02) * 0.02;
@@ -120,7 +120,7 @@ SEEK = f"""async (moments) => {{
   return found;
 }}"""
 
-MODEL = "import('/static/page.js').then(({ modules: { 'js/model.js': { model } } }) => [model.t, model.values.size])"
+MODEL = "import('/static/js/model.js').then(({ model }) => [model.t, model.values.size])"
 
 
 @contextmanager

@@ -126,7 +126,29 @@ def missing_browser() -> list[str]:
 
 
 #: For scripts in the page: what one of its modules exports.
-MODULE = 'window.module = async (name) => (await import("/static/page.js")).modules[name];'
+MODULE = "window.module = (name) => import(`#${name}`);"
+
+
+#: Add scripts that are not the page's own, and return which of the page's rules refuse them, and what has run.
+INJECTED = """async () => {
+  const code = "window.hasRun = (window.hasRun ?? 0) + 1";
+  const data = `data:text/javascript,${encodeURIComponent(code)}`;
+  const scripts = [
+    { textContent: code },
+    { src: data },
+    { type: "module", textContent: code },
+    { type: "module", src: data },
+    { src: URL.createObjectURL(new Blob([code], { type: "text/javascript" })) },
+  ];
+  const refused = [];
+  for (const script of scripts) {
+    const event = new Promise((resolve) => document.addEventListener("securitypolicyviolation", resolve, { once: true }));
+    document.head.append(Object.assign(document.createElement("script"), script));
+    refused.push((await event).effectiveDirective);
+  }
+  return [refused, window.hasRun ?? 0];
+}"""
+REFUSED = [["script-src-elem"] * 5, 0]
 
 
 @contextmanager

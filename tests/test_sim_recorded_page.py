@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser_pages import HOSTILE, ROBOT, shared_browser  # noqa: F401 - `browser`
+from browser_pages import HOSTILE, INJECTED, REFUSED, ROBOT, shared_browser  # noqa: F401 - `browser`
 from recorded_pages import run_in
 from sim_robots import FILES
 
@@ -97,6 +97,17 @@ def test_a_mentor_looks_through_a_run_that_failed(page: Any, recorded: Any) -> N
         "text => [...document.querySelectorAll('.nt-value')].some(each => each.value === text)", arg=HOSTILE
     )
     assert page.locator(".nt-value:enabled").count() == 0
+
+
+def test_a_page_from_disk_runs_its_own_scripts_only(recorded: Any, browser: Any) -> None:
+    context = browser.new_context(offline=True)
+    try:
+        page = context.new_page()
+        page.goto((recorded.path / "pages" / "run.html").as_uri())
+        page.locator(".recorded").wait_for()
+        assert page.evaluate(INJECTED) == REFUSED
+    finally:
+        context.close()
 
 
 def test_nothing_of_this_computer_is_in_a_page(recorded: Any) -> None:

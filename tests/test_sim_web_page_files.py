@@ -46,12 +46,15 @@ def test_the_page_needs_no_network_no_build_and_makes_no_html_of_texts() -> None
     index = (PAGE / "index.html").read_text("utf-8")
     assert "<style" not in index
     assert " style=" not in index
-    assert re.findall(r"<script(.*?)>(.*?)</script>", index) == [(' type="module" src="/static/page.js"', "")]
-    # Each module imports files that exist, by relative paths, and names that they export.
+    (_, names), script = re.findall(r"<script(.*?)>(.*?)</script>", index)
+    assert script == (' type="module" src="/static/js/main.js"', "")
+    places = {name: place.removeprefix("/static/") for name, place in json.loads(names)["imports"].items()}
+    # Each module imports files that exist, by names of the import map, and names that they export.
     for file in (PAGE / "js").rglob("*.js"):
         imports = re.findall(r'^(?:import|export)\b([^"]*?)from "([^"]+)"', file.read_text("utf-8"), re.MULTILINE)
         for names, name in imports:
-            other = file.parent / name
+            begin, slash, rest = name.partition("/")
+            other = PAGE / (places[begin + slash] + rest)
             assert other.is_file(), (file, name)
             if "vendor" not in other.parts and "{" in names:
                 for each in re.findall(r"\w+", names):

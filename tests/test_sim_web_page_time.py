@@ -373,7 +373,7 @@ def test_the_page_says_which_values_are_forgotten(browser, make_project, monkeyp
         page.locator(".notice", has_text=sentence).wait_for()
         assert float(timeline.get_attribute("aria-valuenow") or 0) > 10
         timeline.hover(position={"x": 30, "y": 10})
-        page.locator(".timeline-tip", has_text=sentence).wait_for()
+        page.locator(".timeline-tip", has_text="Values forgotten").wait_for()
 
 
 def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> None:

@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 from browser_pages import (  # noqa: F401 - `person`, `browser`
+    INJECTED,
+    REFUSED,
     Seen,
     missing_browser,
     person_at_page,
@@ -62,3 +64,11 @@ def test_a_flood_of_prints_leaves_the_warnings(person: Seen) -> None:
     person.simulation.set_button(0, 9, False)
     person.page.get_by_role("button", name="Output").click()  # without plain output
     person.page.get_by_text("Warning: this is a warning").first.wait_for()
+
+
+def test_a_driver_and_a_viewer_run_the_pages_own_scripts_only(person: Seen) -> None:
+    with person.page.context.new_page() as viewing:
+        Seen(viewing, person.server).open(person.server.viewing_address)
+        for page in (person.page, viewing):
+            assert page.evaluate(INJECTED) == REFUSED
+    person.wrong.clear()  # the console has a line for each

@@ -16,6 +16,7 @@ from typing import Any, Literal
 from urllib.parse import parse_qs
 
 from .forwarding import name_of
+from .single_file import import_map_source
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -147,7 +148,7 @@ def _policy(host: str, origins: Sequence[str]) -> str:
     forwarded = "".join(f" ws{origin.removeprefix('http')}" for origin in origins)  # wss for https
     rules = {
         "default-src": "'none'",
-        "script-src": "'self'",
+        "script-src": f"'self' {import_map_source()}",
         "style-src": "'self'",
         "img-src": "'self' data: blob:",
         "font-src": "'self'",

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import hashlib
 import mimetypes
-import os
 import traceback
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -24,15 +22,15 @@ from .access import Access, Guard, Receive, Role, Scope, Send
 from .commands import Commands
 from .greeting import greeting
 from .page_client import PageClient
-from .single_file import PAGE, served_script
+from .single_file import PAGE
 from .updates import UpdateBuilder
 
 if TYPE_CHECKING:
     from ...engine.simulation import Simulation
     from .collector import Collector
 
-#: Types that some systems have wrong, in the Windows registry for example: browsers refuse styles of another type.
-_TYPES = {".css": "text/css", ".svg": "image/svg+xml"}
+#: Types that some systems have wrong, in the Windows registry for example: browsers refuse files of another type.
+_TYPES = {".css": "text/css", ".svg": "image/svg+xml", ".js": "text/javascript", ".mjs": "text/javascript"}
 
 _NO_KEY = "This address lacks its key. Open the address that pyfrc sim has printed.\n"
 #: The codes that close a connection: it sent something other than text; pyfrc has a mistake.
@@ -46,27 +44,12 @@ _GONE = (WebSocketDisconnect, RuntimeError, OSError)
 
 
 class _PageFiles(StaticFiles):
-    """The page's files, which a browser asks for again each time: a changed file is there after a reload.
-
-    Modules are not among them: they are in the one script, and one that was loaded beside it would be there twice.
-    """
-
-    def lookup_path(self, path: str) -> tuple[str, os.stat_result | None]:
-        return ("", None) if path.endswith((".js", ".mjs")) else super().lookup_path(path)
+    """The page's files, which a browser asks for again each time: a changed file is there after a reload."""
 
     def file_response(self, *arguments: Any, **named: Any) -> Response:
         response = super().file_response(*arguments, **named)
         response.headers["Cache-Control"] = "no-cache"
         return response
-
-
-async def _script(request: Request) -> Response:
-    """Send the page's modules as one script, unless the browser has it."""
-    content = served_script()
-    headers = {"Cache-Control": "no-cache", "ETag": f'"{hashlib.sha256(content).hexdigest()}"'}
-    if request.headers.get("if-none-match") == headers["ETag"]:
-        return Response(status_code=304, headers=headers)
-    return Response(content, media_type="text/javascript", headers=headers)
 
 
 class WebApp:
@@ -95,7 +78,6 @@ class WebApp:
             Route("/", self._index),
             Route("/field-image", self._image),
             WebSocketRoute("/ws", self._page),
-            Route("/static/page.js", _script),
             Mount("/static", _PageFiles(directory=PAGE)),
         ]
         self._guarded = Guard(Starlette(routes=routes), access)

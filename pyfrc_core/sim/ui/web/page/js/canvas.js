@@ -1,5 +1,5 @@
 // Canvases with sharp lines on dense screens.
-import { color, isDark } from "./settings.js";
+import { color, isDark } from "#js/settings.js";
 
 // An element's size without its borders, in pixels of the page. Asking the element itself in each drawing would have the
 // browser lay out the page at once, and again before it paints.

@@ -1,7 +1,7 @@
 // The branch that the person compares with: a ghost on the field, dashed curves in the plots.
-import { ask } from "./connection.js";
-import { model } from "./model.js";
-import { valueAt } from "./series.js";
+import { ask } from "#js/connection.js";
+import { model } from "#js/model.js";
+import { valueAt } from "#js/series.js";
 
 const POINTS = 4000;
 

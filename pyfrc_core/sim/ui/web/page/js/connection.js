@@ -1,7 +1,7 @@
 // The WebSocket to `pyfrc sim`. It connects again by itself; each connection begins with the whole state.
 // A page with a recorded run in it asks that run instead.
-import { model } from "./model.js";
-import { isRecorded, readRun } from "./recorded.js";
+import { model } from "#js/model.js";
+import { isRecorded, readRun } from "#js/recorded.js";
 
 const TOKEN = new URLSearchParams(location.search).get("token") ?? "";
 

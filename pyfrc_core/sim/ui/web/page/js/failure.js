@@ -1,11 +1,11 @@
 // Why the robot program has ended: the user's own line first, and the ways to go on.
-import { command } from "./connection.js";
-import { clock } from "./format.js";
-import { model } from "./model.js";
-import { live, look } from "./past.js";
-import { isRecorded } from "./recorded.js";
-import { SourceLink } from "./source.js";
-import { Icon, Live, html } from "./view.js";
+import { command } from "#js/connection.js";
+import { clock } from "#js/format.js";
+import { model } from "#js/model.js";
+import { live, look } from "#js/past.js";
+import { isRecorded } from "#js/recorded.js";
+import { SourceLink } from "#js/source.js";
+import { Icon, Live, html } from "#js/view.js";
 
 const BACK = 2; // seconds
 // The code cannot be loaded: it fails again at any moment.

@@ -1,17 +1,17 @@
 // The page: the driver station above, the panels, the timeline below.
-import { connect } from "./connection.js";
-import { FailureBar } from "./failure.js";
-import { startGamepads } from "./input/gamepads.js";
-import { startKeys } from "./input/keys.js";
-import { Dock } from "./layout/dock.js";
-import { model } from "./model.js";
-import { Notice } from "./notice.js";
-import { isRecorded } from "./recorded.js";
-import { RecordedTimeBar, startPlaybackKeys } from "./recorded_bar.js";
-import { applyTheme, settings } from "./settings.js";
-import { StationBar } from "./station.js";
-import { TimeBar } from "./timebar.js";
-import { Live, html, render } from "./view.js";
+import { connect } from "#js/connection.js";
+import { FailureBar } from "#js/failure.js";
+import { startGamepads } from "#js/input/gamepads.js";
+import { startKeys } from "#js/input/keys.js";
+import { Dock } from "#js/layout/dock.js";
+import { model } from "#js/model.js";
+import { Notice } from "#js/notice.js";
+import { isRecorded } from "#js/recorded.js";
+import { RecordedTimeBar, startPlaybackKeys } from "#js/recorded_bar.js";
+import { applyTheme, settings } from "#js/settings.js";
+import { StationBar } from "#js/station.js";
+import { TimeBar } from "#js/timebar.js";
+import { Live, html, render } from "#js/view.js";
 
 class App extends Live {
   parts = ["hello", "connection"];

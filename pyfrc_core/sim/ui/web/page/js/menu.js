@@ -1,6 +1,6 @@
 // A button that opens a list of actions. Escape or a click elsewhere closes it; arrow keys move in it.
-import { showBeside } from "./popup.js";
-import { Component, Icon, classes, createRef, html } from "./view.js";
+import { showBeside } from "#js/popup.js";
+import { Component, Icon, classes, createRef, html } from "#js/view.js";
 
 export class Menu extends Component {
   state = { open: false };

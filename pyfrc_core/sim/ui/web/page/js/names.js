@@ -1,5 +1,5 @@
 // The names of values for people: what the devices' rows call them, otherwise their paths.
-import { model } from "./model.js";
+import { model } from "#js/model.js";
 
 let names = new Map();
 let namesOf = null; // the panels that they were made from

@@ -1,6 +1,6 @@
 // One line for what the user should know: a lost connection, a command that failed, a note of the simulation.
-import { model } from "./model.js";
-import { Icon, Live, html } from "./view.js";
+import { model } from "#js/model.js";
+import { Icon, Live, html } from "#js/view.js";
 
 const LOST = {
   lost: "The connection to pyfrc sim was lost, reconnecting… The page shows the last state.",

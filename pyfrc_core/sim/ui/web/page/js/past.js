@@ -1,7 +1,7 @@
 // Looking at the past: one moment in every panel at once. Nothing is run, and nothing is lost.
-import { ask, command } from "./connection.js";
-import { clock } from "./format.js";
-import { model } from "./model.js";
+import { ask, command } from "#js/connection.js";
+import { clock } from "#js/format.js";
+import { model } from "#js/model.js";
 
 const PACKET = 0.02; // seconds
 
@@ -14,7 +14,9 @@ export function length() {
 
 // Show the packet that is nearest to a moment. While an answer is on its way, only the newest wish counts.
 export function look(t) {
-  if (isForgotten(t)) model.set("problem", forgottenText());
+  if (isForgotten(t)) {
+    model.set("problem", `The values before ${clock(model.knownFrom)} were forgotten, since memory for them is limited.`);
+  }
   const first = Math.ceil(model.knownFrom / PACKET) * PACKET;
   wanted = Math.min(Math.max(Math.round(t / PACKET) * PACKET, first), length());
   if (!asking) fetchWanted();
@@ -23,10 +25,6 @@ export function look(t) {
 // Whether the values of a moment are no longer kept.
 export function isForgotten(t) {
   return t < model.knownFrom;
-}
-
-export function forgottenText() {
-  return `The values before ${clock(model.knownFrom)} were forgotten, since memory for them is limited.`;
 }
 
 export function lookBy(seconds) {

@@ -1,7 +1,7 @@
 // Playing a recorded run: the moment that is shown goes on by itself.
-import { model } from "./model.js";
-import { length, live, look } from "./past.js";
-import { positionOf, speedAt } from "./speeds.js";
+import { model } from "#js/model.js";
+import { length, live, look } from "#js/past.js";
+import { positionOf, speedAt } from "#js/speeds.js";
 
 class Playback {
   playing = false;

@@ -1,9 +1,9 @@
 // Booleans and texts over time, as bands below a plot.
-import { font, sizeCanvas } from "./canvas.js";
-import { valueText } from "./format.js";
-import { nameOf } from "./names.js";
-import { indexAfter } from "./times.js";
-import { color } from "./settings.js";
+import { font, sizeCanvas } from "#js/canvas.js";
+import { valueText } from "#js/format.js";
+import { nameOf } from "#js/names.js";
+import { indexAfter } from "#js/times.js";
+import { color } from "#js/settings.js";
 
 const GAP = 3; // pixels between bands
 

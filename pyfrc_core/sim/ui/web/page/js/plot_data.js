@@ -1,6 +1,6 @@
 // The data of plots: curves with times of their own, as the columns that uPlot and CSV files need.
-import { plain } from "./format.js";
-import { indexAfter } from "./times.js";
+import { plain } from "#js/format.js";
+import { indexAfter } from "#js/times.js";
 
 const PER_PIXEL = 4; // points of a curve; with more, only the lowest and highest of each interval are drawn
 

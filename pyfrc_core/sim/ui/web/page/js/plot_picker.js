@@ -1,9 +1,9 @@
 // "Add a value": a search through everything that can be plotted, also the elements of lists.
-import { valueText } from "./format.js";
-import { model } from "./model.js";
-import { nameOf } from "./names.js";
-import { showBeside } from "./popup.js";
-import { Component, Icon, createRef, html } from "./view.js";
+import { valueText } from "#js/format.js";
+import { model } from "#js/model.js";
+import { nameOf } from "#js/names.js";
+import { showBeside } from "#js/popup.js";
+import { Component, Icon, createRef, html } from "#js/view.js";
 
 const MOST = 60;
 const LONGEST_LIST = 16; // elements of a list that are offered

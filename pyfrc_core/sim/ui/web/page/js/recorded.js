@@ -1,6 +1,6 @@
 // A run that is part of this file, as `--page` writes it: it answers what the server answers about the past.
 // `packing.py` says how its values are stored.
-import { indexAfter } from "./times.js";
+import { indexAfter } from "#js/times.js";
 
 const ROUNDING = 1e-6; // seconds
 const data = document.getElementById("run");

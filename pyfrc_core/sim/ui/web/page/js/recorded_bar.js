@@ -1,10 +1,10 @@
 // The controls of a recorded run: what it is, and its time.
-import { clock, speedText } from "./format.js";
-import { model } from "./model.js";
-import { live, look, lookByPackets } from "./past.js";
-import { playback } from "./playback.js";
-import { Timeline } from "./timeline.js";
-import { Icon, Live, html } from "./view.js";
+import { clock, speedText } from "#js/format.js";
+import { model } from "#js/model.js";
+import { live, look, lookByPackets } from "#js/past.js";
+import { playback } from "#js/playback.js";
+import { Timeline } from "#js/timeline.js";
+import { Icon, Live, html } from "#js/view.js";
 
 export function RecordedLabel() {
   const { recorded, version } = model.hello;

@@ -1,8 +1,8 @@
 // The values of watched paths over time: from the server's history, and then as they change.
-import { ask } from "./connection.js";
-import { plain } from "./format.js";
-import { model } from "./model.js";
-import { indexAfter } from "./times.js";
+import { ask } from "#js/connection.js";
+import { plain } from "#js/format.js";
+import { model } from "#js/model.js";
+import { indexAfter } from "#js/times.js";
 
 const FIRST_POINTS = 4000; // of the history, when a path begins to be watched
 // A longer series keeps these newest points, and what is older in as many points as at first: memory does not grow.

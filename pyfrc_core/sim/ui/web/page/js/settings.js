@@ -1,8 +1,8 @@
 // What a person has arranged: panels, plots, pins, keys, gamepads, light or dark. The server keeps it for the project.
-import { ask } from "./connection.js";
-import { model } from "./model.js";
-import { PRESETS } from "./layout/presets.js";
-import { isRecorded } from "./recorded.js";
+import { ask } from "#js/connection.js";
+import { model } from "#js/model.js";
+import { PRESETS } from "#js/layout/presets.js";
+import { isRecorded } from "#js/recorded.js";
 
 const SAVE_AFTER = 400; // milliseconds without another change
 // A page that is reloaded before that finds its arrangement here, in this tab of the browser.

@@ -1,6 +1,6 @@
 // A source line that opens in the editor. Only files of the project get a link.
-import { model } from "./model.js";
-import { html } from "./view.js";
+import { model } from "#js/model.js";
+import { html } from "#js/view.js";
 
 export function SourceLink({ file, line }) {
   const text = line ? `${file}:${line}` : file;

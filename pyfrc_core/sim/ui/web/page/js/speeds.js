@@ -1,5 +1,5 @@
 // The slider of speeds, from 0 to 1: each doubling takes the same distance. `whole` is the share of the slider that has speeds.
-import { model } from "./model.js";
+import { model } from "#js/model.js";
 
 export function positionOf(speed, whole = 1) {
   const { slowest, fastest } = model.hello.options.speeds;

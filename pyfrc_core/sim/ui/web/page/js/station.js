@@ -1,15 +1,15 @@
 // The driver station, along the top: modes, enabling, match, emergency stop; and the page's own menus.
-import { command } from "./connection.js";
-import { PRESETS, panelsOf } from "./layout/presets.js";
-import { activate, close, largestTabs, placeOf, put } from "./layout/tree.js";
-import { Menu } from "./menu.js";
-import { model } from "./model.js";
-import { PANELS, panelTitle } from "./panels/all.js";
-import { live } from "./past.js";
-import { isRecorded } from "./recorded.js";
-import { RecordedLabel } from "./recorded_bar.js";
-import { applyTheme, isDark, settings } from "./settings.js";
-import { Icon, Live, classes, html } from "./view.js";
+import { command } from "#js/connection.js";
+import { PRESETS, panelsOf } from "#js/layout/presets.js";
+import { activate, close, largestTabs, placeOf, put } from "#js/layout/tree.js";
+import { Menu } from "#js/menu.js";
+import { model } from "#js/model.js";
+import { PANELS, panelTitle } from "#js/panels/all.js";
+import { live } from "#js/past.js";
+import { isRecorded } from "#js/recorded.js";
+import { RecordedLabel } from "#js/recorded_bar.js";
+import { applyTheme, isDark, settings } from "#js/settings.js";
+import { Icon, Live, classes, html } from "#js/view.js";
 
 const ICON = document.querySelector("link[rel=icon]").href;
 const MODES = [["teleop", "Teleop"], ["autonomous", "Auto"], ["test", "Test"]];

@@ -1,5 +1,5 @@
 // A box for text that shows a changing value, but leaves what a person types alone.
-import { Component, createRef, html } from "./view.js";
+import { Component, createRef, html } from "#js/view.js";
 
 export class TextBox extends Component {
   element = createRef();

@@ -1,14 +1,14 @@
 // Robot time, along the bottom: pause, step, speed, the timeline, and the way back from the past.
-import { command } from "./connection.js";
-import { compared } from "./compare.js";
-import { askText, askWhether } from "./dialog.js";
-import { clock, speedText } from "./format.js";
-import { Menu } from "./menu.js";
-import { model } from "./model.js";
-import { driveOn, live, look, lookByPackets } from "./past.js";
-import { positionOf, speedAt } from "./speeds.js";
-import { Timeline } from "./timeline.js";
-import { Icon, Live, html } from "./view.js";
+import { command } from "#js/connection.js";
+import { compared } from "#js/compare.js";
+import { askText, askWhether } from "#js/dialog.js";
+import { clock, speedText } from "#js/format.js";
+import { Menu } from "#js/menu.js";
+import { model } from "#js/model.js";
+import { driveOn, live, look, lookByPackets } from "#js/past.js";
+import { positionOf, speedAt } from "#js/speeds.js";
+import { Timeline } from "#js/timeline.js";
+import { Icon, Live, html } from "#js/view.js";
 
 // The share of the speed slider that has speeds: beyond the fastest comes "as fast as possible".
 const UNLIMITED = 0.94;

@@ -1,13 +1,13 @@
 // The timeline: modes as colours, marks, and the moment that the panels show.
-import { ElementSize, font, sizeCanvas } from "./canvas.js";
-import { compared } from "./compare.js";
-import { clock } from "./format.js";
-import { model } from "./model.js";
-import { forgottenText, isForgotten, length, live, look, lookBy, lookByPackets } from "./past.js";
-import { isRecorded } from "./recorded.js";
-import { watch, unwatch } from "./series.js";
-import { color } from "./settings.js";
-import { Live, createRef, html } from "./view.js";
+import { ElementSize, font, sizeCanvas } from "#js/canvas.js";
+import { compared } from "#js/compare.js";
+import { clock } from "#js/format.js";
+import { model } from "#js/model.js";
+import { isForgotten, length, live, look, lookBy, lookByPackets } from "#js/past.js";
+import { isRecorded } from "#js/recorded.js";
+import { watch, unwatch } from "#js/series.js";
+import { color } from "#js/settings.js";
+import { Live, createRef, html } from "#js/view.js";
 
 const MODE_COLORS = { autonomous: "mode-auto", teleop: "mode-teleop", test: "mode-test" };
 const MARK_COLORS = { failure: "red", error: "red", warning: "amber", overrun: "amber", press: "accent", own: "own", run: "muted" };
@@ -45,7 +45,7 @@ export class Timeline extends Live {
         onPointerDown=${this.begin} onPointerMove=${this.move} onPointerUp=${this.end} onPointerLeave=${this.leave} onKeyDown=${this.key}>
       <canvas ref=${this.canvas}></canvas>
       ${hover && html`<div class="timeline-tip" style=${{ left: `${hover.left}px` }}>
-        <b>${clock(hover.t)}</b>${isForgotten(hover.t) && html`<span>${forgottenText()}</span>`}${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
+        <b>${clock(hover.t)}</b>${isForgotten(hover.t) && html`<span>Values forgotten</span>`}${this.marksNear(hover.t).map((mark, index) => html`<span key=${index} class=${`mark-${mark.kind}`}>${mark.text}</span>`)}</div>`}
     </div>`;
   }
 

@@ -1,9 +1,9 @@
 // A box that shows a value of the robot and takes what a person types: Enter, Tab and a click elsewhere write it, Escape
 // does not. Only what was edited is written, because the value may have more digits than the box shows.
-import { write } from "./connection.js";
-import { plain, quoted, shownNumber, typedNumber } from "./format.js";
-import { model } from "./model.js";
-import { Component, createRef, html } from "./view.js";
+import { write } from "#js/connection.js";
+import { plain, quoted, shownNumber, typedNumber } from "#js/format.js";
+import { model } from "#js/model.js";
+import { Component, createRef, html } from "#js/view.js";
 
 const LISTS = { number: "[1, 2.5]", boolean: "[true, false]", string: '["one", "two"]' };
 

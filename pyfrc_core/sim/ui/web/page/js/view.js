@@ -1,10 +1,10 @@
 // What every panel is made of: `html` templates, and components that render again when the model changes.
-import { Component, h } from "../vendor/preact/preact.mjs";
-import htm from "../vendor/htm/htm.mjs";
-import { model } from "./model.js";
+import { Component, h } from "#vendor/preact/preact.mjs";
+import htm from "#vendor/htm/htm.mjs";
+import { model } from "#js/model.js";
 
 export { Component };
-export { render, createRef } from "../vendor/preact/preact.mjs";
+export { render, createRef } from "#vendor/preact/preact.mjs";
 
 // html`<b>${text}</b>`: values become text or attributes, never markup.
 export const html = htm.bind(h);

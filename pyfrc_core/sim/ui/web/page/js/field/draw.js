@@ -1,6 +1,6 @@
 // Draws the field and what is on it. Each function draws one thing.
-import { font } from "../canvas.js";
-import { color } from "../settings.js";
+import { font } from "#js/canvas.js";
+import { color } from "#js/settings.js";
 
 const GRID = 5; // feet
 const FASTEST = 4.5; // metres per second: the longest arrow of a swerve module

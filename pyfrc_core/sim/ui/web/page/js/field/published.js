@@ -1,6 +1,6 @@
 // What robot code publishes over NetworkTables for a field: Field2d objects and swerve states.
-import { plain } from "../format.js";
-import { model } from "../model.js";
+import { plain } from "#js/format.js";
+import { model } from "#js/model.js";
 
 const FOOT = 0.3048; // metres
 const FEWEST = 7; // poses of a trajectory

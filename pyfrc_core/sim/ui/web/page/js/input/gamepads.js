@@ -1,7 +1,7 @@
 // The browser's gamepads move joysticks: the first one joystick 0 and so on, unless the person assigns others.
-import { atRest, write } from "../connection.js";
-import { model } from "../model.js";
-import { settings } from "../settings.js";
+import { atRest, write } from "#js/connection.js";
+import { model } from "#js/model.js";
+import { settings } from "#js/settings.js";
 
 // A gamepad with the browser's "standard" mapping, in the order of the Driver Station.
 const STANDARD_BUTTONS = [0, 1, 2, 3, 4, 5, 8, 9, 10, 11]; // A B X Y LB RB Back Start, left and right stick

@@ -1,10 +1,10 @@
 // The Driver Station's keys, the keys of robot time, and the keys that drive.
 //
 // Names of keys are those of the server: "w", "bracketleft", "return", "shift_l".
-import { atRest, command, refusedInPast, write } from "../connection.js";
-import { model } from "../model.js";
-import { live, lookByPackets } from "../past.js";
-import { settings } from "../settings.js";
+import { atRest, command, refusedInPast, write } from "#js/connection.js";
+import { model } from "#js/model.js";
+import { live, lookByPackets } from "#js/past.js";
+import { settings } from "#js/settings.js";
 
 const BY_CODE = {
   BracketLeft: "bracketleft", BracketRight: "bracketright", Backslash: "backslash", Enter: "return", NumpadEnter: "kp_enter",

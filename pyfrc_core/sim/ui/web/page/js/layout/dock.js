@@ -1,10 +1,10 @@
 // The panels on the screen: rows and columns with movable borders, and tabs that can be dragged elsewhere.
-import { model } from "../model.js";
-import { PANELS, panelTitle } from "../panels/all.js";
-import { settings } from "../settings.js";
-import { Component, Icon, Live, classes, createRef, html } from "../view.js";
-import { stacked } from "./presets.js";
-import { activate, close, put, resize } from "./tree.js";
+import { model } from "#js/model.js";
+import { PANELS, panelTitle } from "#js/panels/all.js";
+import { settings } from "#js/settings.js";
+import { Component, Icon, Live, classes, createRef, html } from "#js/view.js";
+import { stacked } from "#js/layout/presets.js";
+import { activate, close, put, resize } from "#js/layout/tree.js";
 
 const PANEL_TYPE = "application/x-pyfrc-panel";
 const NARROW = 900; // pixels: below, panels are stacked

@@ -1,15 +1,15 @@
 // Every panel that can be opened, by the part of its name before a colon. Those that only drive are of no use for a recorded run.
-import { ConsolePanel } from "./console.js";
-import { DevicesPanel } from "./devices.js";
-import { FieldPanel } from "./field.js";
-import { JoysticksPanel } from "./joysticks.js";
-import { KeysPanel } from "./keys.js";
-import { MatchPanel } from "./match.js";
-import { MechanismPanel } from "./mechanism.js";
-import { NetworkTablesPanel } from "./networktables.js";
-import { PlotPanel } from "./plot.js";
-import { TouchPanel } from "./touch.js";
-import { WidgetsPanel } from "./widgets.js";
+import { ConsolePanel } from "#js/panels/console.js";
+import { DevicesPanel } from "#js/panels/devices.js";
+import { FieldPanel } from "#js/panels/field.js";
+import { JoysticksPanel } from "#js/panels/joysticks.js";
+import { KeysPanel } from "#js/panels/keys.js";
+import { MatchPanel } from "#js/panels/match.js";
+import { MechanismPanel } from "#js/panels/mechanism.js";
+import { NetworkTablesPanel } from "#js/panels/networktables.js";
+import { PlotPanel } from "#js/panels/plot.js";
+import { TouchPanel } from "#js/panels/touch.js";
+import { WidgetsPanel } from "#js/panels/widgets.js";
 
 export const PANELS = {
   field: { title: "Field", component: FieldPanel },

@@ -1,10 +1,10 @@
 // What the robot prints: by level, by time, by search.
-import { clock } from "../format.js";
-import { model } from "../model.js";
-import { look } from "../past.js";
-import { settings } from "../settings.js";
-import { SourceLink } from "../source.js";
-import { Icon, Live, classes, createRef, html } from "../view.js";
+import { clock } from "#js/format.js";
+import { model } from "#js/model.js";
+import { look } from "#js/past.js";
+import { settings } from "#js/settings.js";
+import { SourceLink } from "#js/source.js";
+import { Icon, Live, classes, createRef, html } from "#js/view.js";
 
 const LEVELS = [["info", "Output"], ["warning", "Warnings"], ["error", "Errors"], ["pyfrc", "pyfrc"]];
 const MOST_SHOWN = 150;

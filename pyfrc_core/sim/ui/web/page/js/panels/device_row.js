@@ -1,10 +1,10 @@
 // One row of the devices: its label, its value drawn by kind, and for inputs the control that sets it.
-import { write } from "../connection.js";
-import { numberText, plain, valueText } from "../format.js";
-import { model } from "../model.js";
-import { addToPlot, carryPath } from "../plotting.js";
-import { ValueBox } from "../value_box.js";
-import { Component, Icon, classes, createRef, html } from "../view.js";
+import { write } from "#js/connection.js";
+import { numberText, plain, valueText } from "#js/format.js";
+import { model } from "#js/model.js";
+import { addToPlot, carryPath } from "#js/plotting.js";
+import { ValueBox } from "#js/value_box.js";
+import { Component, Icon, classes, createRef, html } from "#js/view.js";
 
 export class DeviceRow extends Component {
   shouldComponentUpdate(next) {

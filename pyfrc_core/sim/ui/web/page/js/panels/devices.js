@@ -1,8 +1,8 @@
 // Every motor and sensor: outputs as bars and lamps, inputs to set. Values are drawn without rendering the rows again.
-import { model } from "../model.js";
-import { settings } from "../settings.js";
-import { Icon, Live, classes, html } from "../view.js";
-import { DeviceRow } from "./device_row.js";
+import { model } from "#js/model.js";
+import { settings } from "#js/settings.js";
+import { Icon, Live, classes, html } from "#js/view.js";
+import { DeviceRow } from "#js/panels/device_row.js";
 
 export class DevicesPanel extends Live {
   parts = ["panels", "settings", "hello"];

@@ -1,16 +1,16 @@
 // The field: the season's picture, the robot, its path, and what robot code publishes. The wheel zooms, dragging moves.
-import { ElementSize, Picture, font, sizeCanvas } from "../canvas.js";
-import { command } from "../connection.js";
-import { numberText } from "../format.js";
-import * as draw from "../field/draw.js";
-import { placeLabel } from "../field/labels.js";
-import { fieldObjects, swerveStates } from "../field/published.js";
-import { Viewport } from "../field/viewport.js";
-import { Menu } from "../menu.js";
-import { model } from "../model.js";
-import { compared } from "../compare.js";
-import { color, settings } from "../settings.js";
-import { Icon, Live, createRef, html } from "../view.js";
+import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
+import { command } from "#js/connection.js";
+import { numberText } from "#js/format.js";
+import * as draw from "#js/field/draw.js";
+import { placeLabel } from "#js/field/labels.js";
+import { fieldObjects, swerveStates } from "#js/field/published.js";
+import { Viewport } from "#js/field/viewport.js";
+import { Menu } from "#js/menu.js";
+import { model } from "#js/model.js";
+import { compared } from "#js/compare.js";
+import { color, settings } from "#js/settings.js";
+import { Icon, Live, createRef, html } from "#js/view.js";
 
 const LAYERS = [
   ["trail", "Path of the robot"],

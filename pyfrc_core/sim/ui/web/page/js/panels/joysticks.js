@@ -1,12 +1,12 @@
 // The six joysticks: their gamepads, axes, buttons and POV.
-import { command, write } from "../connection.js";
-import { numberText, plain } from "../format.js";
-import { assignedTo, gamepads, labelOf, nameOf } from "../input/gamepads.js";
-import { model } from "../model.js";
-import { isRecorded } from "../recorded.js";
-import { settings } from "../settings.js";
-import { Component, Live, classes, createRef, html } from "../view.js";
-import { StickPad, axisTarget } from "./stick_pad.js";
+import { command, write } from "#js/connection.js";
+import { numberText, plain } from "#js/format.js";
+import { assignedTo, gamepads, labelOf, nameOf } from "#js/input/gamepads.js";
+import { model } from "#js/model.js";
+import { isRecorded } from "#js/recorded.js";
+import { settings } from "#js/settings.js";
+import { Component, Live, classes, createRef, html } from "#js/view.js";
+import { StickPad, axisTarget } from "#js/panels/stick_pad.js";
 
 const BUTTONS = 12;
 const POVS = [315, 0, 45, 270, -1, 90, 225, 180, 135];

@@ -1,8 +1,8 @@
 // The keys that drive: the chosen layout, and the person's own bindings.
-import { bindings, keyName, takenBy } from "../input/keys.js";
-import { model } from "../model.js";
-import { settings } from "../settings.js";
-import { Icon, Live, createRef, html } from "../view.js";
+import { bindings, keyName, takenBy } from "#js/input/keys.js";
+import { model } from "#js/model.js";
+import { settings } from "#js/settings.js";
+import { Icon, Live, createRef, html } from "#js/view.js";
 
 const STATION_KEYS = [
   ["[ ] \\ together, Ctrl+E", "enable"],

@@ -1,8 +1,8 @@
 // The choices before a match: alliance, game data, start, and the robot's choosers.
-import { command } from "../connection.js";
-import { model } from "../model.js";
-import { TextBox } from "../text_box.js";
-import { Live, html } from "../view.js";
+import { command } from "#js/connection.js";
+import { model } from "#js/model.js";
+import { TextBox } from "#js/text_box.js";
+import { Live, html } from "#js/view.js";
 
 export class MatchPanel extends Live {
   parts = ["station", "choosers", "hello"];

@@ -1,9 +1,9 @@
 // The Mechanism2d drawings that robot code publishes.
-import { ElementSize, Picture, font, sizeCanvas } from "../canvas.js";
-import { plain } from "../format.js";
-import { model } from "../model.js";
-import { color } from "../settings.js";
-import { Live, createRef, html } from "../view.js";
+import { ElementSize, Picture, font, sizeCanvas } from "#js/canvas.js";
+import { plain } from "#js/format.js";
+import { model } from "#js/model.js";
+import { color } from "#js/settings.js";
+import { Live, createRef, html } from "#js/view.js";
 
 export class MechanismPanel extends Live {
   parts = ["values", "paths", "shown", "settings", "window", "hello"];

@@ -1,10 +1,10 @@
 // NetworkTables as a tree. Numbers, texts, switches and lists can be edited; any value can be plotted.
-import { write } from "../connection.js";
-import { plain, valueText } from "../format.js";
-import { model } from "../model.js";
-import { addToPlot, carryPath } from "../plotting.js";
-import { ValueBox } from "../value_box.js";
-import { Component, Icon, Live, classes, createRef, html } from "../view.js";
+import { write } from "#js/connection.js";
+import { plain, valueText } from "#js/format.js";
+import { model } from "#js/model.js";
+import { addToPlot, carryPath } from "#js/plotting.js";
+import { ValueBox } from "#js/value_box.js";
+import { Component, Icon, Live, classes, createRef, html } from "#js/view.js";
 
 const START = "nt:/";
 

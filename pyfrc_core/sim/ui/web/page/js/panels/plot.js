@@ -1,19 +1,19 @@
 // Values over time. Curves are added by "+" or by dragging a value here; dragging in the plot zooms, a double click follows again.
-import uPlot from "../../vendor/uplot/uPlot.esm.js";
-import { ElementSize, font } from "../canvas.js";
-import { compared } from "../compare.js";
-import { ask } from "../connection.js";
-import { clockTick, shownNumber, valueText } from "../format.js";
-import { model } from "../model.js";
-import { nameOf } from "../names.js";
-import { length, look } from "../past.js";
-import { aligned, csvOf, download } from "../plot_data.js";
-import { PlotPicker } from "../plot_picker.js";
-import { drawBands } from "../plot_bands.js";
-import { addToPlot, carriedPath, changePlot, hasPath, plotOf } from "../plotting.js";
-import { unwatch, valueAt, watch } from "../series.js";
-import { color } from "../settings.js";
-import { Icon, Live, classes, createRef, html } from "../view.js";
+import uPlot from "#vendor/uplot/uPlot.esm.js";
+import { ElementSize, font } from "#js/canvas.js";
+import { compared } from "#js/compare.js";
+import { ask } from "#js/connection.js";
+import { clockTick, shownNumber, valueText } from "#js/format.js";
+import { model } from "#js/model.js";
+import { nameOf } from "#js/names.js";
+import { length, look } from "#js/past.js";
+import { aligned, csvOf, download } from "#js/plot_data.js";
+import { PlotPicker } from "#js/plot_picker.js";
+import { drawBands } from "#js/plot_bands.js";
+import { addToPlot, carriedPath, changePlot, hasPath, plotOf } from "#js/plotting.js";
+import { unwatch, valueAt, watch } from "#js/series.js";
+import { color } from "#js/settings.js";
+import { Icon, Live, classes, createRef, html } from "#js/view.js";
 
 const SPANS = [[5, "5 s"], [20, "20 s"], [60, "1 min"], [0, "All"]];
 const BAND = 20; // pixels of height for each boolean or text

@@ -1,8 +1,8 @@
 // A square (or a big round stick) that moves two axes, by mouse, finger or arrow keys; it returns when released.
-import { write } from "../connection.js";
-import { plain } from "../format.js";
-import { model } from "../model.js";
-import { Component, createRef, html } from "../view.js";
+import { write } from "#js/connection.js";
+import { plain } from "#js/format.js";
+import { model } from "#js/model.js";
+import { Component, createRef, html } from "#js/view.js";
 
 export function axisTarget(stick, axis) {
   return `joysticks[${stick}].axes[${axis}]`;

@@ -1,8 +1,8 @@
 // Two big sticks for a tablet: the left and the right stick of joystick 0, or Y of joysticks 0 and 1 for tank robots.
-import { model } from "../model.js";
-import { Live, html } from "../view.js";
-import { Button } from "./joysticks.js";
-import { StickPad } from "./stick_pad.js";
+import { model } from "#js/model.js";
+import { Live, html } from "#js/view.js";
+import { Button } from "#js/panels/joysticks.js";
+import { StickPad } from "#js/panels/stick_pad.js";
 
 const KINDS = {
   gamepad: { title: "Gamepad", left: [0, 0, 1], right: [0, 4, 5] },

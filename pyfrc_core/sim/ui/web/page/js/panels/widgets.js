@@ -1,11 +1,11 @@
 // What robot code has put on the dashboard: choosers, PID controllers, commands, alerts and single values, as cards.
-import { write } from "../connection.js";
-import { plain, valueText } from "../format.js";
-import { model } from "../model.js";
-import { addToPlot } from "../plotting.js";
-import { ValueBox } from "../value_box.js";
-import { Icon, Live, html } from "../view.js";
-import { Chooser } from "./match.js";
+import { write } from "#js/connection.js";
+import { plain, valueText } from "#js/format.js";
+import { model } from "#js/model.js";
+import { addToPlot } from "#js/plotting.js";
+import { ValueBox } from "#js/value_box.js";
+import { Icon, Live, html } from "#js/view.js";
+import { Chooser } from "#js/panels/match.js";
 
 // Shown elsewhere: on the field, or as a drawing.
 const ELSEWHERE = new Set(["Field2d", "Mechanism2d", "String Chooser", "Alerts", "FMSInfo"]);
