@@ -142,9 +142,13 @@ INJECTED = """async () => {
   ];
   const refused = [];
   for (const script of scripts) {
-    const event = new Promise((resolve) => document.addEventListener("securitypolicyviolation", resolve, { once: true }));
-    document.head.append(Object.assign(document.createElement("script"), script));
-    refused.push((await event).effectiveDirective);
+    await new Promise((resolve) => {
+      document.addEventListener("securitypolicyviolation", (event) => {
+        refused.push(event.effectiveDirective);
+        resolve();
+      }, { once: true });
+      document.head.append(Object.assign(document.createElement("script"), script));
+    });
   }
   return [refused, window.hasRun ?? 0];
 }"""

@@ -412,14 +412,16 @@ def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:
         try:
             page.get_by_text("The connection to pyfrc sim was lost, reconnecting").wait_for()
             assert person.button("E-STOP").is_disabled()
-            server.simulation.enable()
+            server.simulation.choose_mode("autonomous")
         finally:
             awake.set()
         page.get_by_text("reconnecting").wait_for(state="detached")
-        person.state("Teleoperated enabled")
+        person.state("Autonomous disabled")
         page.locator(".live-now", has_text="Live").wait_for()
+        server.simulation.enable()  # now: a robot that the last driver has left is disabled
+        person.state("Autonomous enabled")
         page.keyboard.press("Enter")
-        person.state("Teleoperated disabled")
+        person.state("Autonomous disabled")
         assert page.evaluate("window.notReloaded")
         person.wrong.clear()  # the browser's own words about attempts that came to nothing
 
