@@ -9,8 +9,8 @@ replay` and the project's tests play (`corpus`). `campaign` is on top.
 - A match is defined by its seeds, and from when each holds (`seed_schedule`): the same robot with the same inputs does
   the same. So a campaign continues a match differently from some moment on with one new seed, and keeps no state of a
   robot.
-- Guidance. It continues matches that were the first to reach a goal (`goals`): a line, a branch, a state, or a
-  comparison that came nearer to another result.
+- Guidance. It continues matches that were the first to reach a goal (`goals`): a line, a branch (from Python
+  3.12), or a state. How near a comparison was is not measured: Python does not show its operands in a public way.
 - What is a failure: exceptions, hangs, ended processes, and the checks of `oracle`, each with a setting. Most checks
   let the match go on, so that one match can show several. Motor calls are observed in Python: WPILib changes NaN and
   values beyond 1 before the HAL sees them.

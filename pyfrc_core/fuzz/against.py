@@ -80,7 +80,7 @@ def compare(project: Project, revision: str, options: CampaignOptions) -> Compar
             size = _BATCH if options.runs is None else min(_BATCH, options.runs - matches)
             schedules = [stream.schedule(number) for number in range(matches, matches + size)]
             known = stream.reached
-            generated = list(executor.play(FuzzTask(schedule, known, known) for schedule in schedules))
+            generated = list(executor.play(FuzzTask(schedule, known) for schedule in schedules))
             for number, (schedule, match) in enumerate(zip(schedules, generated, strict=True), matches):
                 stream.learn(schedule, number, match)
             tasks = [ReplayTask(match.script, use_oracle=False) for match in generated]

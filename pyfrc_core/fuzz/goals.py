@@ -14,7 +14,7 @@ Line = tuple[str, int]
 Goal = tuple[str | int, ...]
 
 #: Kinds of goals.
-LINE, BRANCH, NEAR, STATE = "line", "branch", "near", "state"
+LINE, BRANCH, STATE = "line", "branch", "state"
 
 
 def kind_of(goal: Goal) -> str:

@@ -72,7 +72,6 @@ class FuzzTask:
 
     :param schedule: the random seeds
     :param known: the goals that were reached before
-    :param known_to_all: those among them that the matches know that are played at the same time
     :param returns_inputs: whether the script and the inputs are returned even if nothing has failed
     :param published: entries of NetworkTables that the program is known to write all the time
     :param journal: a file for the inputs, in case the process ends before it can return them
@@ -80,7 +79,6 @@ class FuzzTask:
 
     schedule: SeedSchedule
     known: frozenset[Goal] = frozenset()
-    known_to_all: frozenset[Goal] = frozenset()
     returns_inputs: bool = True
     published: frozenset[str] = frozenset()
     journal: Path | None = None
@@ -249,7 +247,7 @@ def _fuzz(
         clock.before_packet.insert(0, step)
         clock.limit_us = max(clock.limit_us, to_us(seconds) + PACKET_US)
         failure = None
-        with lines.watched(task.known, task.known_to_all, lambda: clock.now_us) as reached:
+        with lines.watched(task.known, lambda: clock.now_us) as reached:
             try:
                 construct(project, run, load(project))
                 if before is None:

@@ -89,8 +89,7 @@ class Playing:
         if not self._next:
             return None
         match = self._next.popleft()
-        known_to_all = frozenset.intersection(*(stream.reached for stream in self._streams))
-        task = FuzzTask(match.schedule, match.stream.reached, known_to_all, False, self.published)
+        task = FuzzTask(match.schedule, match.stream.reached, False, self.published)
         self._running[id(task)] = _Running(task, match, time.monotonic())
         return task
 

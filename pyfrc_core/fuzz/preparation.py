@@ -51,8 +51,6 @@ class Preparation:
     def prepare_for(self, task: object) -> None:
         """Prepare what watches calls in this task, and nothing else: a replay runs as without fuzz."""
         is_match = isinstance(task, FuzzTask)
-        if isinstance(task, FuzzTask) and self._is_imported:
-            robot_lines(self._project).prepare(task.known_to_all)
         self._watch(is_match, is_match or (isinstance(task, ReplayTask) and task.use_oracle))
 
     def _watch(self, drivers: bool, motors: bool) -> None:

@@ -12,7 +12,7 @@ from ..runtime.scripts.script import InputScript
 from .avoidance import KnownFailures, LeftOut
 from .base_match import BaseMatch
 from .failure import FuzzFailure
-from .goals import BRANCH, LINE, NEAR, STATE, Goal, kind_of
+from .goals import BRANCH, LINE, STATE, Goal, kind_of
 from .match_plan import SHORT
 
 #: The share of matches that continue an earlier one, when there are any worth continuing.
@@ -27,7 +27,7 @@ _SAME_FOR_US = 1_000_000
 #: are hardest to reach.
 _MOST_REMEMBERED = 64
 #: How often each kind of goal is continued from, relative to the others.
-_WEIGHTS = {LINE: 4, BRANCH: 3, STATE: 3, NEAR: 2}
+_WEIGHTS = {LINE: 4, BRANCH: 3, STATE: 3}
 
 
 @dataclass(frozen=True)
