@@ -8,8 +8,6 @@ import sys
 import textwrap
 from typing import Any
 
-import pytest
-
 from pyfrc_core.fuzz.goals import BRANCH, LINE, STATE, kind_of
 from pyfrc_core.fuzz.seed_schedule import SeedSchedule, SeedScheduler
 
