@@ -8,7 +8,7 @@ WORKERS ?= $(shell expr 2 + $$(getconf _NPROCESSORS_ONLN))
 # Without compiled modules, each of many processes compiles the tests and pytest's plugins again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test check docs clean
+.PHONY: demo test check check-page docs clean
 
 demo: $(VENV)/installed  ## create a robot project in demo/, run its tests, deploy it to a virtual robot, change it, roll back
 	test -d demo || $(RUN) pyfrc init demo
@@ -23,6 +23,14 @@ check: $(VENV)/installed-dev  ## check style, types, and which room imports whic
 	$(RUN) ruff format --check .
 	$(RUN) mypy
 	$(VENV)/bin/lint-imports --no-logo
+
+check-page: node_modules/.package-lock.json  ## check the types and the style of the page's scripts, and run their unit tests; needs npm
+	npm run --silent check
+
+# The tools that package-lock.json names, from the network when it has changed. The page itself needs none of them.
+node_modules/.package-lock.json: package.json package-lock.json
+	npm ci --silent --no-audit --no-fund
+	touch $@
 
 docs: $(VENV)/installed-dev  ## build the documentation with the API reference in build/docs
 	$(RUN) sphinx -q -E -W --keep-going docs build/docs

@@ -42,5 +42,5 @@ class Compared {
 export const compared = new Compared();
 
 model.listen((changed) => {
-  if (changed.has("compared")) compared.choose(model.compared ?? null);
+  if (changed.has("compared")) compared.choose(model.compared);
 });

@@ -20,8 +20,8 @@ let silence = 0;
 let finished = false;
 let nextId = 1;
 const requests = new Map(); // id: { resolve, reject }
-let onMessage = () => {};
-let onState = () => {};
+let onMessage = (_message) => {};
+let onState = (_state) => {};
 
 // Connect, and call `message` with each message of the server, `state` with "open", "lost", "refused" or "closed".
 export function connect(message, state) {
@@ -111,7 +111,11 @@ function send(message) {
   return true;
 }
 
-// Ask the server; the promise has its answer.
+/**
+ * Ask the server; the promise has its answer.
+ * @param {string} type
+ * @returns {Promise<any>}
+ */
 export function ask(type, fields = {}) {
   if (run) return run.answer(type, fields);
   const id = nextId++;
@@ -143,7 +147,11 @@ export function atRest(target) {
   return target.includes(".povs[") ? -1 : false;
 }
 
-// Carry out a command, such as command("speed", { factor: 0.5 }). A failure is shown to the user.
+/**
+ * Carry out a command, such as command("speed", { factor: 0.5 }). A failure is shown to the user.
+ * @param {string} name
+ * @param {any} fields
+ */
 export function command(name, fields = {}) {
   if (MOVES.has(name) && !letsGo(name, fields) && refusedInPast()) return Promise.resolve();
   return ask("command", { ...fields, name }).catch((error) => onMessage({ type: "problem", text: error.message }));

@@ -46,15 +46,15 @@ function receive(message) {
 }
 
 // A button that was clicked with the mouse does not keep the keyboard, so that the space bar stays the emergency stop.
-document.addEventListener("click", (event) => {
-  const control = event.target.closest?.("button, summary, input[type=checkbox], input[type=radio]");
-  if (control && event.detail > 0) control.blur();
+document.addEventListener("click", (/** @type {any} */ { target, detail }) => {
+  const control = target.closest?.("button, summary, input[type=checkbox], input[type=radio]");
+  if (control && detail > 0) control.blur();
 });
-document.addEventListener("change", (event) => {
-  if (event.target.matches("select")) event.target.blur();
+document.addEventListener("change", (/** @type {any} */ { target }) => {
+  if (target.matches("select")) target.blur();
 });
-document.addEventListener("pointerup", (event) => {
-  if (event.target.matches?.('input[type="range"]')) event.target.blur();
+document.addEventListener("pointerup", (/** @type {any} */ { target }) => {
+  if (target.matches?.('input[type="range"]')) target.blur();
 });
 
 applyTheme();

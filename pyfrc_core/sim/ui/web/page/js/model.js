@@ -27,6 +27,7 @@ class Model {
   dropped = 0;
   marks = [];
   branches = [];
+  compared = null; // the number of the branch that plots show, too
   run = { number: 1, t: 0 };
   clients = 1;
   knownFrom = 0; // the moment from which on values are known: more than 0 when the oldest were forgotten

@@ -1,8 +1,8 @@
 // Which values are plotted where: each plot panel has a list of curves in the settings.
+import { showPanel } from "#js/layout/open.js";
+import { panelsOf } from "#js/layout/presets.js";
 import { model } from "#js/model.js";
 import { settings } from "#js/settings.js";
-import { panelsOf } from "#js/layout/presets.js";
-import { showPanel } from "#js/station.js";
 
 const PATH_TYPE = "application/x-pyfrc-path";
 const MOST_CURVES = 12;

@@ -13,7 +13,7 @@ export async function readRun() {
   const packed = Uint8Array.from(atob(data.textContent), (letter) => letter.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
   const run = await new Response(stream).json();
-  const values = new Map([...columnsOf(run.hal), ...columnsOf(run.network)]);
+  const values = columnsOf(run);
   const answers = {
     values: ({ t }) => ({ t, values: valuesAt(values, t) }),
     plot: ({ paths, from, to }) => ({ series: Object.fromEntries(paths.map((path) => [path, seriesOf(values, path, from, to)])) }),
@@ -28,9 +28,13 @@ export async function readRun() {
   };
 }
 
-function* columnsOf({ times, values }) {
-  const seconds = summed(times).map((microseconds) => microseconds / 1e6);
-  for (const [path, packed] of Object.entries(values)) yield [path, new Column(seconds, packed)];
+function columnsOf({ hal, network }) {
+  const columns = new Map();
+  for (const { times, values } of [hal, network]) {
+    const seconds = summed(times).map((microseconds) => microseconds / 1e6);
+    for (const [path, packed] of Object.entries(values)) columns.set(path, new Column(seconds, packed));
+  }
+  return columns;
 }
 
 // The changes of one value, unpacked when they are needed: { t, v }, with undefined where the value is gone.

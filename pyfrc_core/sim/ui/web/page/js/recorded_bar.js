@@ -56,7 +56,7 @@ function toEnd() {
 
 // The space bar plays and pauses, except where it means something else.
 export function startPlaybackKeys() {
-  document.addEventListener("keydown", (event) => {
+  document.addEventListener("keydown", (/** @type {any} */ event) => {
     if (event.key !== " " || event.repeat || event.target.closest?.("input, select, textarea, button, summary, a")) return;
     event.preventDefault();
     playback.toggle();

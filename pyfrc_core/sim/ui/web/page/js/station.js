@@ -1,7 +1,7 @@
 // The driver station, along the top: modes, enabling, match, emergency stop; and the page's own menus.
 import { command } from "#js/connection.js";
+import { toggle } from "#js/layout/open.js";
 import { PRESETS, panelsOf } from "#js/layout/presets.js";
-import { activate, close, largestTabs, placeOf, put } from "#js/layout/tree.js";
 import { Menu } from "#js/menu.js";
 import { model } from "#js/model.js";
 import { PANELS, panelTitle } from "#js/panels/all.js";
@@ -11,7 +11,7 @@ import { RecordedLabel } from "#js/recorded_bar.js";
 import { applyTheme, isDark, settings } from "#js/settings.js";
 import { Icon, Live, classes, html } from "#js/view.js";
 
-const ICON = document.querySelector("link[rel=icon]").href;
+const ICON = /** @type {HTMLLinkElement} */ (document.querySelector("link[rel=icon]")).href;
 const MODES = [["teleop", "Teleop"], ["autonomous", "Auto"], ["test", "Test"]];
 
 export class StationBar extends Live {
@@ -99,6 +99,7 @@ function switchTheme() {
 
 function LayoutMenu() {
   const chosen = settings.get("layout");
+  /** @type {any[]} */
   const items = Object.entries(PRESETS).map(([name, preset]) => ({
     text: preset.title,
     checked: name === chosen,
@@ -119,20 +120,4 @@ function plotIds(open) {
   const numbers = [...open].filter((id) => id.startsWith("plot:")).map((id) => Number(id.slice(5)));
   const most = Math.max(0, ...numbers);
   return Array.from({ length: most + 1 }, (_, index) => `plot:${index + 1}`);
-}
-
-function toggle(id) {
-  const { tree } = settings;
-  settings.tree = placeOf(tree, id) ? close(tree, id) : openPanel(tree, id);
-}
-
-function openPanel(tree, id) {
-  return put(tree, largestTabs(tree), id, "center");
-}
-
-// Bring a panel to the front, and open it if it is closed.
-export function showPanel(id) {
-  const { tree } = settings;
-  const place = placeOf(tree, id);
-  settings.tree = place ? activate(tree, place, id) : openPanel(tree, id);
 }

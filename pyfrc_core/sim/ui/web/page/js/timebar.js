@@ -76,6 +76,7 @@ function Figures() {
 
 function BranchesMenu() {
   if (!model.branches.length) return null;
+  /** @type {any[]} */
   const items = model.branches.map((branch) => ({
     text: branch.name,
     note: `${clock(branch.from)} – ${clock(branch.to)}`,

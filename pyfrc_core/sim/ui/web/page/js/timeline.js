@@ -108,7 +108,7 @@ export class Timeline extends Live {
   }
 
   drawMarks(context) {
-    let lastX = {};
+    const lastX = {};
     for (const mark of model.marks) {
       const name = MARK_COLORS[mark.kind];
       if (!name) continue;

@@ -78,6 +78,7 @@ export function drawTags(context, view, tags) {
   context.textAlign = "center";
   context.textBaseline = "middle";
   for (const tag of tags) {
+    /** @type {[number, number, number]} */
     const pose = [tag.x, tag.y, tag.angle];
     path(context, view, [beside(pose, 0, -0.35), beside(pose, 0, 0.35)]);
     context.stroke();

@@ -44,7 +44,7 @@ export function read(pad) {
   }
   const [leftX, leftY, rightX, rightY] = pad.axes;
   const value = (index) => pad.buttons[index]?.value ?? 0;
-  const pressed = (index) => Boolean(pad.buttons[index]?.pressed);
+  const pressed = (index) => Number(Boolean(pad.buttons[index]?.pressed));
   const hat = `${pressed(15) - pressed(14)},${pressed(13) - pressed(12)}`;
   return {
     axes: [leftX, leftY, value(6), value(7), rightX, rightY],

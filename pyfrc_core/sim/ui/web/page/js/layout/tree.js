@@ -65,11 +65,6 @@ export function resize(tree, place, index, share) {
   });
 }
 
-// The place of the first tabs, where a new panel opens if nothing better is known.
-function firstTabs(tree) {
-  return tree.kind === "tabs" ? [] : [0, ...firstTabs(tree.children[0])];
-}
-
 // The place of the largest tabs.
 export function largestTabs(tree) {
   let best = { size: -1, place: [] };

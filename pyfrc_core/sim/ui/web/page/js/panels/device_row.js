@@ -34,6 +34,8 @@ export class DeviceRow extends Component {
 class Painted extends Component {
   element = createRef();
 
+  paint(_value, _index) {}
+
   componentDidMount() {
     this.unbind = this.props.row.paths.map((path, index) => model.bind(path, (value) => this.paint(plain(value), index)));
   }

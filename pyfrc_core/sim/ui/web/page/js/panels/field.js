@@ -69,6 +69,7 @@ export class FieldPanel extends Live {
       alliance: station.alliance ?? model.station.alliance ?? "",
     };
     this.swerve = pose ? swerveStates(values) : [];
+    /** @type {any[]} */
     const layers = LAYERS.map(([layer, text]) => this.layer(layer, text));
     this.objects = fieldObjects(values, model.hello.field);
     if (this.objects.length) layers.push({ separator: true }, ...this.objects.map(({ path, name }) => this.layer(path, name)));

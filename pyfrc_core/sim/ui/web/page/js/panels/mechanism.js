@@ -92,6 +92,7 @@ function drawMechanism(context, { name, tree }, box) {
   context.save();
   context.clip();
   for (const root of Object.values(tree.children)) {
+    /** @type {[number, number]} */
     const at = [left + (root.values.x ?? 0) * scale, bottom - (root.values.y ?? 0) * scale];
     for (const child of Object.values(root.children)) drawLigament(context, child, at, 0, scale);
     context.beginPath();
@@ -115,6 +116,7 @@ function drawMechanism(context, { name, tree }, box) {
 function drawLigament(context, node, [x, y], parentAngle, scale) {
   const angle = parentAngle + ((node.values.angle ?? 0) * Math.PI) / 180;
   const length = (node.values.length ?? 0) * scale;
+  /** @type {[number, number]} */
   const end = [x + Math.cos(angle) * length, y - Math.sin(angle) * length];
   context.strokeStyle = node.values.color ?? color("accent");
   context.lineWidth = Math.max(node.values.weight ?? 6, 1);

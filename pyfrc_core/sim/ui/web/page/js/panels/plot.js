@@ -309,7 +309,7 @@ function tickTexts(_, ticks) {
 }
 
 // How far apart numbers are on a vertical axis, in pixels: closer in a low plot, which has few of them.
-function tickSpace(plot, axis, low, high, height) {
+function tickSpace(_plot, _axis, _low, _high, height) {
   return Math.min(24, Math.max(12, height / 3));
 }
 

@@ -1,0 +1,20 @@
+// Which panels are open in the chosen layout.
+import { activate, close, largestTabs, placeOf, put } from "#js/layout/tree.js";
+import { settings } from "#js/settings.js";
+
+// Close a panel, or open it.
+export function toggle(id) {
+  const { tree } = settings;
+  settings.tree = placeOf(tree, id) ? close(tree, id) : openPanel(tree, id);
+}
+
+function openPanel(tree, id) {
+  return put(tree, largestTabs(tree), id, "center");
+}
+
+// Bring a panel to the front, and open it if it is closed.
+export function showPanel(id) {
+  const { tree } = settings;
+  const place = placeOf(tree, id);
+  settings.tree = place ? activate(tree, place, id) : openPanel(tree, id);
+}
