@@ -86,7 +86,9 @@ def test_a_command_that_a_test_starts_does_not_wait_for_the_test(make_project: M
             control.run_test(lambda tm: tm < 1)
     """
     kept = robot("always alike").replace("'log.txt'", "'log_%d.txt' % os.getpid()")
-    project = make_project({"robot.py": kept, "tests/test_a.py": test, "pyproject.toml": SHORT_MATCH})
+    # Robot time stands while the command runs, which a busy machine lets take long.
+    settings = SHORT_MATCH + "\n[tool.pyfrc.test]\nhang_seconds = 600\n"
+    project = make_project({"robot.py": kept, "tests/test_a.py": test, "pyproject.toml": settings})
     result = project.run("test", "-j", "2")
     assert result.code == 0, result.output
 

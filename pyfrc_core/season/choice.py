@@ -56,8 +56,7 @@ def refuse_other_season(installed: str | None, wanted: str | None, where: str | 
         raise ProjectError(
             f"robotpy_version is {wanted}, and this pyfrc runs robots of {known}",
             where=where,
-            remedy=f'Install a pyfrc of that season (pip install "pyfrc>={year}"), or write: '
-            f'robotpy_version = "{installed}"',
+            remedy=f'Install the pyfrc of that season, or write: robotpy_version = "{installed}"',
         )
     raise ProjectError(
         f"robotpy_version is {wanted}, but wpilib {installed} is installed here",
