@@ -99,7 +99,7 @@ ROBOT = {
                     while True:
                         pass
                 if self.stick.getRawButton(9):
-                    for number in range(300):
+                    for number in range(3000):
                         print("flood", number)
 
             def disabledInit(self):

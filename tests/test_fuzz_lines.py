@@ -138,19 +138,20 @@ def test_nothing_is_observed_afterwards(robot: Any, lines: RobotLines) -> None:
         assert threading.gettrace() is None
 
 
-@pytest.mark.skipif(not MONITORS, reason="Python tells of branches since 3.12")
-def test_each_way_of_a_branch_is_a_goal(robot: Any, lines: RobotLines) -> None:
-    def branches(goals: Any) -> set[Goal]:
-        return {goal for goal in goals if kind_of(goal) == BRANCH}
+if MONITORS:
 
-    low, high = reached(lines, lambda: robot.decide(1)), reached(lines, lambda: robot.decide(9))
-    assert len(branches(low)) == len(branches(high)) == 1
-    assert branches(low) != branches(high)
-    both = reached(lines, lambda: [robot.decide(each) for each in (1, 1, 9, 9)])
-    assert branches(both) == branches(low) | branches(high)
-    assert reached(lines, lambda: [robot.decide(each) for each in (1, 9)], frozenset(low)) == {
-        goal: 7 for goal in high if goal not in low
-    }
+    def test_each_way_of_a_branch_is_a_goal(robot: Any, lines: RobotLines) -> None:
+        def branches(goals: Any) -> set[Goal]:
+            return {goal for goal in goals if kind_of(goal) == BRANCH}
+
+        low, high = reached(lines, lambda: robot.decide(1)), reached(lines, lambda: robot.decide(9))
+        assert len(branches(low)) == len(branches(high)) == 1
+        assert branches(low) != branches(high)
+        both = reached(lines, lambda: [robot.decide(each) for each in (1, 1, 9, 9)])
+        assert branches(both) == branches(low) | branches(high)
+        assert reached(lines, lambda: [robot.decide(each) for each in (1, 9)], frozenset(low)) == {
+            goal: 7 for goal in high if goal not in low
+        }
 
 
 def test_another_tool_that_traces_goes_on(robot: Any, lines: RobotLines) -> None:
@@ -182,12 +183,13 @@ def test_a_debugger_that_the_robot_starts_stays(robot: Any, lines: RobotLines) -
         assert sys.gettrace() is debugger
 
 
-@pytest.mark.skipif(not MONITORS, reason="sys.monitoring is new in Python 3.12")
-def test_a_tool_with_the_same_number_is_left_alone(robot: Any, lines: RobotLines) -> None:
-    monitoring: Any = sys.monitoring  # type: ignore[attr-defined,unused-ignore]
-    monitoring.use_tool_id(4, "another tool")
-    try:
-        assert reached(lines, lambda: robot.decide(1)) == {}
-        assert monitoring.get_tool(4) == "another tool"
-    finally:
-        monitoring.free_tool_id(4)
+if MONITORS:
+
+    def test_a_tool_with_the_same_number_is_left_alone(robot: Any, lines: RobotLines) -> None:
+        monitoring: Any = sys.monitoring  # type: ignore[attr-defined,unused-ignore]
+        monitoring.use_tool_id(4, "another tool")
+        try:
+            assert reached(lines, lambda: robot.decide(1)) == {}
+            assert monitoring.get_tool(4) == "another tool"
+        finally:
+            monitoring.free_tool_id(4)

@@ -58,7 +58,7 @@ def test_a_file_that_is_there_is_replaced_after_a_question(replaces: bool, perso
 def test_a_flood_of_prints_leaves_the_warnings(person: Seen) -> None:
     person.button("Enable").click()
     person.state("Teleoperated")
-    person.simulation.set_button(0, 9, True)  # three hundred lines in each packet
+    person.simulation.set_button(0, 9, True)  # three thousand lines in each packet
     person.tab("Console").first.click()
     person.page.get_by_text("lines were left out").wait_for()
     person.simulation.set_button(0, 9, False)

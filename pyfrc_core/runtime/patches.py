@@ -9,6 +9,7 @@ libraries get real time.
 from __future__ import annotations
 
 import os
+import threading
 import time
 from collections.abc import Callable
 from operator import index
@@ -53,6 +54,9 @@ if TYPE_CHECKING:
     from ..project.robot_files import RobotFiles
 
 _real_sleep = time.sleep
+
+#: Wall seconds in which WPILib's clock goes on in a forked process, unless a lock is held there for ever.
+_RESUMES_WITHIN = 1.0
 
 
 class Patches:
@@ -314,7 +318,10 @@ def _return_to_real_time() -> None:
     if active_run.run is not None:
         active_run.forget()
         cooperative.scope.forget_project()
-        timing.run_freely()
+        # One of the missing threads may have held the HAL's lock: then WPILib's clock stands, and nothing waits for it.
+        resuming = threading.Thread(target=timing.run_freely, daemon=True)
+        resuming.start()
+        resuming.join(_RESUMES_WITHIN)
 
 
 def _is_browned_out() -> bool:
