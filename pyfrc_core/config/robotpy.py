@@ -53,10 +53,26 @@ def load_robot_packages(pyproject: Path) -> RobotPackages:
     if table is None:
         return RobotPackages(None, (), (), {})
     lines = {key: file.place_of("tool", "robotpy", key) for key in table}
-    version = table.get("robotpy_version")
     requires = [_requirement(each, lines["requires"]) for each in _texts(table, "requires", lines)]
     components = _texts(table, "components", lines)
-    return RobotPackages(version if isinstance(version, str) else None, components, tuple(requires), lines)
+    return RobotPackages(_version_in(table), components, tuple(requires), lines)
+
+
+def load_robotpy_version(pyproject: Path) -> tuple[str | None, str | None]:
+    """Return the version of WPILib that ``[tool.robotpy]`` asks for, and where: as of `load_robot_packages`.
+
+    Nothing else in the table is read, so nothing else in it can be wrong.
+    """
+    if not pyproject.is_file():
+        return None, None
+    file = TomlFile(pyproject)
+    version = _version_in(file.table_at("tool", "robotpy") or {})
+    return version, file.place_of("tool", "robotpy", "robotpy_version") if version is not None else None
+
+
+def _version_in(table: dict[str, object]) -> str | None:
+    version = table.get("robotpy_version")
+    return version if isinstance(version, str) else None
 
 
 def _requirement(text: str, where: str) -> Requirement:
