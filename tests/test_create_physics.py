@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 import shutil
-import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -346,53 +345,6 @@ def test_every_sample_robot_runs_with_it(make_project: MakeProject, robot: str) 
     run_tests(project, "--builtin", "--", "-k", "operator")
 
 
-@pytest.mark.parametrize(("passes", "says"), [(True, "The project's tests pass."), (None, "The project has no tests")])
-def test_what_is_put_in_place_was_tried(make_project: MakeProject, passes: bool | None, says: str) -> None:
-    files = {"robot.py": "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"}
-    if passes:
-        files["tests/test_it.py"] = "def test_it(control):\n    control.run_test(lambda tm: tm < 1)\n"
-    assert says in create(make_project(files))
-
-
-def test_a_gyro_on_spi_has_not_the_name_of_the_motor_with_its_number(make_project: MakeProject) -> None:
-    robot = """
-        import hal
-        import wpilib
-
-        class Motor:
-            def getDeviceId(self):
-                return 4
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.right_motor = Motor()
-                self.navx = hal.SimDevice("navX-Sensor", 4)
-                self.yaw = self.navx.createDouble("Yaw", hal.SimDevice.Direction.kInput, 0.0)
-        """
-    printed = create(make_project({"robot.py": robot}))
-    assert "gyro: navX-Sensor[4]\n" in printed
-
-
-def test_a_mechanism_named_pivot_is_no_part_of_a_swerve_drive(make_project: MakeProject) -> None:
-    robot = """
-        import wpilib
-
-        class Module:
-            def __init__(self, number):
-                self.driving_motor, self.turning_motor = wpilib.Talon(number), wpilib.Talon(number + 4)
-
-        class Pivot:
-            def __init__(self):
-                self.motor = wpilib.Talon(9)
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.modules = [Module(number) for number in range(4)]
-                self.pivot = Pivot()
-        """
-    assert create(make_project({"robot.py": robot})).startswith("swerve drive")
-
-
 def test_a_lift_moves_its_encoder(make_project: MakeProject) -> None:
     """No drivetrain here; and reset() in the robot's code counts."""
     project = make_project(
@@ -605,22 +557,6 @@ def test_parts_of_devices_and_led_strips_are_no_motors_of_unknown_purpose(make_p
     assert "pwm" not in json.loads((project.path / "sim/config.json").read_text())["pyfrc"]
 
 
-def test_swerve_is_not_taken_for_a_tank(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": """
-            import wpilib
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotInit(self):
-                    self.left_drive, self.right_drive = wpilib.Talon(0), wpilib.Talon(1)
-                    self.left_steering, self.right_steering = wpilib.Talon(2), wpilib.Talon(3)
-            """
-        }
-    )
-    assert create(project).startswith("no drivetrain recognised\n")
-
-
 EMPTY = {
     "robot.py": """
     import wpilib
@@ -691,27 +627,6 @@ def test_something_else_in_the_place_of_a_file(make_project: MakeProject, file: 
     assert not any((project.path / name).is_file() for name in FILES)
 
 
-def test_what_was_written_is_told_when_the_next_file_cannot_be(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": """
-            from pathlib import Path
-
-            import wpilib
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotInit(self):
-                    Path(__file__).with_name("sim").touch()
-            """
-        }
-    )
-    result = project.run("create-physics")
-    assert (result.code, result.stdout) == (1, "")
-    assert result.first_error.startswith("config.json could not be written: ")
-    assert "\n  Written before that, and complete: physics.py.\n" in result.stderr
-    assert (project.path / "physics.py").is_file()
-
-
 @pytest.mark.parametrize("options", [["--main", "src/robot.py"], []], ids=["--main", "pyproject.toml"])
 def test_files_are_named_from_the_current_directory(make_project: MakeProject, options: list[str]) -> None:
     project = make_project({"src/robot.py": EMPTY["robot.py"]})
@@ -723,26 +638,6 @@ def test_files_are_named_from_the_current_directory(make_project: MakeProject, o
     assert "at the top of src/physics.py to" in printed
     printed = project.run("create-physics", *(options and ["--main", "robot.py"]), cwd=below).stdout
     assert "unchanged: physics.py (exists)\n" in printed
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="needs a POSIX shell")
-def test_without_standard_output_and_much_printed(make_project: MakeProject) -> None:
-    """What the robot prints is kept nowhere: not even where files may be no larger than this."""
-    project = make_project(
-        {
-            "robot.py": """
-            import wpilib
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotInit(self):
-                    print("x" * 2_000_000)
-            """
-        }
-    )
-    command = 'ulimit -f 1000; exec "$0" -m pyfrc create-physics >&-'
-    done = subprocess.run(["sh", "-c", command, sys.executable], cwd=project.path, stderr=subprocess.PIPE, check=False)
-    assert (done.returncode, done.stderr) == (0, b"")
-    assert all((project.path / file).is_file() for file in FILES)
 
 
 #: Each with what is said behind its place.
@@ -777,30 +672,6 @@ def test_a_robot_that_fails_is_told_by_its_line(make_project: MakeProject, code:
     assert "Traceback" not in result.output
     assert not any((project.path / file).exists() for file in ("physics.py", "sim"))
     assert not list(project.temporary.iterdir())
-
-
-def test_a_robot_that_ends_the_process_when_driven(make_project: MakeProject) -> None:
-    project = make_project(EMPTY)
-    project.write(
-        {"robot.py": EMPTY["robot.py"].replace("pass", "teleopPeriodic = lambda self: __import__('os')._exit(3)")}
-    )
-    result = project.run("create-physics")
-    assert (result.code, result.stdout) == (1, "")
-    assert result.first_error.startswith(
-        f"{project.place('robot.py', '_exit')}: the robot's process ended itself with exit code 3, while pyfrc "
-    )
-    assert not any((project.path / file).exists() for file in ("physics.py", "sim"))
-
-
-def test_verbose_shows_where_the_robot_failed(make_project: MakeProject) -> None:
-    project = make_project(EMPTY)
-    project.write({"robot.py": EMPTY["robot.py"].replace("pass", "robotInit = lambda self: 1 // 0")})
-    result = project.run("-v", "create-physics")
-    assert result.code == 1
-    assert "in <lambda>\n" in result.stderr
-    assert result.stderr.splitlines()[-1].endswith(
-        f"{project.place('robot.py', '//')}: ZeroDivisionError: integer division or modulo by zero"
-    )
 
 
 def test_a_robot_that_fails_when_driven_still_gets_its_files(make_project: MakeProject) -> None:
@@ -874,66 +745,6 @@ def test_a_file_that_is_not_valid_is_never_written() -> None:
         checked("x = 1\ndef = 1\n")
 
 
-BOTH_DRIVE = """
-import wpilib
-import wpilib.drive
-
-
-class MyRobot(wpilib.TimedRobot):
-    def robotInit(self):
-        self.fl, self.rl, self.fr, self.rr, self.l, self.r = motors = [wpilib.Talon(i) for i in range(6)]
-        for motor in (self.fr, self.rr, self.r):
-            motor.setInverted(True)
-        self.mecanum = wpilib.drive.MecanumDrive(*motors[:4])
-        self.tank = wpilib.drive.DifferentialDrive(self.l, self.r)
-        self.stick = wpilib.Joystick(0)
-
-    def teleopPeriodic(self):
-        self.mecanum.driveCartesian(-self.stick.getY(), self.stick.getX(), self.stick.getZ())
-        self.tank.arcadeDrive(-self.stick.getY(), -self.stick.getX())
-"""
-
-
-def test_names_that_partly_contradict_the_sticks(make_project: MakeProject) -> None:
-    printed = create(make_project({"robot.py": BOTH_DRIVE}))
-    assert (
-        "left: PWM 0 (fl), PWM 1 (rl), PWM 4 (l)\n  right: PWM 2 (fr), PWM 3 (rr), PWM 5 (r), forward at -1" in printed
-    )
-    assert "names, unlike the others: PWM 1 (rl), PWM 3 (rr)." in printed
-    assert "note: The motors' sides were derived from their names.\n" in printed
-
-
-def test_names_that_contradict_the_sticks_and_do_not_help(make_project: MakeProject) -> None:
-    """Three on the left and one on the right make no drivetrain."""
-    names = "self.left_1, self.left_2, self.left_3, self.right_1, self.a, self.b"
-    printed = create(
-        make_project(
-            {
-                "robot.py": re.sub("self.fl, self.rl.*self.r =", f"{names} =", BOTH_DRIVE)
-                .replace("(self.fr, self.rr, self.r)", "(motors[2], motors[3], motors[5])")
-                .replace("self.l, self.r)", "*motors[4:])")
-            }
-        )
-    )
-    assert printed.startswith("no drivetrain recognised\n")
-    assert "unlike the others: " in printed
-
-
-def test_mecanum_with_followers(make_project: MakeProject) -> None:
-    axes = {"sideways": 0, "turn": 2}
-    robot = MECANUM.format("fl", "rl", "fr", "rr", **axes).replace(
-        "        self.drive =",
-        """        self.f = [wpilib.Talon(channel) for channel in (13, 10, 12, 11)]
-        for motor, follower in zip(motors, self.f):
-            motor.addFollower(follower)
-        self.drive =""",
-    )
-    project = make_project({"robot.py": robot, "tests/test_ways.py": MECANUM_TEST.format(**axes)})
-    printed = create(project)
-    assert "mecanum drive\n  front left: PWM 3 (fl), PWM 13 (f[0])\n  rear left: PWM 0 (rl), PWM 10 (f[1])\n" in printed
-    run_tests(project)
-
-
 SWERVE = {
     "lists": """
         self.drive_motors = [wpilib.Talon(i) for i in range(4)]
@@ -963,21 +774,3 @@ class Module:
     assert "drivetrains.four_motor_swerve_drivetrain()" in printed
     assert "docs/physics.md" in printed
     assert "  left" not in printed
-
-
-def test_a_single_encoder_of_the_drivetrain(make_project: MakeProject) -> None:
-    printed = create(
-        make_project(
-            {
-                "robot.py": """
-                import wpilib
-
-                class MyRobot(wpilib.TimedRobot):
-                    def robotInit(self):
-                        self.left, self.right = wpilib.Talon(0), wpilib.Talon(1)
-                        self.encoder = wpilib.Encoder(0, 1)
-                """
-            }
-        )
-    )
-    assert "note: The encoder was assigned to the left side.\n" in printed

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import functools
-import io
 import json
 import os
 import re
@@ -23,13 +21,8 @@ from at_terminal import run_at_terminal
 from roborio import Proxy, Roborio, require_roborio
 from skips import missing_programs, require
 
-from pyfrc_core.deploy import session
-from pyfrc_core.deploy.progress import DeployProgress, Phase, UserInterface
 from pyfrc_core.deploy.robot_setup import image_problem
-from pyfrc_core.deploy.session import DeployOptions
-from pyfrc_core.deploy.target_connection import RobotChoice
 from pyfrc_core.deploy.targets.roborio import ROBORIO
-from pyfrc_core.project import find_project
 
 #: As the tool of today has it.
 START_COMMAND = (
@@ -193,32 +186,6 @@ def test_the_plan_is_shown_and_nothing_is_done(robot: Roborio, make_project) -> 
     assert "number 1" in code_on(robot)
 
 
-def test_in_place_overwrites_and_deletes_nothing(robot: Roborio, make_project) -> None:
-    project = make_project({**program(), "old.py": ""})
-    assert deploy(project, robot).code == 0
-    robot.said("we are number 1")
-    (project.path / "old.py").unlink()
-    project.write(program(2))
-    result = deploy(project, robot, "--in-place")
-    assert result.code == 0, result.output
-    assert "start" not in [line.split()[0] for line in result.stdout.splitlines()]
-    assert "number 2" in code_on(robot)
-    assert (robot.home / "py/old.py").exists()
-    assert "we are number 2" not in robot.said("we are number 1")
-
-
-def test_debugging_is_switched_on_and_off(robot: Roborio, make_project) -> None:
-    project = make_project(program())
-    assert deploy(project, robot, "--debug").code == 0
-    command = (robot.home / "robotDebugCommand").read_text()
-    assert " -O " not in command
-    assert " -v run" in command
-    assert robot.run("stat", "-c", "%U:%G", "/tmp/frcdebug").stdout == "lvuser:ni\n"
-    assert deploy(project, robot).code == 0
-    assert robot.run("test", "-e", "/tmp/frcdebug").returncode == 1
-    assert " -O " in (robot.home / "robotCommand").read_text()
-
-
 def test_for_tools_every_line_is_json(robot: Roborio, make_project) -> None:
     project = make_project({**program(), "tests/test_it.py": "def test_it(): print('words')\n"})
     result = project.run("deploy", "--robot", robot.where, "--json")
@@ -271,34 +238,6 @@ def test_a_first_program_that_dies_has_nothing_to_go_back_to(robot: Roborio, mak
     result = deploy(project, robot, "--auto-rollback")
     assert result.code == 3
     assert "There is no earlier program to go back to" in result.stderr
-
-
-def test_a_rollback_to_a_removed_release_is_refused(robot: Roborio, make_project) -> None:
-    project = make_project(program(1))
-    assert deploy(project, robot).code == 0
-    project.write(program(2, DIES))
-    assert deploy(project, robot).code == 3
-    robot.run("rm", "-r", "/home/lvuser/.pyfrc/releases/1", "/home/lvuser/.pyfrc/releases/1.json")
-    result = deploy(project, robot, "--auto-rollback")
-    assert result.code == 3
-    assert "There is no earlier program to go back to" in result.stderr
-
-
-def test_rolling_back_goes_to_the_release_before_or_the_one_named(robot: Roborio, make_project) -> None:
-    project = make_project({})
-    for number in (1, 2):
-        project.write(program(number))
-        assert deploy(project, robot).code == 0
-    result = deploy(project, robot, "--rollback")
-    assert result.code == 0, result.output
-    assert "release 1 again" in result.stdout
-    assert "number 1" in code_on(robot)
-    result = deploy(project, robot, "--rollback", "2")
-    assert result.code == 0, result.output
-    assert "number 2" in code_on(robot)
-    result = deploy(project, robot, "--rollback", "77")
-    assert result.code == 1
-    assert "there is no release 77" in result.stderr
 
 
 def test_the_program_of_another_tool_is_kept_for_a_rollback(robot: Roborio, make_project) -> None:
@@ -530,16 +469,6 @@ def test_a_changed_host_key_is_refused_until_it_is_accepted(robot: Roborio, make
     assert facts["host_key"].startswith("SHA256:")
 
 
-def test_a_directory_that_the_robot_s_key_cannot_be_written_to_is_not_called_a_bad_link(
-    robot: Roborio, make_project
-) -> None:
-    result = deploy(make_project({**program(), ".pyfrc": "no directory"}), robot)
-    assert result.code == 1
-    assert ".pyfrc: cannot write the file with the keys of robots: file exists" in result.stderr
-    assert "log in" not in result.stderr
-    assert "link" not in result.stderr
-
-
 def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio, make_project) -> None:
     project = make_project(program())
     # More than is sent before the robot has read any of it: with all of it sent, the robot may have switched.
@@ -551,12 +480,6 @@ def test_a_lost_connection_is_reported_and_the_next_deploy_works(robot: Roborio,
     assert "run the command again" in result.stderr
     assert "Traceback" not in result.output
     result = deploy(project, robot, "--large")
-    assert result.code == 0, result.output
-
-
-def test_a_program_may_print_what_this_terminal_cannot_show(robot: Roborio, make_project) -> None:
-    project = make_project(program(more='\nprint("\\u2192")\n'))
-    result = project.run("deploy", "--skip-tests", "--robot", robot.where, env={"PYTHONIOENCODING": "ascii"})
     assert result.code == 0, result.output
 
 
@@ -585,41 +508,6 @@ def test_ctrl_c_leaves_all_whole(as_json: bool, robot: Roborio, make_project) ->
     assert not (robot.home / "py/noise.bin").exists()
     assert deploy(project, robot, "--large").code == 0
     assert "number 2" in code_on(robot)
-
-
-class Holding(DeployProgress):
-    """Holds a deploy up in the middle of its contents, for something else to be done."""
-
-    def __init__(self, do: Callable[[], object]) -> None:
-        super().__init__(io.StringIO())
-        self._do = do
-
-    @contextlib.contextmanager
-    def _shown(self, phase: Phase, own_output: bool) -> Iterator[Phase]:
-        def bytes_done(done: int, total: int) -> None:
-            if done < total and not self.done:
-                self.done.append(self._do())
-
-        phase.bytes = bytes_done  # type: ignore[method-assign]
-        yield phase
-
-    @functools.cached_property
-    def done(self) -> list:
-        return []
-
-
-def test_of_two_simultaneous_deploys_one_is_refused(robot: Roborio, make_project) -> None:
-    project = make_project({**program(1), "noise.txt": os.urandom(120_000).hex()})
-    holding = Holding(lambda: deploy(project, robot))
-    options = DeployOptions(choice=RobotChoice(robot=robot.where), skip_tests=True)
-    session.deploy(find_project(project.path), options, UserInterface(holding))
-    (second,) = holding.done
-    assert second.code == 1
-    assert "is deploying to this robot right now" in second.stderr
-    assert "until that is done" in second.stderr
-    assert "number 1" in code_on(robot)
-    info = events(deploy(project, robot, "--json", command="deploy-info"))[-1]
-    assert [release["number"] for release in info["releases"]] == [1]
 
 
 def test_on_a_competition_field_nothing_is_deployed(make_project) -> None:
@@ -657,12 +545,6 @@ def test_without_a_robot_the_failed_attempts_are_listed(make_project) -> None:
     assert "127.0.0.1:1  by the command  refused" in result.stderr
     assert "refused: no virtual robot runs at port 1\n" in result.stderr
     assert "A virtual robot prints it. Start one in another terminal: pyfrc virtual-robot" in result.stderr
-
-
-def test_without_a_project_the_error_suggests_the_next_command(make_project) -> None:
-    result = make_project({}).run("deploy", "--robot", "127.0.0.1:1")
-    assert result.code == 2
-    assert "pyfrc init" in result.stderr
 
 
 @pytest.mark.parametrize(

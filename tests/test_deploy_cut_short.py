@@ -168,17 +168,6 @@ def test_where_nothing_is_half_done_ctrl_c_is_just_that(
         interrupt_after(do, agent, project)
 
 
-def test_the_remedies_help(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
-    """A rollback to the current release starts it."""
-    robot.deploy(agents, project)
-    agent = robot.start(agents)
-    with contextlib.closing(agent):
-        assert agent.rollback(1).release.number == 1
-        agent.restart()
-        assert agent.deploy(project, REQUEST).unchanged
-        agent.restart()
-
-
 # -- the lock ----------------------------------------------------------------------------------------------------------
 
 

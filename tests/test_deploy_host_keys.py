@@ -267,13 +267,6 @@ def test_a_file_from_before_when_each_address_had_its_line(address: Address, pin
     assert (tmp_path / KNOWN_HOSTS).read_text().startswith("# ours\n" + line(pinned.host, ONE))
 
 
-def test_an_address_by_the_driver_station_in_a_file_from_before(tmp_path: Path) -> None:
-    (tmp_path / KNOWN_HOSTS).parent.mkdir()
-    (tmp_path / KNOWN_HOSTS).write_text(line(REPORTED.host, ONE))
-    assert at(tmp_path, REPORTED).check(ONE).new_for is None
-    refused(at(tmp_path, REPORTED), UNKNOWN)
-
-
 def test_a_directory_in_place_of_the_file(tmp_path: Path) -> None:
     """Found before a command connects."""
     (tmp_path / KNOWN_HOSTS).mkdir(parents=True)

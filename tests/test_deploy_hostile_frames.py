@@ -195,21 +195,6 @@ def test_a_frame_that_is_none(name: str) -> None:
     assert peak < 40_000_000
 
 
-@pytest.mark.parametrize(
-    ("frame", "what"),
-    [
-        ("deep JSON", "values are nested too deeply in a frame"),
-        ("a huge number", "a number in a frame has too many digits"),
-        ("a million lists", "a frame has too many values"),
-        ("millions of lists", "a frame is too long, or is cut short"),
-        ("zlib without an end", "a frame is too long, or is cut short"),
-    ],
-)
-def test_what_is_wrong_with_a_frame(frame: str, what: str) -> None:
-    message = protocol_error(FakeRobot(frame_of(frame)))
-    assert message == f"the robot sent data that is not from pyfrc's agent: {what}"
-
-
 def test_the_longest_real_response_is_read(project: Manifest) -> None:
     """The changes of a project with 50,000 files, with as many commas in their names."""
     paths = [f"deploy/trajectories, and choreo/{number:05}.traj" for number in range(50_000)]
@@ -317,12 +302,6 @@ def test_contents_that_were_not_offered(need: dict[str, Any], project: Manifest)
     assert "'need'" in message
 
 
-@pytest.mark.parametrize("phase", [None, 1, [], {"a": "b"}])
-def test_a_phase_that_is_none(phase: object, project: Manifest) -> None:
-    reply = wire.message_frame({"need": []}) + wire.message_frame({"phase": phase})
-    assert "'phase'" in protocol_error(FakeRobot(HELLO, reply), lambda robot: robot.deploy(project, REQUEST))
-
-
 def test_a_phase_that_is_not_known_is_one_of_a_later_agent(project: Manifest) -> None:
     reply = b"".join(map(wire.message_frame, ({"need": []}, {"phase": "\x1b[2Jpolish"}, {"done": DEPLOYED})))
     phases: list[str] = []
@@ -365,18 +344,6 @@ def test_a_duplicate_response(project: Manifest) -> None:
 def test_other_responses_with_an_invalid_field(op: Callable[[AgentClient], object], answer: object) -> None:
     message = protocol_error(FakeRobot(HELLO, wire.message_frame({"done": answer})), op)
     assert message.startswith("the robot sent data that is not from pyfrc's agent: ")
-
-
-@pytest.mark.parametrize("state", [None, [], {}, {"seconds": "long"}, {"seconds": True}])
-def test_a_state_that_is_none(state: object) -> None:
-    message = protocol_error(FakeRobot(HELLO, wire.message_frame({"watching": state})), lambda robot: robot.watch(1.0))
-    assert message.startswith("the robot sent data that is not from pyfrc's agent: ")
-
-
-@pytest.mark.parametrize("output", [None, 1, ["x"]])
-def test_output_that_is_no_text(output: object) -> None:
-    message = protocol_error(FakeRobot(HELLO, wire.message_frame({"output": output})), lambda robot: robot.watch(1.0))
-    assert "'output'" in message
 
 
 # -- without end -------------------------------------------------------------------------------------------------------

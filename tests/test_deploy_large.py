@@ -54,23 +54,6 @@ def test_one_keep_alive_message_per_second_has_the_progress() -> None:
     assert signs.sent == [("check", 35, 100), ("check", 69, 100)]
 
 
-def test_the_first_sign_is_due_a_second_after_the_request() -> None:
-    signs = Signs()
-    signs.now = 3600.0
-    signs.activity.reset()
-    signs.activity.begin("check", 1)
-    signs.activity.step()
-    assert signs.sent == []
-
-
-def test_a_large_file_gives_signs_before_it_is_done() -> None:
-    signs = Signs()
-    signs.activity.begin("check", 2)
-    signs.now += 1.0
-    signs.activity.step(0)
-    assert signs.sent == [("check", 0, 2)]
-
-
 def test_the_system_may_take_its_time() -> None:
     signs, written = Signs(), threading.Event()
     activity = Activity(signs._say, lambda: signs.now, pause=0.001)
@@ -92,11 +75,6 @@ def test_the_system_may_take_its_time() -> None:
     activity.begin("sync")
     assert activity.wait_for(syncfs, 2.0) == "written in 2.0 s"
     assert signs.sent[:2] == [("sync", 0, 0)] * 2
-
-
-def test_what_fails_meanwhile_fails_here() -> None:
-    with pytest.raises(FileNotFoundError):
-        Signs().activity.wait_for(Path("/nowhere/at/all").stat)
 
 
 def test_a_laptop_that_goes_meanwhile_leaves_nothing_running() -> None:
@@ -198,14 +176,6 @@ def test_the_work_is_linear_in_the_files_of_a_directory(robot: LocalRobot, agent
         assert many - some <= 2.2 * (some - few) + 200, counts
 
 
-def test_the_same_work_has_the_same_count(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
-    """However busy the machine is: the comparisons of counts rely on it."""
-    project = large_project(tmp_path / "project", 40)
-    robots = [robot.copy(robot.root.with_name(str(number))) for number in range(4)]
-    counts = {calls_of(there, agents, lambda agent: agent.deploy(project, REQUEST)) for there in robots}
-    assert len(counts) == 1, counts
-
-
 def test_an_unchanged_file_is_read_once(robot: LocalRobot, agents: Agents, tmp_path: Path) -> None:
     """Only the program in place is looked through, where it has all: earlier releases cost nothing."""
     project = large_project(tmp_path / "project", 100)
@@ -294,26 +264,6 @@ def test_a_compiler_that_the_system_kills_lets_no_invalid_program_through(
         with pytest.raises(Refusal, match=r"robot\.py:1"):
             compiler.finish(Signs().activity)
     assert [is_compiled(tmp_path / name) for name in names] == [True, not again, False]
-
-
-def test_a_source_that_is_not_valid_is_known_whatever_is_killed_behind_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    compile_one = Compiler._compile
-
-    def killed(self: Compiler, name: str) -> None:
-        if name == "b.py":
-            os.kill(os.getpid(), signal.SIGKILL)
-        compile_one(self, name)
-
-    monkeypatch.setattr(Compiler, "_compile", killed)
-    (tmp_path / "robot.py").write_text("x = = 1\n")
-    (tmp_path / "b.py").write_text("x = 1\n")
-    with Compiler(tmp_path, ["robot.py", "b.py"], False, ["robot.py"]) as compiler:
-        compiler.add_next()
-        compiler.add_next()
-        with pytest.raises(Refusal, match=r"robot\.py:1"):
-            compiler.finish(Signs().activity)
 
 
 COMPILING = """

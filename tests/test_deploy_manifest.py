@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded, private_files
-from pyfrc_core.file_hash import hash_file
 from pyfrc_core.passes.contents import read_contents
 from pyfrc_core.project import Project
 
@@ -249,14 +248,3 @@ def test_without_gitignore_nothing_is_a_secret(tmp_path: Path) -> None:
         assert private_files(tmp_path) == {}, "that of another project above"
     finally:
         (tmp_path.parent / ".gitignore").unlink()
-
-
-@posix
-def test_a_file_that_becomes_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
-    make(tmp_path, "robot.py", "a.txt")
-    hashed = hash_file(tmp_path / "a.txt")
-    (tmp_path / "a.txt").unlink()
-    os.mkfifo(tmp_path / "a.txt")
-    with pytest.raises(OSError, match="this is a pipe, a socket or a device"):
-        hash_file(tmp_path / "a.txt")
-    assert hashed == (hashlib.sha256(b"x").hexdigest(), 1)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -18,10 +17,8 @@ from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import Agents, LocalRobot, project_of
 
 from pyfrc_core.config.robotpy import RobotPackages, load_robot_packages
-from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.facts import RobotFacts
-from pyfrc_core.deploy.progress import DeployProgress, Questions, UserInterface
-from pyfrc_core.deploy.robot_packages import ImportSearch, PackageProblem, check_packages, unfit_packages
+from pyfrc_core.deploy.robot_packages import ImportSearch, PackageProblem, unfit_packages
 from pyfrc_core.deploy.robot_setup import VIRTUAL_IMAGE
 from pyfrc_core.errors import SettingsError
 
@@ -285,29 +282,6 @@ def test_no_table_asks_for_nothing(tmp_path: Path) -> None:
     assert load_robot_packages(tmp_path / "pyproject.toml") == NOTHING
 
 
-# --- what is done about it
-
-
-@pytest.mark.parametrize("agrees", [True, False, None])
-def test_the_user_is_asked(facts: RobotFacts, tmp_path: Path, agrees: bool | None) -> None:
-    search = ImportSearch(project_of(tmp_path, {"robot.py": "import commands2\n"}), tmp_path, "robot.py")
-    questions: list[str] = []
-
-    def answer(question: str) -> bool:
-        questions.append(question)
-        return bool(agrees)
-
-    ask = None if agrees is None else Questions(lambda question: "", answer)
-    talk = UserInterface(DeployProgress(io.StringIO()), ask)
-    robot = dataclasses.replace(facts, missing_modules=("commands2",))
-    if agrees:
-        check_packages(search, NOTHING, robot, talk)
-    else:
-        with pytest.raises(RefusedError, match=r"not deployed: robot.py:1: import commands2: .*"):
-            check_packages(search, NOTHING, robot, talk)
-    assert len(questions) == (agrees is not None)
-
-
 # --- on a look-alike
 
 
@@ -358,16 +332,6 @@ def test_deploying_all_the_same(roborio: Roborio, make_project) -> None:
     done = deploy(project, roborio, "-n")
     assert done.code == 3, done.output
     assert "warning: robot.py:2: import commands2" in done.stdout
-
-
-def test_versions_that_do_not_fit(roborio: Roborio, make_project) -> None:
-    settings = "[tool.robotpy]\nrobotpy_version = '2026.1.0'\ncomponents = ['apriltag']\n"
-    project = make_project({"robot.py": ROBOT.format(imports=""), "pyproject.toml": settings})
-    refused = deploy(project, roborio)
-    assert refused.code == 1
-    assert f"pyproject.toml:2: robotpy_version is 2026.1.0, but the robot has wpilib {OURS}" in refused.output
-    assert "pyproject.toml:3: components has apriltag, but the robot has no package robotpy-apriltag" in refused.output
-    assert deploy(project, roborio, "-n").code == 0
 
 
 def test_the_robots_python_is_the_seasons(roborio: Roborio, make_project) -> None:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import random
-import re
 from collections.abc import Generator
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -17,7 +14,7 @@ from roborio.ssh import SshConnection
 
 from pyfrc_core.deploy.agent.disk import free_bytes
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest, Watched
-from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError, RefusedError
+from pyfrc_core.deploy.errors import ConnectionFailedError, RefusedError
 from pyfrc_core.deploy.manifest import Manifest
 
 pytestmark = pytest.mark.bare
@@ -119,61 +116,6 @@ def test_a_program_that_crashes_immediately_is_reported_with_its_traceback(
         assert watched.traceback is None
 
 
-def test_the_robot_starts_a_program_that_has_ended_again_at_once(tmp_path: Path) -> None:
-    require_roborio()
-    body = """\
-def robotInit(self):
-        import os, pathlib
-        starts = pathlib.Path(__file__).with_name("starts")
-        starts.write_text(starts.read_text() + "x" if starts.exists() else "x")
-        print(f"start {len(starts.read_text())} in process {os.getpid()}")
-        raise RuntimeError
-"""
-    with Roborio() as roborio:
-        deploy(roborio, program(tmp_path, "crashing", body))
-        roborio.power_off()
-        roborio.power_on()
-        assert len(set(re.findall(r"in process \d+", roborio.said("start 5 in process ")))) >= 4
-
-
-def test_a_program_that_does_not_say_that_it_has_started(roborio: Roborio, tmp_path: Path) -> None:
-    """Nor does a console without a Driver Station: that it runs is seen all the same."""
-    body = "def startCompetition(self):\n        import time\n        time.sleep(1000)"
-    with agent(roborio) as robot:
-        robot.deploy(program(tmp_path, "quiet", body), DeployRequest("robot.py", {}))
-        robot.restart()
-        roborio.said("this is quiet")  # the robot may take its time until then
-        watched = robot.watch(1.5)
-        assert (watched.alive, watched.started) == (True, False)
-
-
-def test_what_a_running_program_writes_survives(roborio: Roborio, tmp_path: Path) -> None:
-    """It writes all the time, into one file that stays open and one that is replaced each time."""
-    body = """\
-def robotInit(self):
-        import pathlib
-        self.here = pathlib.Path(__file__).parent
-        self.log = (self.here / "open.log").open("a")
-        self.count = int((self.here / "count").read_text()) if (self.here / "count").exists() else 0
-
-    def robotPeriodic(self):
-        self.count += 1
-        self.log.write(f"{self.count}\\n")
-        self.log.flush()
-        (self.here / "count.new").write_text(str(self.count))
-        (self.here / "count.new").replace(self.here / "count")
-"""
-    with agent(roborio) as robot:
-        for name in ("one", "two", "three"):
-            robot.deploy(program(tmp_path, name, body), DeployRequest("robot.py", {}))
-            assert started(robot).started
-    roborio.power_off()
-    numbers = [int(line) for line in (roborio.home / "py/open.log").read_text().split()]
-    assert numbers[0] == 1
-    # Each program starts where the last had got to: no count was lost, at most one of them twice.
-    assert all(after - before in (0, 1) for before, after in pairwise(numbers)), numbers
-
-
 @pytest.mark.parametrize("phase", ["start", "send", "switch"])
 def test_power_pulled_in_the_middle(roborio: Roborio, tmp_path: Path, phase: str) -> None:
     deploy(roborio, program(tmp_path, "old"))
@@ -196,34 +138,6 @@ def test_power_pulled_in_the_middle(roborio: Roborio, tmp_path: Path, phase: str
     with agent(roborio) as robot:
         robot.deploy(new, DeployRequest("robot.py", {}))
         assert "this is new" in started(robot).output
-
-
-@pytest.mark.parametrize("way", ["to", "from"])
-def test_cut_anywhere_on_the_wire(roborio: Roborio, tmp_path: Path, way: str) -> None:
-    """With SSH's own bytes around it; test_deploy_cuts.py has hundreds of places between ours."""
-    disk = LocalRobot(roborio.disk)
-
-    def another(number: int) -> Manifest:
-        """A program of the same size as the others, whose data the robot has not seen yet, and cannot be compressed."""
-        return program(tmp_path, f"number {number}", **{"data.bin": random.Random(number).randbytes(10_000)})
-
-    deploy(roborio, another(10))
-    roborio.wait_for_end_of_deploy()
-    with Proxy((roborio.host, roborio.port)) as whole:
-        deploy(whole, another(11))
-    total = whole.bytes_to_robot if way == "to" else whole.bytes_from_robot
-    for number in range(1, 9):
-        old, new = disk.startable(), another(20 + number)
-        cut = {f"cut_{way}_robot": total * number // 9}
-        roborio.wait_for_end_of_deploy()
-        with Proxy((roborio.host, roborio.port), **cut) as proxy, contextlib.suppress(DeployError):
-            deploy(proxy, new)
-        assert proxy.has_cut
-        roborio.wait_for_end_of_deploy()
-        after_cut = disk.startable()
-        deploy(roborio, new)
-        assert after_cut in (old, disk.startable())
-        assert disk.startable() == {entry.path: entry.file.read_bytes() for entry in new.entries}
 
 
 def test_a_full_disk(tmp_path: Path) -> None:
@@ -258,17 +172,6 @@ def test_a_full_disk(tmp_path: Path) -> None:
             assert "this is small" in started(robot).output
 
 
-def test_old_releases_make_room(tmp_path: Path) -> None:
-    require_roborio()
-    with Roborio(disk_size="3m") as roborio:
-        for name in ("one", "two", "three", "four"):
-            deploy(roborio, program(tmp_path, name, **{"data.bin": name.encode() * 250_000}))
-        with agent(roborio) as robot:
-            assert robot.facts.current == 4
-            assert len(robot.facts.releases) < 3
-            assert "this is four" in started(robot).output
-
-
 @pytest.mark.parametrize("releases", [2, 3])
 def test_with_no_byte_free(releases: int, tmp_path: Path) -> None:
     """Not even the name of the computer that holds the lock can be written."""
@@ -298,43 +201,6 @@ def test_with_no_byte_free(releases: int, tmp_path: Path) -> None:
         assert not (roborio.home / ".pyfrc/releases").exists()
 
 
-def test_two_at_once(roborio: Roborio, tmp_path: Path) -> None:
-    project = program(tmp_path, "first", **{"data.bin": random.Random(1).randbytes(1_000_000)})
-    with agent(roborio) as first, agent(roborio) as second:
-        refusals = []
-
-        def meanwhile(phase: str, done: int, total: int) -> None:
-            if done < total and not refusals:
-                with pytest.raises(RefusedError, match="is deploying to this robot right now") as caught:
-                    second.deploy(project, DeployRequest("robot.py", {"by": "second"}))
-                refusals.append(caught.value)
-
-        first.deploy(project, DeployRequest("robot.py", {"by": "first"}), meanwhile)
-        assert len(refusals) == 1
-    assert json.loads((roborio.home / "py/deploy.json").read_text()) == {"by": "first"}
-
-
-def test_the_tool_of_today_deploys_after_us(roborio: Roborio, tmp_path: Path) -> None:
-    deploy(roborio, program(tmp_path, "ours"))
-    with SshConnection(roborio.host, roborio.port) as connection:
-        said = connection.run(
-            "mkdir py_new && echo 'print(\"theirs\")' > py_new/robot.py && [ -d /home/lvuser/py ] && "
-            "rm -rf /home/lvuser/py; mv /home/lvuser/py_new /home/lvuser/py && ls -l /home/lvuser/py"
-        )
-    assert said.endswith("robot.py\n")
-    assert (roborio.home / ".pyfrc/releases/1/robot.py").exists()
-    assert deploy(roborio, program(tmp_path, "again")).taken == 2
-
-
-def test_undeploy(roborio: Roborio, tmp_path: Path) -> None:
-    with agent(roborio) as robot:
-        robot.deploy(program(tmp_path, "first"), DeployRequest("robot.py", {}))
-        started(robot)
-        assert robot.undeploy()
-        assert not robot.info().running
-    assert list(roborio.home.iterdir()) == []
-
-
 def test_a_kill_script_that_cannot_stop_the_program(roborio: Roborio, tmp_path: Path) -> None:
     kill_script = "usr/local/frc/bin/frcKillRobot.sh"
     first, second = (program(tmp_path, name) for name in ("first", "second"))
@@ -353,19 +219,3 @@ def test_a_kill_script_that_cannot_stop_the_program(roborio: Roborio, tmp_path: 
         (roborio.disk / kill_script).unlink()
         with pytest.raises(RefusedError, match=r"there is no .*frcKillRobot.sh on the robot"):
             robot.restart()
-
-
-def test_no_python_on_the_robot() -> None:
-    require_roborio()
-    with (
-        Roborio(python=None) as roborio,
-        pytest.raises(RefusedError, match=r"no Python on the robot.*\n.*python -m robotpy sync"),
-    ):
-        deploy(roborio, Manifest(()))
-
-
-def test_what_is_not_on_the_robot() -> None:
-    require_roborio()
-    with Roborio(image=None, wpilib=None) as roborio, agent(roborio) as robot:
-        assert robot.facts.wpilib is None
-        assert robot.facts.not_controller == "there is no roboRIO image on it"

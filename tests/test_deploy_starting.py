@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import io
 import os
 import re
 import signal
 import subprocess
 import sys
-import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -19,9 +17,7 @@ from roborio.fixtures import local_robot  # noqa: F401 - `robot`
 from roborio.local import ROBOT_PY, Agents, Cut, LocalRobot, project_of
 
 from pyfrc_core.deploy import recovery_hints
-from pyfrc_core.deploy.agent.host import RealRobot, age_of
-from pyfrc_core.deploy.agent.program import process_state
-from pyfrc_core.deploy.agent.robot_paths import RobotPaths
+from pyfrc_core.deploy.agent.host import age_of
 from pyfrc_core.deploy.agent.start_monitor import ENDED, RUNNING, STARTING, UNHEARD
 from pyfrc_core.deploy.agent_client import AgentClient
 from pyfrc_core.deploy.errors import (
@@ -37,9 +33,7 @@ from pyfrc_core.deploy.facts import DeployRequest, Release, RolledBack, StartSta
 from pyfrc_core.deploy.manifest import Manifest
 from pyfrc_core.deploy.progress import DeployProgress, Questions, UserInterface
 from pyfrc_core.deploy.recovery_hints import RecoveryHint, explain_interruption
-from pyfrc_core.deploy.responses import Fields, ResponseError
 from pyfrc_core.deploy.starting import go_back, start
-from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 REQUEST = DeployRequest("robot.py", {})
 TRACEBACK = "Traceback (most recent call last):\n  File robot.py\nRuntimeError: no such gyro\n"
@@ -222,32 +216,6 @@ def test_a_failure_right_before_the_change(robot: LocalRobot, agents: Agents, pr
     assert not (robot.home / "py").exists()
 
 
-def test_old_releases_that_cannot_be_removed_do_not_prevent_a_deploy(
-    robot: LocalRobot, project: Manifest, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from pyfrc_core.deploy.agent import releases, transaction, wire
-    from pyfrc_core.deploy.agent.activity import Activity
-    from pyfrc_core.deploy.agent.robot_paths import RobotPaths
-
-    def prune(self: releases.Releases, kept: int = 3) -> None:
-        raise OSError(errno.EIO, "Input/output error")
-
-    monkeypatch.setattr(releases.Releases, "prune", prune)
-    nothing = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"  # SHA-256
-    sent = wire.frame(wire.CONTENT, zlib.compress(b""))
-    request = {"main": "robot.py", "files": [["robot.py", 0, nothing, False]]}
-    reading, writing = os.pipe()
-    os.write(writing, sent)
-    os.close(writing)
-    with os.fdopen(reading, "rb", buffering=0) as source:
-        deployed = transaction.Deploy(
-            releases.Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None)),
-            wire.Wire(source, io.BytesIO()),
-            request,
-        ).run()
-    assert deployed["release"] == 1
-
-
 def test_a_link_that_is_lost_from_the_change_on(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
     def lose(phase: str, done: int, total: int) -> None:
         if phase == "switch":
@@ -385,20 +353,6 @@ def test_a_process_that_the_kill_script_leaves_in_the_background_is_not_waited_f
     os.kill(process, signal.SIGKILL)  # it lived
 
 
-def test_what_can_be_seen_of_a_process_from_outside() -> None:
-    if not Path("/proc/self/stat").exists():
-        pytest.skip("what is seen of a process is in /proc")
-    seen = process_state(RealRobot(RobotPaths(ROBORIO.layout)), os.getpid())
-    assert seen["cpu"] > 0
-    assert not seen["network_tables"]
-    state = StartState.of(Fields({"seconds": 1.0, "age": 1.0, "heard": True, "seen": True, **seen}))
-    assert state.cpu == seen["cpu"]
-    with subprocess.Popen([sys.executable, "-c", ""]) as ended:
-        ended.wait()
-    assert process_state(RealRobot(RobotPaths(ROBORIO.layout)), ended.pid) == {}
-    assert age_of([ended.pid]) is None
-
-
 def test_a_program_is_as_old_as_its_oldest_process() -> None:
     if not Path("/proc/uptime").exists():
         pytest.skip("when a process began is in /proc")
@@ -409,9 +363,3 @@ def test_a_program_is_as_old_as_its_oldest_process() -> None:
     assert own_age is not None
     assert age is not None
     assert child_age <= own_age <= age
-
-
-@pytest.mark.parametrize("fields", [{"cpu": "much"}, {"age": [1]}])
-def test_an_invalid_state_is_refused(fields: dict[str, object]) -> None:
-    with pytest.raises(ResponseError):
-        StartState.of(Fields({"seconds": 1.0, "age": 1.0, "heard": True, "seen": True, **fields}))

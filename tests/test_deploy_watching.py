@@ -90,47 +90,9 @@ def judge(program: Program, *, turn: float = 0.1, script: float = 0.05, gap: flo
     raise AssertionError
 
 
-@pytest.mark.parametrize("console", [True, False], ids=["console", "silent"])
-@pytest.mark.parametrize("crashes", [0.4, 1.0, 4.0, 6.0, 16.0])
-@pytest.mark.parametrize("pause", [0.0, 1.0, 1000.0], ids=["restarted", "restarted later", "never restarted"])
-def test_a_crash_in_robot_init_is_seen(crashes: float, console: bool, pause: float) -> None:
-    judged = judge(Program(crashes=crashes, console=console, pause=pause))
-    assert judged.verdict == ENDED
-    assert judged.seconds < 2 * crashes + pause % 1000 + 2.6 or pause == 1000
-
-
-@pytest.mark.parametrize("starts", [0.2, 5.0, 20.0, 55.0])
-def test_a_program_runs_when_it_has_reported_its_start_and_lives_on(starts: float) -> None:
-    judged = judge(Program(starts=starts))
-    assert judged.verdict == RUNNING
-    assert starts < judged.seconds < starts + 2.5
-
-
 def test_a_slow_start_is_neither_running_nor_ended() -> None:
     assert judge(Program(starts=65.0)) == Judged(STARTING, pytest.approx(60.0, abs=0.2))
     assert judge(Program()).verdict == STARTING
-
-
-@pytest.mark.parametrize("starts", [0.2, 5.0, 30.0])
-def test_with_a_silent_console_the_process_alone_is_judged(starts: float) -> None:
-    assert judge(Program(starts=starts, console=False)) == Judged(UNHEARD, pytest.approx(20.0, abs=0.2))
-
-
-@pytest.mark.parametrize("starts", [0.3, 8.0])
-@pytest.mark.parametrize("script", [0.05, 2.0])
-@pytest.mark.parametrize("after", [0.02, 0.5])
-def test_a_program_that_ends_right_after_its_start_has_not_run(starts: float, after: float, script: float) -> None:
-    assert judge(Program(starts=starts, crashes=starts + after), script=script).verdict == ENDED
-
-
-def test_on_a_slow_robot_the_first_loop_has_longer_to_crash() -> None:
-    assert judge(Program(starts=10.0, crashes=11.8)).verdict == ENDED
-
-
-@pytest.mark.parametrize(("catches", "starts"), [(0.3, 0.6), (0.9, 0.6), (3.0, None), (1.0, 20.0)])
-def test_a_traceback_that_the_process_survives_is_not_its_end(catches: float, starts: float | None) -> None:
-    judged = judge(Program(catches=catches, starts=starts))
-    assert judged.verdict == (STARTING if starts is None else RUNNING)
 
 
 def feed(

@@ -44,7 +44,7 @@ def copy_of(
 ) -> Any:
     """A project with one of the sample robots, without its tests, and with short matches."""
     project = make_project({"pyproject.toml": SHORT_MATCHES.format(seconds, settings)})
-    project.copy(ROBOTS / robot, "tests", "crash.jsonl", "pyproject.toml")
+    project.copy(ROBOTS / robot, "tests", "pyproject.toml")
     return project
 
 

@@ -375,11 +375,6 @@ def test_the_stack_of_a_crash_ends_with_the_users_code(report: Result) -> None:
     assert "_pytest" not in block
 
 
-def test_nothing_is_printed_that_the_tests_did_not_print(report: Result) -> None:
-    assert "Warning: " not in report.stdout.replace("UserWarning: ", "")
-    assert report.stderr == ""
-
-
 def test_warnings_are_in_the_summary_once(report: Result, everything: RobotProject) -> None:
     summary = report.stdout.partition("warnings summary")[2].partition("Docs:")[0]
     assert f"{everything.place('tests/test_a_robot.py', 'the battery is low')}: UserWarning: the battery" in summary
@@ -393,11 +388,6 @@ def test_reasons_of_skips_and_expected_failures_are_told(report: Result) -> None
     assert re.search(r"SKIPPED \[1\] tests.test_a_robot.py:\d+: not ready", summary)
     assert "XFAIL tests/test_a_robot.py::test_expected_to_fail - the arm is missing" in summary
     assert "XPASS tests/test_a_robot.py::test_unexpectedly_passes - the arm was missing" in summary
-
-
-def test_durations_are_told(report: Result) -> None:
-    listed = report.stdout.partition("slowest 3 durations")[2].partition("short test summary")[0]
-    assert len(re.findall(r"^\d+\.\d+s (?:setup|call|teardown) +tests", listed, re.MULTILINE)) == 3
 
 
 def test_the_junit_file_has_every_test_the_crashed_one_too(report: Result, everything: RobotProject) -> None:
@@ -464,13 +454,6 @@ def test_x_stops_at_the_first_failure(few: RobotProject, jobs: str) -> None:
     assert "stopping after 1 failures" in result.stdout
 
 
-def test_maxfail_stops_after_so_many(few: RobotProject) -> None:
-    result = few.run("test", "--", "-v", "--maxfail=2")
-    assert result.code == 1
-    assert few_outcomes(result) == [*ONE_AND_TWO, ("test_three", "FAILED")]
-    assert "stopping after 2 failures" in result.stdout
-
-
 def test_k_selects_and_a_plugin_joins_in(few: RobotProject) -> None:
     result = few.run("test", "--", "-v", "-k", "one or four", "-p", "announcer")
     assert result.code == 0, result.output
@@ -485,12 +468,6 @@ def test_s_shows_what_tests_print(few: RobotProject) -> None:
     assert result.code == 0, result.output
     assert "one speaks" in result.stdout
     assert "1 passed" in result.stdout
-
-
-def test_a_named_test_runs_alone(few: RobotProject) -> None:
-    result = few.run("test", "--", "-v", "tests/test_few.py::test_four")
-    assert result.code == 0, result.output
-    assert few_outcomes(result) == [("test_four", "PASSED")]
 
 
 def test_no_selected_test_is_exit_code_5(few: RobotProject) -> None:
@@ -830,24 +807,6 @@ def test_coverage_counts_lines_of_the_robot_wherever_they_run(
     assert covered(result) == {"robot.py": "100%", "arm.py": "100%", "TOTAL": "100%"}
     assert list(project.path.rglob(".coverage*")) == []
     assert [path.name for path in project.temporary.iterdir() if not path.name.startswith("pytest-of-")] == []
-
-
-def test_coverage_below_what_is_asked_for_fails_and_names_the_lines(make_project: MakeProject) -> None:
-    project = make_project({**MEASURED, "arm.py": ARM + "\n    def unused():\n        return 1\n"})
-    result = project.run(
-        "test", "--fail-under", "100", "--coverage-xml", "reports.xml", "--coverage-html", "pages", "-j", "1"
-    )
-    assert result.code == 1, result.output
-    assert "2 passed" in result.stdout
-    assert "is less than the required 100 %" in result.output
-    assert re.search(rf"^arm\.py .* {project.line('arm.py', 'return 1')}$", result.stdout, re.MULTILINE)
-    assert (project.path / "pages" / "index.html").is_file()
-    files = ElementTree.parse(project.path / "reports.xml").getroot().iter("class")
-    assert sorted(file.attrib["filename"] for file in files) == ["arm.py", "robot.py"]
-    assert list(project.path.rglob(".coverage*")) == []
-
-    enough = project.run("test", "--fail-under", "50", "-j", "1")
-    assert enough.code == 0, enough.output
 
 
 def test_the_longest_test_starts_first_the_next_time_and_reports_stay_in_order(make_project) -> None:

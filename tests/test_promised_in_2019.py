@@ -8,7 +8,6 @@ import math
 import pickle
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import pint
@@ -21,11 +20,9 @@ from sim_robots import run
 from pyfrc.physics import drivetrains, motion, motor_cfgs, tankmodel
 from pyfrc.physics.units import units
 from pyfrc.physics.visionsim import VisionSim, VisionSimTarget
-from pyfrc.sim.field.user_renderer import UserRenderer
 from pyfrc_core.hal import HalData
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.engine.scene import Line, Pose, Text
 
 
 @pytest.fixture
@@ -69,15 +66,6 @@ def test_what_python_does_with_a_dict_finds_the_live_values(tree: HalData) -> No
         assert each["joysticks"][0]["axes"][:2] == [0.0, 0.5], number
         assert each["custom"] == {"count": 3}, number
         assert len(each["pwm"]) == 20, number
-
-
-def test_copies_do_not_change_with_the_robot(tree: HalData) -> None:
-    axes = tree["joysticks"][0]["axes"]
-    deep, pickled, flat = copy.deepcopy(tree), pickle.loads(pickle.dumps(axes)), list(axes)
-    axes[1] = 0.5
-    assert deep["joysticks"][0]["axes"][1] == pickled[1] == flat[1] == 0.0
-    assert type(deep["joysticks"]) is type(pickled) is list
-    assert type(deep["joysticks"][0]) is dict
 
 
 def test_a_dict_of_hal_data_is_compared_by_its_values(tree: HalData) -> None:
@@ -352,39 +340,6 @@ def test_a_vision_target_of_ones_own() -> None:
     assert sim.compute(0.0, 4, 10, 0.0) is None
     assert sim.compute(1.0, 4, 10, 0.0) == [(1, 0.0, 0.0, 6.0)]
     assert sim.get_immediate_distance() == 7.0
-
-
-# -- drawing ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("angle", "offset", "start"),
-    [
-        (0, (-1, 0), (10, 9)),  # the documented example: one foot to the left of a robot that faces +x
-        (0, (0, 2), (12, 10)),
-        (90, (1, 0), (9, 10)),
-        (90, (0, 1), (10, 11)),
-    ],
-)
-def test_an_offset_on_the_robot_is_across_and_along(angle: float, offset: Any, start: Any) -> None:
-    @dataclass
-    class Segment:
-        x: float
-        y: float
-        dt: float = 0.02
-
-    renderer = UserRenderer(lambda: Pose(10, 10, math.radians(angle)))
-    renderer.draw_pathfinder_trajectory([Segment(0, 0), Segment(1, 0)], offset=offset)
-    renderer.draw_line([(0, 0), (2, 0)], robot_coordinates=offset)
-    renderer.draw_text("here", (0, 0), robot_coordinates=offset)
-    path, line, text = renderer.drawings()
-    forward = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-    assert isinstance(path, Line)
-    assert isinstance(line, Line)
-    assert isinstance(text, Text)
-    assert path.points[0] == line.points[0] == (text.x, text.y) == pytest.approx(start)
-    assert path.points[1] == pytest.approx((start[0] + forward[0], start[1] + forward[1]))
-    assert line.points[1] == pytest.approx((start[0] + 2 * forward[0], start[1] + 2 * forward[1]))
 
 
 # -- in a project ----------------------------------------------------------------------------------------------------

@@ -323,57 +323,6 @@ def test_threads_locks_queues_events_timers_and_pools_keep_robot_time(make_proje
     )
 
 
-def test_notifiers(make_project) -> None:
-    passes(
-        make_project,
-        """
-        def test_single_periodic_stop_and_dropped(control, robot):
-            control.run_test(lambda tm: tm < 0.5)
-            assert robot.calls["periodic"] == [0.05, 0.1, 0.15, 0.2]
-            assert robot.calls["single"] == [0.033]
-            assert robot.calls["slow"] == [0.1, 0.2, 0.3, 0.4]
-            assert robot.calls["dropped"] == []
-            assert robot.calls["hal"] == [0.07, 0.14]
-        """,
-        """
-        import threading
-        import hal, wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.calls = {name: [] for name in ("periodic", "single", "slow", "dropped", "hal")}
-                self.periodic = wpilib.Notifier(lambda: self.call("periodic"))
-                self.periodic.startPeriodic(0.05)
-                self.single = wpilib.Notifier(lambda: self.call("single"))
-                self.single.setName("single")
-                self.single.startSingle(0.033)
-                self.slow = wpilib.Notifier(self.sleepy)
-                self.slow.startPeriodic(0.1)
-                wpilib.Notifier(lambda: self.call("dropped")).startPeriodic(0.01)
-                threading.Thread(target=self.alarm, daemon=True).start()
-
-            def call(self, name):
-                self.calls[name].append(round(wpilib.Timer.getFPGATimestamp(), 6))
-
-            def sleepy(self):
-                self.call("slow")
-                wpilib.wait(0.03)
-
-            def alarm(self):
-                handle, _ = hal.initializeNotifier()
-                for time in (70000, 140000):
-                    hal.updateNotifierAlarm(handle, time)
-                    if hal.waitForNotifierAlarm(handle)[0]:
-                        self.call("hal")
-                hal.cleanNotifier(handle)
-
-            def robotPeriodic(self):
-                if wpilib.Timer.getFPGATimestamp() > 0.21:
-                    self.periodic.stop()
-        """,
-    )
-
-
 STEPPED_IN_BOTH_STYLES = """
     from wpilib.simulation import JoystickSim, PWMSim
 
@@ -459,45 +408,6 @@ LOOPS = {
 @pytest.mark.parametrize("loop", LOOPS)
 def test_whose_loop_it_is_shows_nowhere_outside(loop: str, make_project) -> None:
     passes(make_project, STEPPED_IN_BOTH_STYLES, LOOPS[loop])
-
-
-def test_motor_safety_is_checked_in_robot_time(make_project) -> None:
-    """A drive that is not fed is stopped within its expiration and four packets, and one that is fed never is."""
-    passes(
-        make_project,
-        """
-        import pytest
-
-        @pytest.mark.parametrize("fed", [True, False])
-        def test_it(fed, control, robot, hal_data):
-            robot.fed = fed
-            control.set_operator_control()
-            speeds = {}
-            def step(tm):
-                speeds[round(tm, 2)] = hal_data["pwm"][0]["value"]
-                return tm < 60
-            control.run_test(step)
-            assert robot.drive.isSafetyEnabled()
-            moving = [tm for tm, speed in speeds.items() if speed]
-            assert moving[0] == 0.04
-            assert moving[-1] == (60.0 if fed else pytest.approx(0.16, abs=0.05))
-        """,
-        """
-        import wpilib
-        from wpilib.drive import DifferentialDrive
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.drive = DifferentialDrive(wpilib.PWMSparkMax(0), wpilib.PWMSparkMax(1))
-
-            def teleopInit(self):
-                self.drive.tankDrive(1, 1)
-
-            def teleopPeriodic(self):
-                if self.fed:
-                    self.drive.feed()
-        """,
-    )
 
 
 def test_both_styles_of_test_in_one_project(make_project) -> None:
@@ -624,31 +534,6 @@ def test_threads_started_while_the_robot_is_imported(make_project) -> None:
     )
 
 
-def test_a_thread_blocked_on_the_outside_world_does_not_stop_the_clock(make_project) -> None:
-    passes(
-        make_project,
-        """
-        def test_it(control, robot):
-            control.run_test(lambda tm: tm < 5)
-            assert robot.loops == 249
-        """,
-        """
-        import socket, threading
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            loops = 0
-
-            def robotInit(self):
-                self.ours, self.theirs = socket.socketpair()
-                threading.Thread(target=lambda: self.ours.recv(1), daemon=True).start()
-
-            def robotPeriodic(self):
-                self.loops += 1
-        """,
-    )
-
-
 def test_waits_that_python_computes_the_rest_of_end_on_time(make_project) -> None:
     """What is left of a time-out is computed in floating point; it must come to nothing at last."""
     passes(
@@ -713,48 +598,6 @@ def test_waits_that_python_computes_the_rest_of_end_on_time(make_project) -> Non
                 self.ends["yielding"] = ["done"]
         """,
     )
-
-
-CALLBACKS = """
-    import wpilib
-
-    class MyRobot(wpilib.TimedRobot):
-        def __init__(self):
-            super().__init__()
-            self.calls = []
-            self.busy = False
-            self.addPeriodic(lambda: self.call("f", 0.012), 0.005)
-            self.addPeriodic(lambda: self.call("q", 0), 0.01)
-
-        def robotPeriodic(self):
-            self.call("r", 0)
-
-        def call(self, name, seconds):
-            assert not self.busy, "one callback inside another"
-            self.busy = True
-            self.calls.append((name, round(wpilib.Timer.getFPGATimestamp(), 3)))
-            wpilib.wait(seconds)
-            self.busy = False
-"""
-
-
-def test_callbacks_of_one_loop_never_run_inside_each_other(make_project) -> None:
-    """However long they take; and whoever drives the loop, the schedule is the same."""
-    tests = """
-        def test_it(control, robot):
-            control.run_test(lambda tm: tm < 0.2)
-            assert len(robot.calls) > 15
-            print(robot.calls, file=open("calls.txt", "w"))
-    """
-    project = make_project({"robot.py": CALLBACKS, "tests/test_it.py": tests})
-    own_loop = "\n        def startCompetition(self):\n            super().startCompetition()\n"
-    schedules = []
-    for robot in (CALLBACKS, CALLBACKS + own_loop):
-        project.write({"robot.py": robot})
-        result = project.run("test", "--", "-q")
-        assert result.code == 0, result.output
-        schedules.append((project.path / "calls.txt").read_text())
-    assert schedules[0] == schedules[1]
 
 
 def test_the_robots_own_end_is_called_once_at_its_end(make_project) -> None:
@@ -896,42 +739,6 @@ def test_a_process_that_the_robot_starts_ends_with_its_test(make_project) -> Non
 
 
 @pytest.mark.skipif(not FORK_IS_SAFE, reason="processes are not forked here")
-def test_a_process_that_the_robot_forks_lives_in_real_time(make_project) -> None:
-    passes(
-        make_project,
-        """
-        def test_it(control, robot):
-            control.run_test(lambda tm: tm < 1)
-            assert robot.answers.get(timeout=60) == [True, True, True, True, "thread"]
-            robot.process.join()
-        """,
-        """
-        import multiprocessing, threading, time
-        import wpilib
-
-        clocks = [time.monotonic, time.time, time.perf_counter, wpilib.Timer.getFPGATimestamp]
-
-        def look_for_targets(answers):
-            began = [clock() for clock in clocks]
-            time.sleep(0.001)
-            found = [clock() > begin for clock, begin in zip(clocks, began)]
-            thread = threading.Thread(target=found.append, args=("thread",))
-            thread.start()
-            while thread.is_alive():
-                pass
-            answers.put(found)
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                context = multiprocessing.get_context("fork")
-                self.answers = context.Queue()
-                self.process = context.Process(target=look_for_targets, args=[self.answers])
-                self.process.start()
-        """,
-    )
-
-
-@pytest.mark.skipif(not FORK_IS_SAFE, reason="processes are not forked here")
 @pytest.mark.parametrize(
     ("end", "status", "said"),
     [
@@ -965,34 +772,6 @@ def test_a_forked_process_ends_where_it_leaves_the_robots_code(make_project, end
     assert result.code == 0, result.output
     assert said in result.output
     assert "pyfrc_core" not in result.output
-
-
-def test_fuzzing_finds_what_only_two_buttons_at_once_do_and_repeats_it(make_project) -> None:
-    project = make_project(
-        {
-            "robot.py": """
-            import wpilib
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotInit(self):
-                    self.stick = wpilib.Joystick(0)
-                    self.switch = wpilib.DigitalInput(3)
-
-                def teleopPeriodic(self):
-                    if self.stick.getRawButton(2) and self.stick.getRawButton(3) and not self.switch.get():
-                        raise RuntimeError("nobody thought of this")
-            """,
-            "tests/fuzz_test.py": "from pyfrc.tests.fuzz_test import *\n",
-        }
-    )
-    traces = set()
-    for run in "first", "second":
-        result = project.run("test", "--seed", "3", "--trace", run)
-        assert result.code == 1, result.output
-        assert "robot.py:10: RuntimeError: nobody thought of this" in result.output
-        (trace,) = (project.path / run).iterdir()
-        traces.add(trace.read_text())
-    assert len(traces) == 1
 
 
 def test_a_filter_that_is_made_while_the_robot_is_imported_begins_with_the_run(make_project) -> None:

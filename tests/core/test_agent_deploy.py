@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from pathlib import Path
 
 import pytest
 
-from pyfrc_core.deploy.agent import disk, releases, robot_paths, serve, system, transaction
+from pyfrc_core.deploy.agent import disk, releases, serve, system, transaction
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.releases import Releases, start_commands
-from pyfrc_core.deploy.agent.robot_paths import Lock, Refusal
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .agent_disk import AgentDisk, contents, manifest
@@ -35,118 +33,6 @@ def deployed_twice(robot: AgentDisk) -> AgentDisk:
 
 
 # -- one deploy after the other --------------------------------------------------------------------------------------
-
-
-def test_the_first_deploy(robot: AgentDisk) -> None:
-    need, switch, done = robot.deploy(ONE, *ONE.values())
-    assert need == {"need": ["robot.py", "arm.py", "data/path.json"], "bytes": 25}
-    assert switch == {"phase": "switch"}
-    assert done == {
-        "done": {
-            "release": 1,
-            "previous": None,
-            "taken": None,
-            "unchanged": False,
-            "files": 3,
-            "bytes": 25,
-            "skipped": [],
-            "renamed": [],
-            "fallback": None,
-        }
-    }
-    assert robot.read("robotCommand") == f"{PYTHON} -O -m robotpy --main /home/lvuser/py/robot.py run\n"
-    assert robot.read("robotDebugCommand") == f"{PYTHON} -m robotpy --main /home/lvuser/py/robot.py -v run\n"
-    assert (robot.home / "py").readlink() == Path(".pyfrc/releases/1")
-    assert robot.tree() == [
-        "1.json",
-        *(f"1/{name}" for name in ("arm.py", "data/path.json", "deploy.json", "robot.py")),
-    ]
-    assert json.loads(robot.read("py/deploy.json") or "") == {"by": "Ada"}
-    compiled = sorted(each.name for each in (robot.home / "py/__pycache__").iterdir())
-    assert [name.partition(".")[0] for name in compiled] == ["arm", "robot"]
-    assert all(name.endswith(".opt-1.pyc") for name in compiled)
-    assert not robot.places.is_debug()
-    assert not robot.places.incoming.exists()
-    assert (robot.home / "py/robot.py").stat().st_mode & 0o777 == 0o644
-
-
-def test_the_second_sends_what_has_changed_and_links_the_rest(robot: AgentDisk) -> None:
-    robot.deploy(ONE, *ONE.values())
-    need, _, done = robot.deploy(TWO, TWO["robot.py"])
-    assert need == {"need": ["robot.py"], "bytes": 17}
-    assert done["done"]["release"] == 2
-    assert done["done"]["previous"] == done["done"]["fallback"] == 1
-    old, new = robot.home / ".pyfrc/releases/1", robot.home / ".pyfrc/releases/2"
-    assert (old / "arm.py").samefile(new / "arm.py")
-    assert not (old / "robot.py").samefile(new / "robot.py")
-    assert robot.startable() == "py/robot.py: # two"
-    assert sorted(each.name.partition(".")[0] for each in (new / "__pycache__").iterdir()) == ["arm", "robot"]
-
-
-def test_the_same_again_changes_nothing_but_who_has_deployed(robot: AgentDisk) -> None:
-    robot.deploy(ONE, *ONE.values())
-    need, done = robot.deploy(ONE, deploy_json={"by": "Grace"})
-    assert need == {"need": [], "bytes": 0}
-    assert done["done"] == {
-        "release": 1, "previous": 1, "files": 0, "bytes": 0, "taken": None, "unchanged": True, "fallback": None,
-        "has_run": False,
-    }  # fmt: skip
-    assert json.loads(robot.read("py/deploy.json") or "") == {"by": "Grace"}
-    assert json.loads(robot.read(".pyfrc/releases/1.json") or "")["deploy"] == {"by": "Grace"}
-
-
-def test_a_release_that_the_program_has_changed_is_not_the_same(robot: AgentDisk) -> None:
-    robot.deploy(ONE, *ONE.values())
-    (robot.home / "py/arm.py").write_text("# ARM\n")
-    need, _, done = robot.deploy(ONE, ONE["arm.py"])
-    assert need["need"] == ["arm.py"]
-    assert done["done"]["release"] == 2
-    assert robot.read("py/arm.py") == "# arm\n"
-
-
-def test_each_content_is_sent_once_and_sources_first(robot: AgentDisk) -> None:
-    files = {"b.txt": "same", "robot.py": "# one\n", "a.txt": "same", "sub/c.py": "# one\n"}
-    need, _, done = robot.deploy(files, "# one\n", "same")
-    assert need == {"need": ["robot.py", "b.txt"], "bytes": 10}
-    assert done["done"]["files"] == 2
-    assert {name: robot.read(f"py/{name}") for name in files} == files
-
-
-def test_executable_files_and_debugging(robot: AgentDisk) -> None:
-    request = {"op": "deploy", "files": manifest(ONE, ("arm.py",)), "main": "robot.py", "debug": True}
-    robot.ask(request, contents(*ONE.values()))
-    assert (robot.home / "py/arm.py").stat().st_mode & 0o777 == 0o755
-    assert robot.places.is_debug()
-    assert robot.startable() == "py/robot.py: # one"
-    assert {each.name.split(".")[2] for each in (robot.home / "py/__pycache__").iterdir()} == {"pyc"}
-    # A file that is no longer executable is another.
-    need, _, _ = robot.deploy(ONE)
-    assert need["need"] == []
-    assert (robot.home / "py/arm.py").stat().st_mode & 0o777 == 0o644
-    assert not robot.places.is_debug()
-
-
-def test_so_many_releases_are_kept(robot: AgentDisk) -> None:
-    for number in range(1, 7):
-        (*_, done) = robot.deploy({"robot.py": f"# {number}\n"}, f"# {number}\n")
-        assert done["done"]["release"] == number
-    assert Releases(robot.places, None).numbers() == [4, 5, 6]  # type: ignore[arg-type]
-    assert [name for name in robot.tree() if name.endswith("0.json")] == []
-    assert sorted(each.name for each in robot.places.own.iterdir()) == ["lock", "releases"]
-
-
-def note_run(records: Releases, number: int, ended: bool = False) -> None:
-    """Note that a watch has seen a release run."""
-    records.update_record(number, lambda record: {**record, "ran": True, "ended": ended})
-
-
-def test_the_newest_release_that_was_seen_to_run_is_kept(robot: AgentDisk) -> None:
-    robot.deploy({"robot.py": "# 1\n"}, "# 1\n")
-    note_run(Releases(robot.places, None), 1)  # type: ignore[arg-type]
-    for number in range(2, 7):
-        (*_, done) = robot.deploy({"robot.py": f"# {number}\n"}, f"# {number}\n")
-    assert done["done"]["fallback"] == 1
-    assert Releases(robot.places, None).numbers() == [1, 5, 6]  # type: ignore[arg-type]
 
 
 def test_the_order_in_which_a_deploy_changes_the_disk(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -186,15 +72,6 @@ def refused(answers: list[dict[str, object]]) -> tuple[object, object]:
     return last["error"], last["message"]
 
 
-@pytest.mark.parametrize(
-    "path", ["", "/etc/passwd", "../robot.py", "a/../b", "a//b", "./a", "a/.", "a\0b"], ids=lambda path: repr(path)
-)
-def test_paths_outside_the_program_are_refused(path: str, robot: AgentDisk) -> None:
-    kind, message = refused(robot.deploy({**ONE, path: ""}))
-    assert (kind, message) == ("path", f"{path!r} is not a path within the program's directory")
-    assert not robot.places.releases.exists()
-
-
 def test_a_path_twice_and_a_main_file_that_is_not_there(robot: AgentDisk) -> None:
     request = {"op": "deploy", "files": manifest(ONE) * 2, "main": "robot.py"}
     assert refused(robot.ask(request)) == ("path", "the manifest has the same path twice")
@@ -220,15 +97,6 @@ def test_contents_that_are_not_as_announced(robot: AgentDisk) -> None:
     assert robot.startable() == "py/robot.py: # one"
     assert not robot.places.incoming.exists()
     assert Releases(robot.places, None).numbers() == [1]  # type: ignore[arg-type]
-
-
-def test_a_source_that_cannot_be_compiled(robot: AgentDisk) -> None:
-    files = {"robot.py": "# fine\n", "wrong.py": "\n\ndef f(:\n", "unused.py": "def g(:\n"}
-    kind, message = refused(robot.deploy(files, *files.values(), program=["robot.py", "wrong.py"]))
-    assert kind == "syntax"
-    assert str(message).startswith("wrong.py:3: the robot's Python")
-    (*_, done) = robot.deploy({**files, "wrong.py": ""}, "# fine\n", "", "def g(:\n", program=["robot.py"])
-    assert done["done"]["release"] == 1
 
 
 def test_a_full_disk(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -309,48 +177,7 @@ def test_a_computer_that_is_no_roborio(robot: AgentDisk) -> None:
     assert message == f"there is no {robot.home} here: this is not a roboRIO"
 
 
-def test_one_deploy_at_a_time(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(robot_paths, "_GRACE", 0.05)
-    with Lock(robot.places, "Grace"):
-        *_, last = robot.deploy(ONE)
-        assert (last["error"], last["holder"]) == ("locked", "Grace")
-        assert last["message"] == "Grace is deploying to this robot right now"
-    assert robot.places.lock.read_text() == ""
-    *_, done = robot.deploy(ONE, *ONE.values())
-    assert done["done"]["release"] == 1
-    robot.places.lock.write_text("no json")
-    assert {robot_paths._holder(text) for text in (b"no json", b"[]", b"{}")} == {"another computer"}
-
-
 # -- what a deploy would do, and what there is -----------------------------------------------------------------------
-
-
-def test_a_plan_writes_nothing(robot: AgentDisk) -> None:
-    assert robot.ask({"op": "plan", "files": manifest(ONE)}) == [
-        {
-            "done": {
-                "added": ["robot.py", "arm.py", "data/path.json"],
-                "changed": [],
-                "removed": [],
-                "files": 3,
-                "bytes": 25,
-            }
-        }
-    ]
-    assert sorted(robot.home.iterdir()) == []
-    robot.deploy(ONE, *ONE.values())
-    (robot.home / "py/log.txt").write_text("the program's own")
-    files = {"robot.py": "# other\n", "arm.py": "# arm\n", "new.py": "# arm\n"}
-    assert robot.ask({"op": "plan", "files": manifest(files)}) == [
-        {"done": {"added": ["new.py"], "changed": ["robot.py"], "removed": ["data/path.json"], "files": 1, "bytes": 8}}
-    ]
-    (_, need, *_) = robot.ask(
-        {"op": "plan", "files": manifest(files)},
-        {"op": "deploy", "files": manifest(files), "main": "robot.py"},
-        contents("# other\n"),
-    )
-    assert need["need"] == ["robot.py"]
-    assert robot.startable() == "py/robot.py: # other"
 
 
 def test_a_plan_over_another_tools_code(robot: AgentDisk) -> None:
@@ -391,73 +218,6 @@ def test_facts(robot: AgentDisk) -> None:
 # -- going back ------------------------------------------------------------------------------------------------------
 
 
-def test_rolling_back_and_forward(robot: AgentDisk) -> None:
-    deployed_twice(robot)
-    (answer,) = robot.ask({"op": "rollback"})
-    assert (answer["done"]["release"], answer["done"]["previous"], answer["done"]["changed"]) == (1, 2, [])
-    assert answer["done"]["about"]["main"] == "robot.py"
-    assert robot.startable() == "py/robot.py: # one"
-    (answer,) = robot.ask({"op": "rollback", "release": 2})
-    assert (answer["done"]["release"], answer["done"]["previous"]) == (2, 1)
-    assert robot.startable() == "py/robot.py: # two"
-    (robot.home / ".pyfrc/releases/1/robot.py").write_text("# 1\n")
-    (answer,) = robot.ask({"op": "rollback", "release": 1})
-    assert answer["done"]["changed"] == ["robot.py"]
-
-
-def test_what_cannot_be_gone_back_to(robot: AgentDisk) -> None:
-    assert robot.ask({"op": "rollback"}) == [
-        {
-            "error": "release",
-            "message": "there is no earlier release on the robot to go back to",
-            "remedy": "It has no releases yet: each pyfrc deploy adds one.",
-        }
-    ]
-    deployed_twice(robot)
-    (answer,) = robot.ask({"op": "rollback", "release": 7})
-    assert (answer["message"], answer["remedy"]) == (
-        "there is no release 7 on the robot to go back to",
-        "Its releases: 1, 2; current: 2.",
-    )
-    (robot.home / ".pyfrc/releases/1/arm.py").unlink()
-    (answer,) = robot.ask({"op": "rollback"})
-    assert answer["message"] == "release 1 is no longer complete: arm.py is missing"
-    assert robot.startable() == "py/robot.py: # two"
-
-
-def test_a_rollback_goes_to_what_was_seen_to_run(robot: AgentDisk) -> None:
-    for number in (1, 2, 3):
-        robot.deploy({"robot.py": f"# {number}\n"}, f"# {number}\n")
-    records = Releases(robot.places, None)  # type: ignore[arg-type]
-    assert [records.fallback(number) for number in (None, 1, 2, 3)] == [3, None, 1, 2]
-    note_run(records, 1)
-    assert [records.fallback(number) for number in (None, 1, 2, 3)] == [1, None, 1, 1]
-    note_run(records, 2, ended=True)
-    assert records.fallback(3) == 1, "the other one has ended"
-    note_run(records, 2)
-    assert records.fallback(3) == 2
-    note_run(records, 9)
-    assert records.record(9) == {}
-
-
-def test_another_tools_program_becomes_a_release(robot: AgentDisk) -> None:
-    (robot.home / "py").mkdir()
-    (robot.home / "py/robot.py").write_text("# other tool's\n")
-    (robot.home / "py/notes.txt").write_text("the program's own")
-    (robot.home / "py/deploy.json").write_text('{"by": "other"}')
-    (robot.home / "robotCommand").write_text("python3 --main /home/lvuser/py/robot.py run\n")
-    *_, done = robot.deploy(ONE, *ONE.values())
-    assert (done["done"]["taken"], done["done"]["previous"], done["done"]["release"]) == (1, 1, 2)
-    assert robot.startable() == "py/robot.py: # one"
-    assert robot.read("py/notes.txt") == "the program's own"
-    record = json.loads(robot.read(".pyfrc/releases/1.json") or "")
-    assert (record["taken"], record["debug"], record["deploy"]) == (True, False, {"by": "other"})
-    (answer,) = robot.ask({"op": "rollback"})
-    assert answer["done"]["release"] == 1
-    assert robot.startable() == "py/robot.py: # other tool's"
-    assert robot.read("robotDebugCommand") is None
-
-
 def test_a_program_without_a_start_command_cannot_be_gone_back_to(robot: AgentDisk) -> None:
     (robot.home / "py").mkdir()
     (robot.home / "py/robot.py").write_text("")
@@ -467,20 +227,6 @@ def test_a_program_without_a_start_command_cannot_be_gone_back_to(robot: AgentDi
 
 
 # -- the program's own files -----------------------------------------------------------------------------------------
-
-
-def test_what_the_program_has_written_goes_along(robot: AgentDisk) -> None:
-    robot.deploy(ONE, *ONE.values())
-    code = robot.home / "py"
-    (code / "log.txt").write_text("log")
-    (code / "data/learned.json").write_text("learned")
-    (code / "empty").mkdir()
-    robot.deploy({"robot.py": "# two\n", "data/learned.json": "from the project"}, "# two\n", "from the project")
-    assert robot.read("py/log.txt") == "log"
-    assert (code / "log.txt").samefile(robot.home / ".pyfrc/releases/1/log.txt")
-    assert robot.read("py/data/learned.json") == "from the project"
-    assert robot.read("py/data/path.json") is None  # which came with the code
-    assert (code / "empty").is_dir()
 
 
 def test_names_that_the_project_has_taken(robot: AgentDisk) -> None:
@@ -516,73 +262,7 @@ def test_links_of_another_tools_program_stay_valid(robot: AgentDisk) -> None:
         robot.ask({"op": "rollback", "release": 1})
 
 
-def test_what_the_old_program_writes_after_the_switch_goes_along_when_it_has_ended(robot: AgentDisk) -> None:
-    robot.deploy(ONE, *ONE.values())
-    (robot.home / "py/log.txt").write_text("log")
-    (robot.home / "py/both.txt").write_text("before")
-    robot.deploy(TWO, TWO["robot.py"])
-    old, new = robot.home / ".pyfrc/releases/1", robot.home / ".pyfrc/releases/2"
-    (old / "late.txt").write_text("late")
-    (old / "log.txt").unlink()
-    (old / "log.txt").write_text("the old one's")
-    (old / "both.txt").unlink()
-    (old / "both.txt").write_text("the old one's")
-    (new / "other").write_text("the new one's")
-    (new / "other").replace(new / "both.txt")
-    records = Releases(robot.places, serve.Activity(lambda **said: None))
-    records.carry_late_writes(2)
-    assert (new / "late.txt").read_text() == "late"
-    assert (new / "log.txt").read_text() == "the old one's"
-    assert (new / "both.txt").read_text() == "the new one's"
-    assert "carried" not in records.record(2)
-    (old / "later.txt").write_text("later")
-    records.carry_late_writes(2)
-    assert not (new / "later.txt").exists()
-
-
-def test_going_back_keeps_both_programs_files(robot: AgentDisk) -> None:
-    robot.deploy(ONE, *ONE.values())
-    old = robot.home / ".pyfrc/releases/1"
-    (old / "log.txt").write_text("log of 1")
-    robot.deploy(TWO, TWO["robot.py"])
-    new = robot.home / ".pyfrc/releases/2"
-    (new / "log.txt").unlink()
-    (new / "log.txt").write_text("log of 2")
-    robot.ask({"op": "rollback"})
-    assert (old / "log.txt").read_text() == "log of 2"
-    assert (old / "log.txt.release-1").read_text() == "log of 1"
-
-
 # -- in place --------------------------------------------------------------------------------------------------------
-
-
-def test_in_place_overwrites_and_deletes_nothing(robot: AgentDisk) -> None:
-    robot.deploy(ONE, *ONE.values())
-    note_run(Releases(robot.places, None), 1)  # type: ignore[arg-type]
-    *_, done = robot.deploy({"robot.py": "# two\n", "sub/new.py": "# new\n"}, "# two\n", "# new\n", in_place=True)
-    assert done["done"] == {
-        "release": 1, "previous": 1, "taken": None, "unchanged": False, "files": 2, "bytes": 12, "fallback": None
-    }  # fmt: skip
-    assert robot.startable() == "py/robot.py: # two"
-    assert robot.tree("py") == ["arm.py", "data/path.json", "deploy.json", "robot.py", "sub/new.py"]
-    record = json.loads(robot.read(".pyfrc/releases/1.json") or "")
-    assert sorted(record["files"]) == ["arm.py", "data/path.json", "robot.py", "sub/new.py"]
-    assert record["ran"] is False
-    need, _, done = robot.deploy({"robot.py": "# two\n"}, in_place=True)
-    assert need["need"] == []
-    assert done["done"]["unchanged"] is True
-
-
-def test_in_place_nothing_is_deleted_for_a_file_of_another_kind(robot: AgentDisk) -> None:
-    robot.deploy(ONE, *ONE.values())
-    assert refused(robot.deploy({"robot.py": "", "data": "x"}, in_place=True)) == (
-        "path",
-        "'data' is a directory on the robot",
-    )
-    assert refused(robot.deploy({"robot.py": "", "arm.py/x": "x"}, in_place=True)) == (
-        "path",
-        "'arm.py' is a file on the robot",
-    )
 
 
 # -- after a cut -----------------------------------------------------------------------------------------------------
@@ -667,18 +347,6 @@ def test_a_deploy_that_was_cut_past_its_moment_is_finished(robot: AgentDisk) -> 
     assert records.current() == 1
 
 
-def test_undeploy_removes_it_all(robot: AgentDisk, monkeypatch: pytest.MonkeyPatch) -> None:
-    stopped: list[tuple[str, bool]] = []
-    monkeypatch.setattr(RealRobot, "stop", lambda host, start: stopped.append((robot.startable(), start)))
-    robot.deploy(ONE, *ONE.values(), debug=True)
-    (robot.home / "keep.txt").write_text("")
-    assert robot.ask({"op": "undeploy"}) == [{"done": {"removed": True}}]
-    assert stopped == [("nothing", False)]
-    assert [each.name for each in robot.home.iterdir()] == ["keep.txt"]
-    assert not robot.places.is_debug()
-    assert robot.ask({"op": "undeploy"}) == [{"done": {"removed": False}}]
-
-
 # -- parts -----------------------------------------------------------------------------------------------------------
 
 
@@ -689,12 +357,6 @@ def test_start_commands(main: str) -> None:
     assert start_commands(one_file, main, debug=True) == {
         "robotCommand": f"{PYTHON} -m robotpy --main /home/lvuser/py/{main} -v run\n"
     }
-
-
-@pytest.mark.parametrize("main", ["", "-c", "a b.py", "a;b", "/robot.py", "a\n"])
-def test_main_files_that_would_break_the_command(main: str) -> None:
-    with pytest.raises(Refusal):
-        start_commands(ROBORIO.layout, main, debug=False)
 
 
 def test_files_are_written_whole(tmp_path: Path) -> None:
@@ -710,16 +372,6 @@ def test_files_are_written_whole(tmp_path: Path) -> None:
     disk.remove(file)
     disk.remove(file)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_what_is_below_a_directory(tmp_path: Path) -> None:
-    for name in ("b/2", "b/1", "a", "c/__pycache__/x.pyc", "b.txt"):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("")
-    (tmp_path / "link").symlink_to(tmp_path / "a")
-    assert [name for name, _ in disk.everything_below(tmp_path)] == ["a", "b", "b.txt", "c", "link", "b/1", "b/2"]
-    assert [name for name, _ in disk.files_below(tmp_path)] == ["a", "b.txt", "b/1", "b/2"]
-    assert list(disk.files_below(tmp_path / "none")) == []
 
 
 def test_links_and_exchanges(tmp_path: Path) -> None:

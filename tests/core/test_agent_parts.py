@@ -6,29 +6,23 @@ import io
 import os
 import signal
 import socket
-import struct
-import sys
 import threading
 import time
-import zlib
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from ports import refusing_port
 
-from pyfrc_core.deploy.agent import console, host, imports, inventory, program, wire
+from pyfrc_core.deploy.agent import console, host, program, wire
 from pyfrc_core.deploy.agent.activity import Activity
-from pyfrc_core.deploy.agent.compiling import CompiledForms, Compiler, compile_below
-from pyfrc_core.deploy.agent.console import ConsoleClient, console_text, split_frames
+from pyfrc_core.deploy.agent.compiling import Compiler
+from pyfrc_core.deploy.agent.console import ConsoleClient
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.program import Program
 from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
-from pyfrc_core.deploy.agent.virtual import VARIABLE, VirtualRobotClient
 from pyfrc_core.deploy.agent.wire import (
     CONTENT,
-    MESSAGE,
     EndedError,
     OutputPipe,
     Wire,
@@ -42,46 +36,6 @@ from pyfrc_core.deploy.responses import parse_json
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 # -- frames ------------------------------------------------------------------------------------------------------------
-
-
-def test_a_frame_is_its_length_its_kind_and_its_body() -> None:
-    assert frame(CONTENT, b"abc") == b"\0\0\0\3Cabc"
-    assert read_frame(io.BytesIO(b"\0\0\0\3Cabc").read) == (CONTENT, b"abc")
-    assert wire.parse_message(*read_frame(io.BytesIO(message_frame({"a": 1})).read)) == {"a": 1}
-    assert read_frame(io.BytesIO(b"\0\0\0\0J").read) == (MESSAGE, b"")
-    assert read_frame(io.BytesIO(b"\0\0\0\3Cabc").read, longest=3) == (CONTENT, b"abc")
-
-
-@pytest.mark.parametrize(
-    ("sent", "error", "message"),
-    [
-        (b"", EndedError, "the stream has ended"),
-        (b"\0\0\0\3", EndedError, "the stream has ended"),
-        (b"\0\0\0\3Cab", EndedError, "the stream has ended in the middle of a frame"),
-        (b"\0\0\0\3Xabc", WireError, "this is not a frame: b'"),
-        (b"\0\0\0\4Cabcd", WireError, "this is not a frame: b'"),
-    ],
-)
-def test_what_is_no_frame(sent: bytes, error: type[WireError], message: str) -> None:
-    with pytest.raises(error) as caught:
-        read_frame(io.BytesIO(sent).read, longest=3)
-    assert str(caught.value).startswith(message)
-
-
-@pytest.mark.parametrize(
-    ("kind", "body", "message"),
-    [
-        (CONTENT, b"", "received file contents instead of a message"),
-        (MESSAGE, b"abc", "a frame cannot be read"),
-        (MESSAGE, zlib.compress(b"[]"), "a frame does not hold one JSON object"),
-        (MESSAGE, zlib.compress(b"{"), "a frame cannot be read"),
-        (MESSAGE, zlib.compress(b"{}")[:-1], "a frame is too long, or is cut short"),
-    ],
-)
-def test_what_says_nothing(kind: bytes, body: bytes, message: str) -> None:
-    with pytest.raises(WireError) as caught:
-        wire.parse_message(kind, body)
-    assert str(caught.value).startswith(message)
 
 
 def pipe_with(sent: bytes) -> io.FileIO:
@@ -150,55 +104,6 @@ def test_a_pipe_that_the_laptop_does_not_read() -> None:
     os.close(target)
 
 
-# -- signs of life -----------------------------------------------------------------------------------------------------
-
-
-def test_a_sign_is_sent_for_work_once_a_second() -> None:
-    now, signs = [0.0], []
-    activity = Activity(lambda **said: signs.append(said["alive"]), clock=lambda: now[0])
-    for second, phase in ((0.5, "check"), (0.999, ""), (1.0, ""), (1.5, "send"), (2.0, ""), (9.0, "")):
-        now[0] = second
-        if phase:
-            activity.begin(phase, of=10)
-        activity.step(2)
-    assert signs == [
-        {"phase": "check", "count": 6, "of": 10},
-        {"phase": "send", "count": 4, "of": 10},
-        {"phase": "send", "count": 6, "of": 10},
-    ]
-    now[0] = 10.5
-    activity.reset()
-    now[0] = 11.4
-    activity.step()
-    assert len(signs) == 3
-
-
-def test_a_call_that_takes_long_is_accompanied_by_signs() -> None:
-    now, signs = [0.0], []
-
-    def clock() -> float:
-        now[0] += 100.0
-        return now[0]
-
-    release = threading.Event()
-
-    def call(value: int) -> int:
-        assert release.wait(60), "no third message"
-        return value + 1
-
-    def send(**sent: Any) -> None:
-        signs.append(sent["alive"])
-        if len(signs) == 3:
-            release.set()
-
-    activity = Activity(send, clock=clock, pause=0.001)
-    activity.begin("sync")
-    assert activity.wait_for(call, 3) == 4
-    assert signs[:3] == [{"phase": "sync", "count": 0, "of": 0}] * 3
-    with pytest.raises(KeyError):
-        activity.wait_for({}.__getitem__, "x")
-
-
 # -- the console -------------------------------------------------------------------------------------------------------
 
 
@@ -209,22 +114,6 @@ def message(kind: int, body: bytes) -> bytes:
 
 def text_message(text: str) -> bytes:
     return message(console.TEXT, b"\0" * 6 + text.encode())
-
-
-def error_message(*parts: str) -> bytes:
-    packed = b"".join(struct.pack(">H", len(part.encode())) + part.encode() for part in parts)
-    return message(console.ERROR, b"\0" * 13 + packed)
-
-
-def test_messages_of_the_console() -> None:
-    stream = text_message("one") + b"\0\0" + error_message("what", "", "where") + text_message("two\n")
-    messages, rest = split_frames(stream + b"\0\5abc")
-    assert rest == b"\0\5abc"
-    assert [console_text(each) for each in messages] == ["one\n", "", "what where\n", "two\n"]
-    assert split_frames(b"\0") == ([], b"\0")
-    assert split_frames(b"\0\1a") == ([b"a"], b"")
-    assert console_text(b"\x07abc") == ""
-    assert console_text(b"") == ""
 
 
 def test_a_console_client() -> None:
@@ -256,69 +145,11 @@ def test_a_console_client() -> None:
 # -- what is on the robot ----------------------------------------------------------------------------------------------
 
 
-def test_modules_are_found_without_importing_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in ("pack/__init__.py", "pack/inner/__init__.py", "pack/inner/leaf.py", "space/part/leaf.py", "single.py"):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("raise SystemExit\n")
-    for name in ("My.Package-1.2.3.dist-info", "other_one-4.0-py3.9.egg-info", "no.txt"):
-        (tmp_path / name).mkdir()
-    monkeypatch.setattr(sys, "path", [str(tmp_path), "", str(tmp_path / "none"), *sys.path])
-    there = (
-        "pack",
-        "pack.inner",
-        "pack.inner.leaf",
-        "space",
-        "space.part.leaf",
-        "single",
-        "json",
-        "json.decoder",
-        "os.path",
-    )
-    assert [name for name in there if not imports.is_there(name)] == []
-    # What a module that is no package has below it, only the module could say.
-    assert imports.is_there("single.x")
-    missing = ["none", "none.x", "pack.none", "pack.inner.none", "space.none", "space.part.none"]
-    found = imports.look_up([*there, *missing])
-    assert found["missing_modules"] == missing
-    assert (found["packages"]["my-package"], found["packages"]["other-one"]) == ("1.2.3", "4.0")
-    assert "no" not in found["packages"]
-    assert not {"pack", "single"} & set(sys.modules)
-
-
-def test_what_other_languages_have_left(tmp_path: Path) -> None:
-    places = RobotPaths(ROBORIO.layout, str(tmp_path))
-    assert places.of("/home/lvuser") == tmp_path / "home/lvuser"
-    assert inventory.find_other_languages(places) == []
-    files = ("home/lvuser/b.jar", "home/lvuser/a.jar", "home/lvuser/frcUserProgram", "usr/local/frc/JRE/bin/java")
-    for name in (*files, "usr/local/frc/third-party/lib/x.so", "home/lvuser/robotDebugCommand"):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("/home/lvuser/frcUserProgram")
-    assert inventory.find_other_languages(places) == [
-        "/home/lvuser/robotDebugCommand",
-        "/home/lvuser/a.jar",
-        "/home/lvuser/b.jar",
-        "/home/lvuser/frcUserProgram",
-        "/usr/local/frc/JRE/bin/java",
-        "/usr/local/frc/third-party/lib",
-    ]
-
-
 def test_the_image_of_a_roborio() -> None:
     assert ROBORIO.image_in({"image": 'x\nIMAGEVERSION = "FRC_2026"\n'}) == "FRC_2026"
     assert ROBORIO.image_in({"image": "IMAGEVERSION=FRC_2026\n"}) == "FRC_2026"
     assert ROBORIO.image_in({"image": ""}) is None
     assert ROBORIO.image_in({"image": None}) is None
-
-
-def test_a_virtual_robot_in_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(VARIABLE, raising=False)
-    assert VirtualRobotClient.from_environment(ROBORIO.layout) is None
-    virtual = VirtualRobotClient(ROBORIO.layout, "/robot", 1234, "ab", 5678)
-    monkeypatch.setenv(VARIABLE, virtual.to_text())
-    found = VirtualRobotClient.from_environment(ROBORIO.layout)
-    assert found is not None
-    assert found.to_text() == virtual.to_text()
-    assert (found.paths.root, found.console_ports) == (Path("/robot"), (5678,))
 
 
 def test_own_processes() -> None:
@@ -445,31 +276,6 @@ def test_a_watch_ends_when_the_laptop_wants_something_else(tmp_path: Path, monke
         assert ours.watch(Wire(source, io.BytesIO()), 60, 60)["verdict"] == "starting"
 
 
-@pytest.mark.parametrize(
-    ("text", "reports"),
-    [
-        ("import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n", True),
-        ("class MyRobot(wpilib.TimedRobot):  # no longer a magicbot\n", True),
-        ("class MyRobot(commands2.TimedCommandRobot):\n", True),
-        ("import wpilib\n", False),
-        ("import magicbot\n\nclass MyRobot(wpilib.TimedRobot):\n", False),
-        ("class MyRobot(wpilib.TimedRobot):\n    def startCompetition(self):\n", False),
-    ],
-)
-def test_what_reports_its_start(tmp_path: Path, text: str, reports: bool) -> None:
-    (tmp_path / "robot.py").write_text(text)
-    assert program._reports_start(tmp_path / "robot.py") is reports
-    # The class may be in any module of the program.
-    (tmp_path / "robot.py").write_text("from bases.ours import MyRobot\n")
-    (tmp_path / "bases").mkdir()
-    (tmp_path / "bases/ours.py").write_text(text)
-    assert program._reports_start(tmp_path / "robot.py") is reports
-
-
-def test_a_program_whose_main_file_is_unknown_reports_its_start() -> None:
-    assert program._reports_start(None)
-
-
 def output_of(*texts: str, before: str = "") -> list[str]:
     """What the laptop accepts of this output of a program, message by message.
 
@@ -513,30 +319,6 @@ def test_the_last_output_of_a_long_restart_is_kept() -> None:
 
 def compiled_in(directory: Path) -> list[str]:
     return sorted(".".join(each.name.split(".")[::2]) for each in directory.rglob("*.pyc"))
-
-
-def test_what_is_not_compiled_yet_is_compiled(tmp_path: Path) -> None:
-    for name in ("a.py", "b.py", "sub/c.py", "no.txt"):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text("x = 1\n")
-    signs: list[Any] = []
-    activity = Activity(lambda **said: signs.append(said), pause=-1.0)
-    compile_below(tmp_path, False, activity)
-    assert compiled_in(tmp_path) == ["a.opt-1", "b.opt-1", "c.opt-1"]
-    assert signs[-1] == {"alive": {"phase": "compile", "count": 3, "of": 3}}
-    compile_below(tmp_path, True, activity)
-    assert compiled_in(tmp_path) == ["a.opt-1", "a.pyc", "b.opt-1", "b.pyc", "c.opt-1", "c.pyc"]
-    forms = CompiledForms()
-    source = str(tmp_path / "a.py")
-    assert forms.includes(source, True)
-    assert forms.includes(source, False)
-    assert not forms.includes(str(tmp_path / "d.py"), True)
-    assert [Path(form).name.partition(".")[0] for form in forms.of(source)] == ["a", "a"]
-    assert forms.of(str(tmp_path / "no.txt")) == []
-    (tmp_path / "new").mkdir()
-    forms.link(source, str(tmp_path / "new/a.py"))
-    forms.link(str(tmp_path / "no.txt"), str(tmp_path / "new/no.txt"))
-    assert compiled_in(tmp_path / "new") == ["a.opt-1", "a.pyc"]
 
 
 def test_the_programs_own_sources_have_to_be_valid(tmp_path: Path) -> None:

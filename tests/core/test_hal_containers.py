@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import copy
 import decimal
 import json
-import pickle
 from collections.abc import Callable
 from fractions import Fraction
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -54,79 +51,7 @@ def store() -> Store:
     return Store()
 
 
-NOW = {"speed": 0.5, "count": 2, "alias": 2, "const": 7, "list": [1, 2, 3], "own": None}
-
-
 # -- dicts -------------------------------------------------------------------------------------------------------------
-
-
-def test_a_dict_is_built_when_it_is_used_and_reads_what_is_elsewhere(store: Store) -> None:
-    assert store.built == 0
-    assert store.tree["speed"] == 0.5
-    store.values["speed"] = 0.75
-    assert store.tree["speed"] == 0.75
-    assert store.tree.get("speed") == 0.75
-    assert store.tree.get("none") is None
-    assert store.tree.get("none", 3) == 3
-    assert store.built == 1
-
-
-def test_a_dict_is_a_dict_to_all_code(store: Store) -> None:
-    tree = store.tree
-    assert isinstance(tree, dict)
-    assert tree == NOW
-    assert tree == MappingProxyType(NOW)
-    assert tree == tree.copy()
-    assert tree != {**NOW, "count": 3}
-    assert tree != [1]
-    assert (tree != NOW) is False
-    assert list(tree) == list(NOW)
-    assert list(reversed(tree)) == list(reversed(NOW))
-    assert len(tree) == 6
-    assert ("speed" in tree, "none" in tree) == (True, False)
-    assert {**tree} == NOW
-    assert tree | {"speed": 1} == {**NOW, "speed": 1}
-    assert {"speed": 1, "more": 2} | tree == {"more": 2, **NOW}
-    assert tree.__or__(3) is tree.__ror__(3) is NotImplemented
-    assert type(tree | {}) is type({} | tree) is dict
-    assert json.loads(json.dumps(tree)) == NOW
-    for same in (copy.copy(tree), copy.deepcopy(tree), pickle.loads(pickle.dumps(tree))):
-        assert type(same) is dict
-        assert same == NOW
-    assert copy.copy(tree)["list"] is store.list
-    assert type(copy.deepcopy(tree)["list"]) is list
-    assert tree.fromkeys("ab", 1) == {"a": 1, "b": 1}
-    assert repr(tree) == f"<place: {NOW!r}>"
-    with pytest.raises(TypeError):
-        hash(tree)
-
-
-def test_a_dict_is_written_where_its_values_are(store: Store) -> None:
-    store.tree["speed"] = 1
-    store.tree.update(count=4)
-    store.tree["alias"] = np.int64(5)
-    store.tree["own"] = "anything"
-    assert store.values == {"speed": 1.0, "count": 5, "const": 7}
-    assert store.tree["own"] == "anything"
-    store.tree["list"] = [9]
-    assert store.numbers == [9, 2, 3]
-    before = store.tree
-    before |= {"speed": -1}
-    assert before is store.tree
-    assert store.values["speed"] == -1
-    store.tree.assign({"count": 1, "speed": 0})
-    assert store.values == {"speed": 0, "count": 1, "const": 7}
-    assert store.tree.setdefault("count", 8) == 1
-
-
-def test_none_is_an_output_that_is_not_set(store: Store) -> None:
-    store.tree["speed"] = None
-    assert store.values["speed"] == NOT_SET
-    assert store.tree["speed"] is None
-    store.tree["speed"] = 0.25
-    assert store.tree["speed"] == 0.25
-    with pytest.raises(WrongType, match=r"place\.count: expected .*None"):
-        store.tree["count"] = None
 
 
 @pytest.mark.parametrize(
@@ -168,81 +93,7 @@ def test_listeners_of_a_value_and_of_its_alias(store: Store) -> None:
     assert heard[3:] == [("count", 3), ("alias", 3)]
 
 
-def test_listeners_that_the_hal_has_called_are_called_once() -> None:
-    cell, calls = [0], []
-    connected: list[Callable[[], None]] = []
-
-    def put(value: int) -> None:
-        changed = cell[0] != value
-        cell[0] = value
-        if changed:
-            connected[0]()
-
-    def watch(fire: Callable[[], None]) -> object:
-        connected.append(fire)
-        return fire
-
-    tree = LiveDict("", lambda: {"value": Slot(lambda: cell[0], put, INT32, watch)})
-    tree.register("value", lambda key, value: calls.append(value))
-    for value in (1, 1, 2):
-        tree["value"] = value
-    put(3)
-    assert calls == [1, 1, 2, 3]
-    assert len(connected) == 1
-    assert repr(tree) == "<hal_data: {'value': 3}>"
-    with pytest.raises(UnknownKey, match="there is no key 'x' in hal_data"):
-        tree["x"]
-
-
 # -- lists -------------------------------------------------------------------------------------------------------------
-
-
-def test_a_list_is_a_list_to_all_code(store: Store) -> None:
-    numbers = store.list
-    assert isinstance(numbers, list)
-    assert numbers == [1, 2, 3]
-    assert numbers == (1, 2, 3)
-    assert numbers == numbers
-    assert (numbers == [1, 2], numbers == "abc", numbers != [1, 2, 3], numbers != [1]) == (False, False, False, True)
-    assert (numbers < [2], numbers <= [1, 2, 3], numbers > [2], numbers >= [1, 2, 3]) == (True, True, False, True)
-    assert (numbers < [1, 2, 3], numbers > [1, 2, 3], numbers <= [1], numbers >= [2]) == (False, False, False, False)
-    assert (
-        numbers + [4],  # noqa: RUF005 - what is tested
-        [0] + numbers,  # noqa: RUF005 - what is tested
-        numbers * 2,
-        2 * numbers,
-    ) == (
-        [1, 2, 3, 4],
-        [0, 1, 2, 3],
-        [1, 2, 3, 1, 2, 3],
-        [1, 2, 3, 1, 2, 3],
-    )
-    for other in ("__add__", "__radd__", "__lt__", "__le__", "__gt__", "__ge__"):
-        assert getattr(numbers, other)((1,)) is NotImplemented
-    assert numbers.copy() == [1, 2, 3]
-    assert json.dumps(numbers) == "[1, 2, 3]"
-    assert (numbers.index(2), numbers.count(3), 3 in numbers, list(reversed(numbers))) == (1, 1, True, [3, 2, 1])
-    for same in (copy.copy(numbers), copy.deepcopy(numbers), pickle.loads(pickle.dumps(numbers)), numbers[:]):
-        assert type(same) is list
-        assert same == [1, 2, 3]
-    assert repr(numbers) == "<place.list: [1, 2, 3]>"
-    with pytest.raises(TypeError):
-        hash(numbers)
-
-
-def test_a_list_is_written_where_its_values_are(store: Store) -> None:
-    numbers = store.list
-    numbers[0], numbers[-1] = 10, 30
-    assert store.numbers == [10, 2, 30]
-    assert (numbers[0], numbers[-3], numbers[2], numbers[1:]) == (10, 10, 30, [2, 30])
-    numbers[1:] = (5, 6)
-    assert store.numbers == [10, 5, 6]
-    numbers[::2] = [0, 1]
-    assert store.numbers == [0, 5, 1]
-    numbers.assign([7, 7])
-    assert store.numbers == [7, 7, 1]
-    store.numbers.append(4)
-    assert (len(numbers), numbers) == (4, [7, 7, 1, 4])
 
 
 @pytest.mark.parametrize(

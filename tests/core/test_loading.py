@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import builtins
-import faulthandler
-import os
-import subprocess
 import sys
 from collections.abc import Callable, Generator, Mapping
-from dataclasses import replace
 from pathlib import Path
 from textwrap import dedent
 
@@ -16,12 +12,8 @@ import pytest
 
 from pyfrc_core.config.settings import Settings
 from pyfrc_core.errors import ProjectError, RobotCodeError
-from pyfrc_core.processes import crash_report
 from pyfrc_core.project import Project
-from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime import keyboard_input
-from pyfrc_core.runtime.exceptions import TestFroze
-from pyfrc_core.runtime.failures import as_robot_code_error, headline, leave_out_libraries
 from pyfrc_core.runtime.loading import import_file, load_robot
 
 ROBOT = """
@@ -139,44 +131,7 @@ def test_a_file_that_hides_a_library_is_named(make_project: MakeProject, monkeyp
     assert "random.py" not in (refusal(failing).remedy or "")
 
 
-def test_a_program_that_never_ends_to_be_imported(make_project: MakeProject) -> None:
-    settings = replace(Settings(), test=replace(Settings().test, hang_seconds=0.2))
-    error = refusal(make_project("x = 1\nwhile True:\n    x += 1\n", settings=settings))
-    assert isinstance(error.__cause__, TestFroze)
-    assert error.where in ("robot.py:2", "robot.py:3")
-    assert error.message == "the robot code hangs here, through 0.2 s of computing"
-    assert "Is it an endless loop?" in (error.remedy or "")
-
-
-def test_the_keyboard_is_refused_to_robot_code_only(make_project: MakeProject, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(keyboard_input, "_real_input", lambda prompt: f"typed after {prompt}")
-    project = make_project("def ask():\n    return input()\n")
-    module = import_file(project, project.main_file)
-    assert input("here: ") == "typed after here: "
-    with pytest.raises(RobotCodeError) as caught:
-        module.ask()
-    assert caught.value.where == "robot.py:2"
-
-
 # -- the robot's class -------------------------------------------------------------------------------------------------
-
-
-def test_the_one_class_that_no_other_derives_from_is_the_robots(make_project: MakeProject) -> None:
-    text = """
-    import wpilib
-    from wpilib import TimedRobot
-
-    class Base(wpilib.TimedRobot): ...
-    class Robot(Base): ...
-    class Helper: ...
-    """
-    assert load_robot(make_project(text)).__name__ == "Robot"
-
-
-def test_a_robot_class_of_another_file_counts_where_there_is_none_here(make_project: MakeProject) -> None:
-    elsewhere = "import wpilib\nclass Elsewhere(wpilib.TimedRobot): ...\n"
-    project = make_project("from other import Elsewhere\n", {"other.py": elsewhere})
-    assert load_robot(project).__name__ == "Elsewhere"
 
 
 def test_a_robot_class_of_this_file_counts_before_those_of_others(make_project: MakeProject) -> None:
@@ -192,21 +147,6 @@ class One(wpilib.TimedRobot): ...
 
 class Two(wpilib.TimedRobot): ...
 """
-
-
-def test_of_two_robot_classes_one_has_to_be_chosen(make_project: MakeProject) -> None:
-    project = make_project(TWO)
-    error = refusal(project)
-    assert error.message == "there are 2 robot classes: One (robot.py:3), Two (robot.py:5)"
-    assert error.where == "robot.py"
-    assert (error.remedy or "").startswith("Choose one with --robot-class One, or with robot_class =")
-    assert load_robot(replace(project, class_name="Two")).__name__ == "Two"
-    vars(project)["settings"] = replace(Settings(), robot_class="One")
-    assert load_robot(project).__name__ == "One"
-    chosen = replace(project, class_name="Three")
-    vars(chosen)["settings"] = Settings()
-    error = refusal(chosen)
-    assert (error.message, error.remedy) == ("there is no robot class 'Three'", "There is: One, Two.")
 
 
 @pytest.mark.parametrize(
@@ -233,94 +173,3 @@ def test_a_file_without_a_robot_class(
     error = refusal(make_project(text))
     assert (error.where, error.message) == (where, message)
     assert (error.remedy or "").startswith(remedy)
-
-
-# -- a program that ends the process -----------------------------------------------------------------------------------
-
-
-EXITS = """
-import os, sys
-from pathlib import Path
-from pyfrc_core.processes.crash_report import reported_exit
-from pyfrc_core.project.robot_files import RobotFiles
-with reported_exit(RobotFiles(Path(sys.argv[1]))):
-    exec(compile("\\nos._exit(int(sys.argv[2]))", sys.argv[1] + "/robot.py", "exec"))
-"""
-
-
-@pytest.mark.parametrize(("status", "code"), [(3, 3), (0, 1)])
-def test_an_exit_during_the_import_names_its_line(status: int, code: int, tmp_path: Path) -> None:
-    done = subprocess.run([sys.executable, "-c", EXITS, str(tmp_path), str(status)], capture_output=True, text=True)
-    assert done.returncode == code
-    assert done.stderr == (f"error: robot.py:2: os._exit({status}) was called while the robot's code was imported\n")
-
-
-def test_what_an_import_reports_is_reported_no_longer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(crash_report, "_os_exit", os._exit)
-    enabled: list[str] = []
-    monkeypatch.setattr(faulthandler, "is_enabled", lambda: bool(enabled))
-    monkeypatch.setattr(faulthandler, "enable", lambda all_threads: enabled.append("on"))
-    monkeypatch.setattr(faulthandler, "disable", enabled.clear)
-    before = os._exit
-    with crash_report.reported_exit(RobotFiles(tmp_path)):
-        assert os._exit is not before
-        assert enabled == ["on"]
-        replaced = os._exit
-        with crash_report.reported_exit(RobotFiles(tmp_path)):  # it is reported already
-            assert os._exit is replaced
-    assert os._exit is before
-    assert enabled == []
-    enabled.append("before")
-    with crash_report.reported_exit(RobotFiles(tmp_path)):
-        pass
-    assert enabled == ["before"]
-
-
-# -- errors ------------------------------------------------------------------------------------------------------------
-
-
-def test_pyfrcs_own_part_is_left_out_of_a_traceback(make_project: MakeProject, tmp_path: Path) -> None:
-    project = make_project("def call(do):\n    do()\n")
-    module = import_file(project, project.main_file)
-    files = project.files
-
-    def raised(do: Callable[[], object]) -> BaseException:
-        try:
-            module.call(do)
-        except Exception as error:
-            return error
-        raise AssertionError("it raises nothing")
-
-    error = raised(lambda: import_file(make_project("1 / 0"), tmp_path / "none.py"))
-    depth = _files_of(error)
-    assert any("pyfrc_core" in name for name in depth)
-    leave_out_libraries(error, files)
-    left = _files_of(error)
-    assert not any("pyfrc_core" in name for name in left)
-    assert str(tmp_path / "robot.py") in left
-    wpilibs = raised(lambda: _raise_with_stack(tmp_path))
-    leave_out_libraries(wpilibs, files)
-    assert wpilibs.args == (f'made before:\n  File "{tmp_path}/robot.py", line 2, in call\n    do()', 7)
-
-
-def _raise_with_stack(root: Path) -> None:
-    raise RuntimeError(
-        f'made before:\n  File "{root}/robot.py", line 2, in call\n    do()\n'
-        '  File "/usr/lib/python3/other.py", line 9, in run\n    pass\n',
-        7,
-    )
-
-
-def _files_of(error: BaseException) -> list[str]:
-    found, entry = [], error.__traceback__
-    while entry is not None:
-        found.append(entry.tb_frame.f_code.co_filename)
-        entry = entry.tb_next
-    return found
-
-
-def test_a_test_that_froze_says_it_all(tmp_path: Path) -> None:
-    files = RobotFiles(tmp_path)
-    assert headline(TestFroze("robot.py:3: it hangs"), files) == "robot.py:3: it hangs"
-    assert headline(TestFroze(), files) is None
-    assert str(as_robot_code_error(TestFroze("robot.py:3: it hangs"), files)) == "robot.py:3: it hangs"

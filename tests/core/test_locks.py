@@ -33,21 +33,6 @@ def test_a_lock_goes_to_who_has_waited_longest(timeline: Timeline) -> None:
     assert not lock.locked()
 
 
-def test_freeing_a_lock_wakes_one_thread_only(timeline: Timeline) -> None:
-    lock = make_lock()
-    lock.acquire()
-    woken: list[str] = []
-    real = timeline.threads.notify
-    timeline.threads.notify = lambda waiters: (woken.extend(each.thread.name for each in waiters), real(waiters))  # type: ignore[assignment,union-attr,func-returns-value]
-    for name in "ab":
-        timeline.thread(name, lambda: lock.acquire())
-    timeline.run_until(1)
-    lock.release()
-    assert woken == ["a"]
-    assert timeline.run_until(2) == []
-    assert lock.locked()
-
-
 def test_a_time_out_of_0_costs_a_microsecond_so_that_a_loop_of_them_ends(timeline: Timeline) -> None:
     lock = make_lock()
     lock.acquire()

@@ -12,7 +12,6 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from functools import partial
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
@@ -22,19 +21,14 @@ from typing import Any
 import pytest
 
 from pyfrc_core.errors import RobotCodeError, UsageError
-from pyfrc_core.processes import channel, frames, outbox
-from pyfrc_core.processes import exit as process_exit
+from pyfrc_core.processes import frames, outbox
 from pyfrc_core.processes.call import ForkedCall, run_in_subprocess
 from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.processes.exit import (
-    before_every_exit,
-    before_sudden_exit,
     exit_by_signal,
-    exit_now,
-    prepare_sudden_exit,
 )
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
-from pyfrc_core.processes.frames import FrameTooLargeError, decode, encode
+from pyfrc_core.processes.frames import decode, encode
 from pyfrc_core.processes.prefork import PreforkedProcess
 from pyfrc_core.processes.worker import ForkedWorker, Send, SpawnedWorker, Work, Worker, wait_for_any
 from pyfrc_core.project import Project
@@ -90,16 +84,6 @@ def test_objects_come_in_their_order_however_a_stream_is_cut() -> None:
         assert list(decode(stream[:cut])) == sent[:whole]
 
 
-def test_an_object_that_is_too_large_is_refused_and_a_length_that_is_too_large_is_none(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    small, large = encode("small"), encode("large" * 100)
-    monkeypatch.setattr(frames, "MOST_BYTES", 100)
-    with pytest.raises(FrameTooLargeError, match="100"):
-        encode("large" * 100)
-    assert list(decode(small + large + small)) == ["small"]
-
-
 # -- workers: messages, then the exit ----------------------------------------------------------------------------------
 
 
@@ -146,19 +130,6 @@ def test_messages_are_there_before_the_exit(begin: Begin) -> None:
     assert finish(worker) == [0, 1, 2]
     os.close(reading)
     os.close(writing)
-
-
-@only_forked
-def test_a_process_left_behind_does_not_hold_up_the_exit(begin: Begin) -> None:
-    def leave_a_process(send: Send, log: CrashLog) -> None:
-        child = os.fork()
-        if child == 0:
-            signal.pause()
-        send(child)
-
-    worker = begin(ForkedWorker, leave_a_process)
-    (child,) = finish(worker)
-    os.kill(child, signal.SIGKILL)
 
 
 @only_forked
@@ -264,64 +235,6 @@ def test_messages_to_a_process_that_does_not_read_wait_in_their_order() -> None:
         box.send(number)  # the other end is closed: no error
 
 
-# -- a channel: two sources, one order ---------------------------------------------------------------------------------
-
-
-class Heard:
-    """A channel, and all that it reports."""
-
-    def __init__(self) -> None:
-        self.events: list[tuple[object, ...]] = []
-        self.ours, self.theirs = Pipe()
-        self.channel = channel.Channel(
-            5,
-            lambda number, message: self.events.append((number, "message", message)),
-            lambda number, status: self.events.append((number, "exit", status)),
-        )
-
-
-EXIT = (5, "exit", 3)
-
-
-def test_an_exit_that_is_known_first_is_reported_last(monkeypatch: pytest.MonkeyPatch) -> None:
-    heard, ending = Heard(), threading.Event()
-    receive, end_of_input = channel.receive, channel.end_of_input
-
-    def receive_late(connection: Any) -> Any:
-        assert ending.wait(PATIENCE)
-        return receive(connection)
-
-    def end(connection: Any) -> None:
-        end_of_input(connection)
-        ending.set()
-
-    monkeypatch.setattr(channel, "receive", receive_late)
-    monkeypatch.setattr(channel, "end_of_input", end)
-    for number in range(3):
-        heard.theirs.send(number)
-    heard.theirs.close()
-    heard.channel.connected(heard.ours)
-    heard.channel.ended(3)
-    assert heard.events == [(5, "message", 0), (5, "message", 1), (5, "message", 2), EXIT]
-
-
-@only_linux
-def test_a_connection_that_another_process_holds_open_does_not_hold_up_the_exit() -> None:
-    heard = Heard()
-    heard.channel.connected(heard.ours)
-    heard.theirs.send("before")
-    heard.channel.ended(3)
-    assert heard.events == [(5, "message", "before"), EXIT]
-    heard.theirs.close()
-
-
-def test_an_exit_is_reported_once_and_without_a_connection() -> None:
-    heard = Heard()
-    heard.channel.ended(3)
-    heard.channel.ended(4)
-    assert heard.events == [EXIT]
-
-
 # -- ends --------------------------------------------------------------------------------------------------------------
 
 
@@ -336,11 +249,6 @@ def send_and_die(send: Send, log: CrashLog) -> None:
     log.time_us[0] = 1_520_000
     log.set_mode("disabled autonomous")
     os.kill(os.getpid(), signal.SIGKILL)
-
-
-def send_and_raise(send: Send, log: CrashLog) -> None:
-    send("before")
-    raise LookupError("the worker's")
 
 
 @pytest.mark.parametrize("kind", BOTH)
@@ -365,24 +273,6 @@ def test_the_moment_of_a_process_that_is_killed(kind: type[Worker], begin: Begin
     )
 
 
-@only_forked
-def test_an_error_of_the_work_is_in_the_crash_log(begin: Begin) -> None:
-    worker = begin(ForkedWorker, send_and_raise)
-    assert finish(worker) == ["before"]
-    assert worker.status == 1
-    assert "LookupError: the worker's" in worker.describe_exit(FILES, "meanwhile")
-
-
-@only_forked
-def test_a_worker_that_is_killed_has_finished(begin: Begin) -> None:
-    worker = begin(ForkedWorker, lambda send, log: signal.pause())
-    worker.kill()
-    assert worker.finished
-    assert worker.status == -signal.SIGKILL
-    worker.poll()
-    worker.kill()
-
-
 def finish_by_signal(worker: Worker, monkeypatch: pytest.MonkeyPatch) -> list[object]:
     """Kill a process that is measured when it has sent something, and return its messages; it ends by itself."""
     monkeypatch.setattr(Fork, "grace_seconds", float(PATIENCE))
@@ -401,47 +291,6 @@ def test_a_kill_leaves_time_to_save_measurements(begin: Begin, monkeypatch: pyte
         signal.pause()
 
     assert finish_by_signal(begin(ForkedWorker, save_when_terminated), monkeypatch) == ["ready", "saved"]
-
-
-@only_forked
-def test_a_process_that_missed_a_signal_receives_another(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As one that had just begun to wait; those after it disturb nothing."""
-
-    def miss_the_first(send: Send, log: CrashLog) -> None:
-        def end_again() -> None:
-            os.kill(os.getpid(), signal.SIGTERM)
-            send("ended")
-
-        def missed(number: int, frame: object) -> None:
-            signal.signal(number, partial(exit_by_signal, prepare=end_again))
-
-        signal.signal(signal.SIGTERM, missed)
-        send("ready")
-        while True:
-            signal.pause()
-
-    assert finish_by_signal(begin(ForkedWorker, miss_the_first), monkeypatch) == ["ready", "ended"]
-
-
-@only_forked
-def test_what_is_called_at_each_exit(begin: Begin, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also when the one before fails; each once."""
-
-    def exit_with_calls(send: Send, log: CrashLog) -> None:
-        before_sudden_exit.update(first=lambda: 1 / 0, second=partial(send, "sudden"))
-        prepare_sudden_exit()
-        before_every_exit.append(partial(send, "measured"))
-
-    assert finish(begin(ForkedWorker, exit_with_calls)) == ["sudden", "measured"]
-
-
-def test_an_exit_is_not_prevented(monkeypatch: pytest.MonkeyPatch) -> None:
-    ended: list[int] = []
-    monkeypatch.setattr(process_exit, "_exit", ended.append)
-    monkeypatch.setattr(process_exit, "before_every_exit", [lambda: 1 / 0])
-    with suppress(ZeroDivisionError):
-        exit_now(5)
-    assert ended == [5]
 
 
 # -- nothing outlives its owner ----------------------------------------------------------------------------------------
@@ -514,15 +363,6 @@ def test_a_preforked_process_is_as_this_one_was() -> None:
     preforked.dismiss()
 
 
-@only_forked
-def test_a_preforked_process_that_is_not_needed_is_gone() -> None:
-    preforked = PreforkedProcess(lambda reasons: 1)
-    preforked.dismiss()
-    preforked.dismiss()
-    with pytest.raises(ChildProcessError):
-        os.waitpid(preforked._fork._pid, os.WNOHANG)
-
-
 # -- calls -------------------------------------------------------------------------------------------------------------
 
 
@@ -573,34 +413,3 @@ def name_of(project: Project, log: CrashLog) -> str:
 def test_a_call_in_a_new_interpreter(tmp_path: Path) -> None:
     project = Project(tmp_path / "robot.py")
     assert run_in_subprocess(name_of, project, "meanwhile") == "robot.py"
-
-
-# -- the last output ---------------------------------------------------------------------------------------------------
-
-PREFORKED = """
-import sys
-from pyfrc_core.processes.prefork import PreforkedProcess
-
-def work(reasons):
-    sys.stdout.write(f"out {reasons}")
-    sys.stderr = open(2, "w", buffering=1000)
-    sys.stderr.write("err")
-    return 7
-
-sys.exit(PreforkedProcess(work).take_over("r" * 600))
-"""
-
-
-@only_forked
-def test_what_a_preforked_process_printed_last_is_not_lost() -> None:
-    done = subprocess.run([sys.executable, "-c", PREFORKED], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (7, "err")
-    assert done.stdout == f"out {'r' * 512}"  # which a pipe holds at once
-
-
-def test_an_exit_before_a_connection_was_read_is_not_held_up() -> None:
-    heard = Heard()
-    heard.channel.connection = heard.ours  # known, and not read
-    heard.channel.ended(3)
-    assert heard.events == [EXIT]
-    heard.ours.close()

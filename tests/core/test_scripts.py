@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import Any
 
 import ntcore
 import pytest
@@ -19,7 +18,7 @@ from pyfrc_core.hal.timing import deliver_packet
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.network_entries import NETWORK
 from pyfrc_core.runtime.scripts.player import Player
-from pyfrc_core.runtime.scripts.recorder import Recorder, _MatchTime, _parts, _shortest
+from pyfrc_core.runtime.scripts.recorder import Recorder
 from pyfrc_core.runtime.scripts.script import FORMAT, InputScript, ScriptError, Step, load_script, parse_script
 from pyfrc_core.runtime.scripts.targets import Countdown, Targets
 
@@ -205,38 +204,6 @@ def test_values_that_are_the_same() -> None:
     assert [same(*pair) for pair in ((0.0, -0.0), (1, True), (1, 1.0), (1, 2), ("1", 1), (0.0, nan))] == [False] * 6
 
 
-def test_of_lists_what_has_changed() -> None:
-    assert list(_parts("a", 1, 2)) == [("a", 2)]
-    assert list(_parts("a", [1, 2], [1, 3])) == [("a[1]", 3)]
-    assert list(_parts("a", [1], [1, 3])) == [("a[1]", 3)]
-    assert list(_parts("a", None, [1])) == [("a[0]", 1)]
-    assert list(_parts("a", [1, 2], [1])) == []
-    third = float.fromhex("0x1.555556p-2")  # as WPILib keeps it
-    assert list(_parts("j.axes", [0.0], [third])) == [("j.axes[0]", _shortest(third))]
-    assert [_shortest(axis) for axis in (0.5, -1.0, 0.10000000149011612, third)] == [0.5, -1.0, 0.1, 0.33333334]
-
-
-def test_seconds_that_are_written_before_each_packet_are_one_countdown() -> None:
-    heard = _MatchTime()
-    steps: list[dict[str, Any]] = []
-
-    def hear(before: float, left: float, at_us: int, stepping: bool = True) -> dict[str, Any]:
-        writes: dict[str, Any] = {}
-        heard.hear(writes, before, left, at_us, stepping)
-        steps.append(writes)
-        return writes
-
-    hear(0, 0, 0)
-    hear(0, 15.0, 20_000)
-    hear(15.0, 14.98, 40_000)
-    hear(14.98, 14.96, 60_000)
-    assert steps == [{}, {"match_time": 15.0}, {}, {}]
-    hear(14.96, 14.96, 80_000)  # it stands still
-    hear(14.96, 14.96, 100_000)
-    hear(14.96, 3.0, 110_000, stepping=False)
-    assert steps[4:] == [{"time.remaining": 14.96}, {}, {"time.remaining": 3.0}]
-
-
 class Robot(wpilib.TimedRobot):
     """Writes down what it sees."""
 
@@ -263,71 +230,6 @@ def drive(run: RobotRun) -> None:
     run.run_until(130_000)
 
 
-def test_a_recording_replayed_does_the_same(run: RobotRun) -> None:
-    recorder = Recorder(run)
-    robot = run.construct(Robot)
-    run.start()
-    drive(run)
-    script = recorder.script("robot.py", 3, "hash")
-    assert [(step.at_us, dict(step.writes)) for step in script.steps] == [
-        (30_001, {"mode": "teleop", "joysticks[0].axes[0]": 0.1}),
-        (70_001, {"joysticks[0].buttons[2]": True}),
-        (90_001, {"mode": "disabled", "joysticks[0].axes[0]": -1.0}),
-    ]
-    assert (script.start_us, script.end_us, script.robot, script.seed, script.trace) == (
-        0,
-        130_001,
-        "robot.py",
-        3,
-        "hash",
-    )
-    assert sorted(script.packages) == ["pyfrc", "wpilib"]
-    seen = robot.seen
-    assert seen == [
-        (False, 0.0, False),  # 20 ms
-        (True, 0.1, False),
-        (True, 0.1, False),
-        (True, 0.1, True),  # 80 ms
-        (False, -1.0, True),
-        (False, -1.0, True),
-    ]
-    assert recorder.steps_from(1) == script.steps[1:]
-    recorder.forget_before(2)
-    assert recorder.steps_from(1) == script.steps[2:]
-    assert recorder.steps_from(3) == ()
-    run.close()
-    second = RobotRun()
-    second.open()
-    try:
-        replayed = second.construct(Robot)
-        Player(script, second).play()
-        assert replayed.seen == seen
-        assert second.clock.now_us == 130_000  # what is due at its end does not happen
-    finally:
-        second.close()
-
-
-def test_packets_out_of_turn_and_what_is_set_before_the_start(run: RobotRun) -> None:
-    recorder = Recorder(run)
-    modes.set_mode_named("disabled autonomous")
-    recorder.on_packet_out_of_turn()
-    run.construct(Robot)
-    run.start()
-    run.run_until(20_000)
-    recorder.begin_outside(stepping=True)
-    modes.set_match_time(15)
-    recorder.end_outside(stepping=True)
-    modes.unplug(3)
-    recorder.begin_outside()
-    modes.unplug(4)
-    recorder.end_outside()
-    steps = [(step.at_us, dict(step.writes)) for step in recorder.steps_from(0)]
-    assert steps[:2] == [(0, {"mode": "disabled autonomous"}), (0, {"packet": True})]
-    assert (20_000, {"match_time": 15.0}) in steps or (20_000, {"time.remaining": 15.0}) in steps
-    assert (20_001, {"joysticks[4].plugged": False}) in steps
-    assert not any("joysticks[3].plugged" in writes for _, writes in steps)
-
-
 def test_before_packets_with_only_the_match_time_nothing_else_is_recorded(run: RobotRun) -> None:
     recorder = Recorder(run)
     published = ntcore.NetworkTableInstance.getDefault().getDoubleTopic("/speed").publish()
@@ -351,32 +253,6 @@ def test_before_packets_with_only_the_match_time_nothing_else_is_recorded(run: R
         (2_400_001, {"joysticks[0].axes[1]": 0.25, f"{NETWORK}/speed": 0.5}),
     ]
     published.close()
-
-
-def test_values_that_come_and_go_while_only_the_match_time_is_recorded(run: RobotRun) -> None:
-    network = ntcore.NetworkTableInstance.getDefault()
-    entries = [network.getDoubleTopic(f"/{name}").publish() for name in "zyx"]
-    for entry in entries:
-        entry.set(1.0)
-    recorder = Recorder(run)
-    run.construct(Robot)
-    run.start()
-    for _ in range(60):
-        recorder.begin_outside(stepping=True, only_time=True)
-        recorder.end_outside(stepping=True, only_time=True)
-    entries.pop(1).close()
-    entries[0].set(2.0)
-    entries.append(network.getDoubleTopic("/a").publish())
-    entries[-1].set(2.0)
-    recorder.begin_outside()
-    entries.append(network.getDoubleTopic("/y").publish())
-    for entry in reversed(entries):
-        entry.set(3.0)
-    recorder.end_outside()
-    steps = [list(step.writes.items()) for step in recorder.steps_from(0) if step.writes]
-    assert steps == [[(f"{NETWORK}/{name}", 3.0) for name in "zxay"]]
-    for entry in entries:
-        entry.close()
 
 
 def test_a_script_that_does_not_fit_the_robot_names_its_line(run: RobotRun) -> None:

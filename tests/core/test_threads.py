@@ -50,34 +50,6 @@ def test_a_wake_up_comes_after_the_packet_and_before_the_loop_of_its_time(timeli
     assert timeline.run_until(20) == ["20 packet", "20 thread", "20 loop", "20 physics"]
 
 
-def test_a_thread_knows_that_it_takes_part_and_whose_turn_it_is(timeline: Timeline) -> None:
-    records: list[RobotThread | None] = []
-
-    def body() -> None:
-        records.extend([timeline.threads.current(), timeline.threads.running])
-        timeline.note(timeline.threads.takes_part())
-
-    thread = timeline.thread("t", body)
-    record = cooperative.record_of(thread)
-    assert record is not None
-    assert (record.finished, record.detached, record.is_the_robot) == (False, False, False)
-    timeline.run_until(1)
-    assert timeline.log == ["0 True"]
-    assert records == [record, record]
-    assert record.finished
-    assert not thread.is_alive()
-    assert timeline.threads.running is None
-    assert timeline.threads.current() is None
-    assert timeline.threads.takes_part()
-    outside: list[bool] = []
-    other = threading.Thread(target=lambda: outside.append(timeline.threads.takes_part()))
-    other.start()
-    other.join(10)
-    assert outside == [False]
-    timeline.threads.end()
-    assert not timeline.threads.takes_part()
-
-
 def test_who_waits_first_for_a_condition_looks_first(timeline: Timeline) -> None:
     ready: list[str] = []
     waiters: list[RobotThread] = []
@@ -360,31 +332,6 @@ def test_a_thread_that_came_back_from_the_outside_world_stops_at_the_end(
     assert not thread.is_alive()
 
 
-def test_before_the_loop_of_its_own_waits_it_is_said(timeline: Timeline) -> None:
-    def body() -> None:
-        timeline.sleep(3)
-        timeline.sleep(4)
-
-    timeline.threads.before_loop_waits = lambda: timeline.note("waits")
-    thread = timeline.thread("robot", body)
-    timeline.thread("other", body)
-    record = cooperative.record_of(thread)
-    assert record is not None
-    record.is_the_robot = True
-    assert timeline.run_until(10) == ["0 waits", "3 waits"]
-
-
-def test_the_end_of_the_robots_own_loop_by_sys_exit_is_an_error(timeline: Timeline) -> None:
-    def leaves() -> None:
-        raise SystemExit(3)
-
-    record = cooperative.record_of(timeline.thread("robot", leaves))
-    assert record is not None
-    record.is_the_robot = True
-    with pytest.raises(SystemExit):
-        timeline.run_until(1)
-
-
 def test_threads_started_before_a_run_begin_with_it(timeline: Timeline) -> None:
     scope = cooperative.scope
     scope.threads = None
@@ -399,15 +346,3 @@ def test_threads_started_before_a_run_begin_with_it(timeline: Timeline) -> None:
     cooperative.begin_waiting_threads()
     assert scope.waiting_to_begin == []
     assert timeline.run_until(10) == ["5 runs"]
-
-
-def test_outside_any_run_a_thread_that_is_waited_for_begins_in_real_time(timeline: Timeline) -> None:
-    scope = cooperative.scope
-    scope.threads = None
-    ran: list[bool] = []
-    thread = threading.Thread(target=lambda: ran.append(True), daemon=True)
-    cooperative.start_in_robot_time(thread)
-    scope.let_waited_for_begin()
-    cooperative.join_thread(thread, 10)
-    assert ran == [True]
-    scope.threads = timeline.threads

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Callable, Generator
-from dataclasses import replace
 from pathlib import Path
 from textwrap import dedent
 from types import ModuleType, SimpleNamespace
@@ -14,18 +12,13 @@ from typing import Any
 import pytest
 import wpilib
 
-from pyfrc_core.config.settings import Settings
 from pyfrc_core.errors import RobotCodeError, UsageError
-from pyfrc_core.hal import modes
 from pyfrc_core.project.robot_files import RobotFiles
-from pyfrc_core.runtime.clock import KICKOFF
 from pyfrc_core.runtime.failures import as_robot_code_error, headline, headline_is_the_robots, leave_out_libraries
 from pyfrc_core.runtime.foreign_paths import find_foreign_paths
-from pyfrc_core.runtime.loop_limit import LoopLimit, LoopWaitsError
 from pyfrc_core.runtime.match import MatchPeriods
 from pyfrc_core.runtime.misspelled_methods import find_misspelled_methods, refuse_unawaited_methods
 from pyfrc_core.runtime.patches import patches
-from pyfrc_core.runtime.robot import RobotRun
 
 Import = Callable[..., ModuleType]
 
@@ -88,67 +81,6 @@ def test_an_error_is_told_by_the_users_line(import_text: Import, files: RobotFil
     assert isinstance(as_robot_code_error(error, files), RobotCodeError)
     assert headline_is_the_robots("robot.py:2: KeyError", files)
     assert not headline_is_the_robots("tests/robot_test.py:2: KeyError", files)
-
-
-def test_a_method_without_self_is_named(import_text: Import, files: RobotFiles) -> None:
-    robot = import_text(
-        """
-        class Robot:
-            def teleopPeriodic():
-                pass
-
-            def drive(speed, turn):
-                pass
-
-            def stop(self):
-                pass
-        """
-    )
-    assert headline(raised_by(lambda: robot.Robot().teleopPeriodic()), files) == (
-        "robot.py:2: the method teleopPeriodic() has no parameter self: write def teleopPeriodic(self):"
-    )
-    assert headline(raised_by(lambda: robot.Robot().drive(1, 2)), files) == (
-        "robot.py:5: the method drive(speed, turn) has no parameter self: write def drive(self, speed, turn):"
-    )
-    more = headline(raised_by(lambda: robot.Robot().stop(1)), files)  # it has a self, and is called wrongly
-    assert more == "robot.py:8: TypeError: Robot.stop() takes 1 positional argument but 2 were given"
-    missing = headline(raised_by(lambda: robot.Robot().drive()), files)
-    assert missing is not None
-    assert missing.startswith("robot.py:5: TypeError: Robot.drive() missing 1 required positional argument")
-
-
-def test_methods_whose_names_are_misspelled(import_text: Import, files: RobotFiles) -> None:
-    import_text(
-        """
-        class Robot(wpilib.TimedRobot):
-            def teleopPeriodc(self): ...
-            def autoInit(self): ...
-            def robot_init(self): ...
-            def disabledPeriodic(self): ...
-            def disabledPeriodik(self): ...
-            def helper(self): ...
-            def testInti(self): ...
-            def autonomousPeriodc(self): self.called()
-            def called(self): ...
-            def simulationInnit(self): return self.robotPeriodec
-            def robotPeriodec(self): ...
-
-        class Other:
-            def teleopPeriodc(self): ...
-        """,
-        wpilib=wpilib,
-    )
-    found = find_misspelled_methods(SimpleNamespace(files=files))  # type: ignore[arg-type]
-    assert [str(each) for each in found] == [
-        "robot.py:2: WPILib never calls Robot.teleopPeriodc: did you mean teleopPeriodic?",
-        "robot.py:3: WPILib never calls Robot.autoInit: did you mean autonomousInit?",
-        "robot.py:4: WPILib never calls Robot.robot_init: did you mean robotInit? "
-        "(snake_case names are those of WPILib 2027)",
-        "robot.py:8: WPILib never calls Robot.testInti: did you mean testInit?",
-        "robot.py:9: WPILib never calls Robot.autonomousPeriodc: did you mean autonomousPeriodic?",
-        "robot.py:11: WPILib never calls Robot.simulationInnit: did you mean _simulationInit?",
-    ]
-    assert found[0].remedy == "Rename it to teleopPeriodic."
 
 
 @pytest.mark.parametrize(
@@ -224,52 +156,6 @@ def test_a_method_of_a_mode_inside_another_method(import_text: Import, files: Ro
     assert found.remedy == "Indent it as much as robotInit."
 
 
-# -- a loop that waits -------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("mode", "waits", "exceeded"),
-    [("teleop", 100, None), ("teleop", 100.001, 120.001), ("autonomous", 300, None), ("autonomous", 301, 320.001)],
-)
-def test_a_turn_of_the_loop_has_so_much_time(
-    mode: str, waits: float, exceeded: float | None, run: RobotRun, import_text: Import, files: RobotFiles
-) -> None:
-    def wait(milliseconds: float) -> None:
-        if milliseconds:
-            run.threads.sleep_until(run.clock.now_us + round(milliseconds * 1000))
-
-    robot = import_text(
-        """
-        class Robot(wpilib.TimedRobot):
-            def teleopPeriodic(self):
-                self.drive()
-
-            def autonomousPeriodic(self):
-                self.drive()
-
-            def drive(self):
-                wait(times.pop() if times else 0)
-        """,
-        wpilib=wpilib,
-        wait=wait,
-        times=[0, 0, 0, waits],
-    )
-    settings = Settings()
-    settings = replace(
-        settings, test=replace(settings.test, loop_seconds=0.1), match=replace(settings.match, autonomous=0.3)
-    )
-    found: list[tuple[float, LoopWaitsError]] = []
-    LoopLimit(run, files, settings, lambda error: found.append((run.clock.now_us / 1000, error)))
-    run.construct(robot.Robot)
-    run.start()
-    modes.set_mode_named(mode)
-    run.run_until(360_000)
-    assert [at for at, _ in found] == ([] if exceeded is None else [exceeded])
-    for _, error in found:
-        assert (error.place, error.begins_at, error.function) == ("robot.py:9", "robot.py:8", f"{mode}Periodic")
-        assert error.note.startswith(f"robot.py:9: {mode}Periodic has not returned after 0.{3 if waits > 200 else 1} s")
-
-
 # -- time --------------------------------------------------------------------------------------------------------------
 
 
@@ -281,51 +167,6 @@ def patched(files: RobotFiles) -> Generator[None]:
         yield
     finally:
         patches.uninstall()
-
-
-def test_the_projects_files_have_robot_time(patched: None, run: RobotRun, import_text: Import) -> None:
-    robot = import_text(
-        """
-        import threading, time, wpilib
-
-        def read():
-            return [getattr(time, name)() for name in names]
-
-        names = ["time", "time_ns", "monotonic", "monotonic_ns", "perf_counter", "perf_counter_ns"]
-
-        def sleep(seconds):
-            time.sleep(seconds)
-
-        def wait(seconds):
-            wpilib.wait(seconds)
-
-        def lock():
-            return threading.Lock().acquire(timeout=1), threading.Event().wait(0.25)
-        """
-    )
-    run.clock.run_until(1_500_000)
-    assert robot.read() == [
-        KICKOFF + 1.5,
-        KICKOFF * 10**9 + 1_500_000_000,
-        1.5,
-        1_500_000_000,
-        1.5,
-        1_500_000_000,
-    ]
-    assert abs(time.time() - KICKOFF) > 60  # here it is real
-    real = time.monotonic()
-    robot.sleep(30)
-    assert run.clock.now_us == 31_500_000
-    robot.sleep(0)
-    assert run.clock.now_us == 31_500_001
-    robot.wait(0.5)
-    assert run.clock.now_us == 32_000_001
-    assert robot.lock() == (True, False)
-    assert run.clock.now_us == 32_250_001
-    assert time.monotonic() - real < 20
-    with pytest.raises(ValueError, match="sleep length must be non-negative"):
-        robot.sleep(-1)
-    assert repr(time.sleep) == "<built-in function sleep>"
 
 
 def test_a_match_and_its_periods() -> None:
