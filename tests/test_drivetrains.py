@@ -187,17 +187,6 @@ def test_calculate_has_the_left_forward_at_one_and_answers_metres() -> None:
     assert (wheels.rearLeft, wheels.rearRight) == pytest.approx((1.524, -1.524))
 
 
-def test_a_robot_at_rest_does_not_move_at_minus_zero() -> None:
-    for chassis in (
-        TwoMotorDrivetrain().calculate(0.0, 0.0),
-        FourMotorDrivetrain().calculate(0.0, 0.0, 0.0, 0.0),
-        MecanumDrivetrain().calculate(0.0, 0.0, 0.0, 0.0),
-    ):
-        assert "-" not in str(chassis)
-    two = TwoMotorDrivetrain()
-    assert "-" not in str((two.get_vector(0.0, 0.0), two.l_speed, two.r_speed))
-
-
 def test_measures_may_be_quantities() -> None:
     from pyfrc.physics.units import units
 

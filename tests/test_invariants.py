@@ -152,20 +152,6 @@ def test_ready_made_and_own_tests_check_the_rules(project) -> None:
     assert f"{text}\n  at 0.12 s of robot time, in autonomous mode" in result.output
 
 
-def test_a_rule_that_holds_changes_nothing(make_shared_project) -> None:
-    traces = []
-    for rules in ("", rule("assert hal_data['pwm'][0]['value'] <= 1\n    return robot.elevator.height > -100")):
-        project = make_shared_project(
-            {"robot.py": ELEVATOR, "pyproject.toml": SETTINGS, "tests/test_it.py": READY_MADE}
-        )
-        project.write({RULES: rules})
-        assert project.run("fuzz", "--seed", "1", "--runs", "4").code == 0
-        result = project.run("test", "--trace", "traces")
-        assert result.code == 0, result.output
-        traces.append({file.name: file.read_bytes() for file in (project.path / "traces").iterdir()})
-    assert traces[0] == traces[1]
-
-
 #: Mistakes in a rule: its head, its body, and what is said of it. Python 3.10 has another line for decorators.
 WRONG = {
     "parameter": (

@@ -437,49 +437,6 @@ def test_without_isolation_each_robot_starts_where_the_first_did(make_project) -
     )
 
 
-@pytest.mark.parametrize(("physics", "x", "y"), [(WATCHED, 0, 0), (MADE, 0, 54.25)])
-def test_without_a_config_each_starts_at_its_own_origin(physics: str, x: float, y: float, make_project) -> None:
-    """The documentation's is the top left corner; that of WPILib's field is the bottom left one."""
-    passes(
-        make_project,
-        physics,
-        f"""
-        def test_it(physics_controller):
-            x, y, angle = physics_controller.get_position()
-            pose = physics_controller.get_pose()
-            if {physics is WATCHED}:
-                assert (x, y, angle) == (0, 0, 0)
-            else:
-                assert (pose.X(), pose.Y(), pose.rotation().degrees()) == (0, 0, 0)
-                assert x == 0 and y > 20
-        """,
-    )
-
-
-def test_update_sim_may_be_a_static_method(make_project) -> None:
-    passes(
-        make_project,
-        """
-        calls = []
-
-        class PhysicsEngine:
-            def __init__(self, physics_controller):
-                pass
-
-            @staticmethod
-            def update_sim(now, tm_diff):
-                calls.append(now)
-        """,
-        """
-        import physics
-
-        def test_it(control, robot):
-            control.run_test(lambda tm: tm < 1)
-            assert len(physics.calls) > 40
-        """,
-    )
-
-
 # -- what is wrong with it -------------------------------------------------------------------------------------------
 
 UPDATE = "    def update_sim(self, hal_data, now, tm_diff):\n        pass\n"

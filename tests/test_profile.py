@@ -336,32 +336,6 @@ def test_magicbots_components_and_the_turns_of_its_loop_are_timed(make_project: 
     assert {each["mode"] for each in slow} == {"teleop"}
 
 
-def test_the_parts_of_a_plain_loop_are_timed(make_project: MakeProject) -> None:
-    robot = """
-        import wpilib
-
-
-        class MyRobot(wpilib.RobotBase):
-            going = True
-
-            def startCompetition(self):
-                while self.going:
-                    self.work()
-                    wpilib.wait(0.02)
-
-            def work(self):
-                pass
-
-            def endCompetition(self):
-                self.going = False
-    """
-    project = make_project({"robot.py": robot, "tests/test_a.py": TELEOP})
-    _, report = profile(project, "test")
-    functions = by_name(report)
-    assert set(functions) == {"the whole loop", "MyRobot.work"}
-    assert functions["the whole loop"]["count"] >= 9
-
-
 # -- the command ----------------------------------------------------------------------------------------------------
 
 SMALL_ROBOT = """
@@ -428,20 +402,6 @@ def test_a_report_that_cannot_be_written_is_an_error_before_anything_runs(
     assert result.code == 2, result.output
     assert result.first_error == f"{option} {Path('robot.py/report')} cannot be written: robot.py is a file"
     assert "passed" not in result.stdout
-
-
-def test_the_older_name_wraps_a_replay(make_project: MakeProject) -> None:
-    # Of a smaller robot, samples take longer on a busy machine than the robot: there would be no share of it to show.
-    larger = SMALL_ROBOT.replace("range(1000)", "range(50_000)")
-    project = make_project({"robot.py": larger, "tests/test_a.py": TELEOP})
-    assert project.run("test", "--record", "scripts").code == 0
-    (script,) = (project.path / "scripts").glob("*teleop.jsonl")
-    result = project.run("profiler", "--top", "1", "replay", str(script))
-    assert result.code == 0, result.output
-    assert "The trace equals the recorded one." in result.stdout
-    assert re.search(r"^  the whole loop +\d+ ", result.stdout, re.MULTILINE)
-    assert "and 1 more function (--top 2)" in result.stdout
-    assert re.search(r"^Cost of measuring: .* µs a call.*samples?; \d+% of the ", result.stdout, re.MULTILINE)
 
 
 def test_a_failing_command_is_reported_with_its_exit_code(make_project: MakeProject) -> None:

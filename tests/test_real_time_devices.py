@@ -19,7 +19,6 @@ from conftest import MakeProject, RobotProject
 from pyfrc_core.compat import unrepeatable
 from pyfrc_core.runtime.scripts.script import ScriptError, load_script, parse_script
 from pyfrc_core.runtime.trace_lines import hashed_part
-from pyfrc_core.sim.engine.changes import change_of
 
 #: The files of a stand-in for phoenix6.
 CONTROLS = """
@@ -153,13 +152,6 @@ def test_devices_count_only_where_the_library_is_loaded(monkeypatch: pytest.Monk
     assert unrepeatable.is_unrepeatable('CAN["CANGyro:Pigeon 2 (v6)[1]"].yaw')
 
 
-def test_devices_are_in_the_order_of_their_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
-    """9 comes before 10."""
-    monkeypatch.setitem(sys.modules, "phoenix6", unrepeatable)
-    names = [f"CANEncoder:CANcoder (v6)[{number}]" for number in (10, 9)]
-    assert unrepeatable.unrepeatable_devices(names) == ("phoenix6 CANcoder 9", "phoenix6 CANcoder 10")
-
-
 def test_one_sentence_names_the_device_the_reason_and_the_remedy() -> None:
     """For one device, two and many."""
     one, two = (
@@ -171,20 +163,6 @@ def test_one_sentence_names_the_device_the_reason_and_the_remedy() -> None:
 
 
 # -- traces ------------------------------------------------------------------------------------------------------------
-
-
-def test_a_line_is_hashed_without_its_marked_values() -> None:
-    """A line that has nothing else does not count at all."""
-    plain = '{"t":1.0,"set":{"pwm[0].value":0.5}}'
-    assert hashed_part(plain) == plain
-    assert hashed_part('{"t":1.0,"set":{"pwm[0].value":0.5},"unrepeatable":{"CAN":1}}') == plain
-    assert hashed_part('{"t":1.0,"set":{},"unrepeatable":{"CAN":1}}') == ""
-
-
-def test_marked_values_are_changes_like_others() -> None:
-    """The window and its plots show them."""
-    change = change_of('{"unrepeatable": {"CAN": 1}, "set": {"pwm[0].value": 0.5}, "t": 1.0}')
-    assert dict(change.values) == {"CAN": 1, "pwm[0].value": 0.5}
 
 
 def test_recordings_have_the_same_hash_and_mark_the_values(with_phoenix: PhoenixProject) -> None:

@@ -283,14 +283,6 @@ def test_ten_megabytes_are_refused_with_their_place(root: Path, raw: bytes, expe
     assert str(result).startswith(f"sim/config.json:{expected}")
 
 
-def test_ten_megabytes_of_unknown_keys_are_warned_of(root: Path) -> None:
-    keys = ",\n".join(f'"{"key" * 160} {number}": {{}}' for number in range(TEN_MB // 500))
-    loaded = outcome(root, f'{{"pyfrc": {{\n{keys}}}}}'.encode())
-    assert isinstance(loaded, LoadedSimConfig)
-    assert str(loaded.warnings[0]).startswith("sim/config.json:2: unknown key \"pyfrc['keykey")
-    assert len(loaded.warnings) == 21
-
-
 @pytest.mark.parametrize(
     "raw",
     [

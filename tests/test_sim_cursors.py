@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import gc
 import json
 from pathlib import Path
 
 import pytest
 from sim_robots import FILES, run, settle, wait
 
-from pyfrc_core.errors import UsageError
 from pyfrc_core.project import find_project
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine import history, output_log
@@ -183,27 +181,6 @@ def test_a_run_that_never_came_up_is_passed_over(make_project) -> None:
         settle(simulation)
         numbers = [event.number for event in cursor.read() if isinstance(event, RunBegan)]
         assert numbers[-1] == simulation.status.starts
-
-
-def test_changes_need_a_recording(make_project) -> None:
-    made = make_project(FILES)
-    with (
-        Simulation(find_project(made.path), SimOptions(speed=0, paused=True, recording=False)) as simulation,
-        pytest.raises(UsageError, match="not recorded"),
-    ):
-        simulation.change_cursor()
-
-
-def test_runs_that_no_consumer_reads_are_not_kept(make_project) -> None:
-    made = make_project(FILES)
-    with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
-        for _ in range(3):
-            simulation.restart()
-            settle(simulation)
-        gc.collect()
-        from pyfrc_core.sim.engine.changes import RunChanges
-
-        assert sum(isinstance(each, RunChanges) for each in gc.get_objects()) == 1
 
 
 def test_a_history_is_read_from_any_entry(monkeypatch: pytest.MonkeyPatch) -> None:

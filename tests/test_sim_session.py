@@ -24,7 +24,7 @@ from sim_robots import FILES, PATIENCE, run, settle, wait
 from pyfrc_core.errors import UsageError
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
-from pyfrc_core.runtime.scripts.script import load_script, parse_script
+from pyfrc_core.runtime.scripts.script import parse_script
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.engine.snapshot import Snapshot
 from pyfrc_core.sim.engine.watch import Watch
@@ -200,56 +200,12 @@ def test_putting_the_robot_elsewhere(simulation: Simulation) -> None:
         simulation.reset_position("lft")
 
 
-def test_putting_a_robot_elsewhere_that_shows_a_field_of_its_own(make_project) -> None:
-    robot = """
-        import wpilib
-        from wpimath.geometry import Pose2d
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.field = wpilib.Field2d()
-                wpilib.SmartDashboard.putData("Field", self.field)
-
-            def robotPeriodic(self):
-                self.field.setRobotPose(Pose2d(1, 2, 0))
-    """
-    physics = """
-        class PhysicsEngine:
-            def __init__(self, controller, robot):
-                pass
-
-            def update_sim(self, now, tm_diff):
-                pass
-    """
-    made = make_project({"robot.py": robot, "physics.py": physics})
-    with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
-        settle(simulation)
-        run(simulation, 0.5)
-        simulation.place(20, 5, 90)
-        run(simulation, 0.5)
-        assert simulation.snapshot.scene.robot == pytest.approx((20, 5, math.pi / 2))
-
-
 def test_starting_elsewhere(project: Project) -> None:
     with Simulation(project, replace(STILL, start_position="left")) as simulation:
         settle(simulation)
         drive_forward(simulation)
         run(simulation, 1)
         assert simulation.snapshot.scene.robot == pytest.approx((2, 8, math.pi / 2), abs=0.2)
-
-
-def test_what_cannot_be_written_is_said(simulation: Simulation) -> None:
-    for target, value, told in (
-        ("pwm[99].value", 1.0, "pwm"),
-        ("joysticks[0].axes[1]", 7.0, "-1"),
-        ("nonsense", 1, "nonsense"),
-    ):
-        simulation.set_button(0, 1, False)
-        simulation.enable()
-        simulation.write({target: value})
-        wait(simulation, lambda: told in simulation.status.note)  # noqa: B023
-    run(simulation, 0.1)
-    assert simulation.status.state == "paused"
 
 
 def test_going_back_lands_on_the_same_snapshot(simulation: Simulation) -> None:
@@ -272,36 +228,6 @@ def test_going_back_lands_on_the_same_snapshot(simulation: Simulation) -> None:
     simulation.rewind(0)
     wait(simulation, lambda: simulation.status.state == "paused")
     assert (simulation.snapshot.time, simulation.snapshot.mode) == (0, "disabled")
-
-
-def test_a_recording_replays_to_the_same_trace(simulation: Simulation, project: Project, tmp_path) -> None:
-    """With everything in it that can come from outside, also after going back."""
-    simulation.choose("/SmartDashboard/Auto", "Forward")
-    simulation.practice()
-    run(simulation, 1.5)
-    simulation.set_axis(0, 0, 0.37)
-    simulation.set_axis(0, 1, -0.81)
-    simulation.set_button(0, 2, True)
-    simulation.set_pov(1, 0, 90)
-    simulation.plug(3, False)
-    simulation.place(20, 5, 90)
-    run(simulation, 1)
-    simulation.rewind(2.0)
-    wait(simulation, lambda: simulation.status.state == "paused")
-    simulation.write({"dio[3].value": False, "nt:/SmartDashboard/gain": 0.25})
-    run(simulation, 0.5)
-    files = simulation.save_all(tmp_path / "drive.jsonl")
-    assert [file.name for file in files] == ["drive.jsonl", "drive-1.jsonl"]
-    simulation.close()
-    script = load_script(files[0])
-    assert script.trace is not None
-    with Simulation(project, replace(STILL, script=script)) as again:
-        settle(again)
-        again.run_until((script.end_us - 1) / 1e6)
-        wait(again, lambda: again.snapshot.time == (script.end_us - 1) / 1e6)
-        assert again.script().trace == script.trace
-        # A script knows what a match did, and not that it was one.
-        assert again.snapshot == replace(simulation.snapshot, practice_since=None)
 
 
 def test_a_script_is_played_and_can_be_taken_over(project: Project) -> None:
@@ -364,31 +290,6 @@ def test_code_that_cannot_be_imported_says_where(make_project) -> None:
     with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
         settle(simulation)
         assert simulation.status.failure.headline.startswith("robot.py:3: ZeroDivisionError")
-
-
-def test_a_robot_program_that_ends(make_project) -> None:
-    made = make_project(
-        {
-            "robot.py": """
-                import hal
-                import time
-                import wpilib
-
-
-                class MyRobot(wpilib.RobotBase):
-                    def startCompetition(self):
-                        hal.observeUserProgramStarting()
-                        time.sleep(0.5)
-
-                    def endCompetition(self):
-                        pass
-            """
-        }
-    )
-    with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
-        run(simulation, 5)
-        assert "ended by itself" in simulation.status.failure.headline
-        assert simulation.status.failure.time == pytest.approx(0.5, abs=0.03)
 
 
 def test_new_code_is_brought_to_the_same_moment(simulation: Simulation, project: Project) -> None:
@@ -472,21 +373,6 @@ def test_where_processes_cannot_be_forked(project: Project) -> None:
         assert released(simulation.snapshot) == released(there)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="connections have no files there")
-def test_a_long_name_of_the_temporary_directory(project: Project, tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A local connection's name may have about a hundred characters."""
-    long = tmp_path / ("long" * 40)
-    long.mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(long))
-    with Simulation(project, STILL) as simulation:
-        drive_forward(simulation)
-        run(simulation, 0.5)
-        assert simulation.snapshot is not None
-        assert simulation.snapshot.mode == "teleop"
-        assert len(list(long.iterdir())) == 1
-    assert list(long.iterdir()) == []
-
-
 @pytest.mark.parametrize(
     "fork", [False, pytest.param(True, marks=pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork"))]
 )
@@ -521,18 +407,6 @@ def test_closed_right_after_the_start(fork: bool, project: Project, tmp_path, mo
 def test_speeds_that_cannot_be(speed: float, project: Project) -> None:
     with pytest.raises(UsageError, match="speed"):
         Simulation(project, SimOptions(speed=speed))
-
-
-def test_a_recording_replays_in_pyfrc_replay(make_project, tmp_path) -> None:
-    made = make_project(FILES)
-    with Simulation(Project(made.path / "robot.py"), STILL) as simulation:
-        drive_forward(simulation)
-        run(simulation, 1)
-        simulation.practice()
-        run(simulation, 1)
-        simulation.save(tmp_path / "drive.jsonl")
-    result = made.run("replay", tmp_path / "drive.jsonl")
-    assert "The trace equals the recorded one." in result.stdout, result.output
 
 
 def test_dashboards_see_the_robot_and_are_recorded(project: Project) -> None:
@@ -616,16 +490,6 @@ def test_a_moment_that_is_left_releases_what_was_held(simulation: Simulation) ->
     assert stands(simulation)
 
 
-def test_a_control_that_was_moved_while_disabled_is_released_too(simulation: Simulation) -> None:
-    simulation.set_axis(0, 1, -1.0)
-    run(simulation, 1)
-    simulation.rewind(0.5)
-    settle(simulation)
-    simulation.enable()
-    run(simulation, 0.1)
-    assert stands(simulation)
-
-
 def test_a_script_that_has_ended_holds_nothing(project: Project) -> None:
     lines = [
         '{"format": "pyfrc-input 1", "end": 1}',
@@ -655,17 +519,6 @@ def test_who_leaves_releases_what_they_held_and_the_last_one_disables(simulation
     run(simulation, 0.1)
     assert not simulation.snapshot.enabled
     assert not any(simulation.snapshot.values["joysticks[0].buttons"])
-
-
-def test_who_has_released_everything_changes_nothing_by_leaving(simulation: Simulation) -> None:
-    one, other = simulation.attach(), simulation.attach()
-    other.enable()
-    one.set_axis(0, 1, -1.0)
-    one.set_axis(0, 1, 0.0)
-    other.set_axis(0, 1, -0.5)
-    one.leave()
-    run(simulation, 0.5)
-    assert simulation.snapshot.values["pwm[0].value"] == pytest.approx(0.5, abs=0.01)
 
 
 def test_a_restart_keeps_what_was_chosen(simulation: Simulation) -> None:

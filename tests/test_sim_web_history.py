@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 import random
-from time import thread_time
 
 import pytest
 
-from pyfrc_core.sim.engine.changes import Change, RunBegan, frozen
+from pyfrc_core.sim.engine.changes import Change, RunBegan
 from pyfrc_core.sim.ui.web.console import MOST_IMPORTANT, MOST_LINES, Console
 from pyfrc_core.sim.ui.web.history import MISSING, History
 from pyfrc_core.sim.ui.web.json_text import json_text, read_value
@@ -89,35 +88,6 @@ def test_a_long_curve_keeps_its_peaks() -> None:
     assert (found["t"][0], found["t"][-1]) == (0, pytest.approx(4999 * 0.02))
 
 
-def whole_match(values: int) -> Runs:
-    """A match in which all values change in each packet."""
-    runs, paths = Runs(), [f"CAN[{number}].Velocity" for number in range(values)]
-    chance = random.Random(1)
-    for packet in range(MATCH):
-        numbers = [chance.random() for _ in range(10)]
-        changed = {path: numbers[place % 10] for place, path in enumerate(paths)}
-        runs.take("hal", [Change(packet * 0.02, changed)], lambda event: None)
-    return runs
-
-
-def test_a_whole_match_of_500_values_answers_within_50_ms() -> None:
-    """In the time of this thread, the best of several: other processes of a busy machine count for nothing."""
-    runs = whole_match(500)
-    assert runs.size < 50 << 20
-
-    def milliseconds(ask: object) -> float:
-        times = []
-        for _ in range(5):
-            began = thread_time()
-            json_text(ask())  # type: ignore[operator]
-            times.append((thread_time() - began) * 1000)
-        return min(times)
-
-    paths = [f"CAN[{number}].Velocity" for number in range(8)]
-    assert milliseconds(lambda: runs.values_at(77.0)) < 50
-    assert milliseconds(lambda: runs.plots(paths, 0, 200, 800, None)) < 50
-
-
 def test_two_runs_differ_first_where_one_changed_alone_or_otherwise() -> None:
     for differing, expected, where in (
         ({7: {"a": 7.5}}, 7, ["a"]),
@@ -190,20 +160,6 @@ def test_a_value_that_has_not_changed_for_long_is_still_known_when_its_change_is
     assert series(history, "steady", 0, 100, 100) == {"kind": "text", "t": [history.known_from], "v": ["x"]}
     assert list(history.since(998, "t")) == [(998 * 0.02, 998.0), (999 * 0.02, 999.0)]
     assert history.until(15.0).values_at(99) == {"steady": "x", "t": 750.0}
-
-
-def test_structs_are_part_of_the_limit() -> None:
-    def pose(packet: int) -> object:
-        place = {"x": float(packet), "y": [1.0, {"z": 2.0}]}
-        return frozen({"$": "struct", "type": "Pose2d", "value": {"translation": place}})
-
-    runs = Runs(most_bytes=1_000_000)
-    runs.take("network", [RunBegan(1, 0.0, {"nt:/pose": pose(0)})], lambda event: None)
-    changes = [Change(packet * 0.02, {"nt:/pose": pose(packet)}) for packet in range(5000)]
-    runs.take("network", changes, lambda event: None)
-    assert 500_000 < runs.size < 1_500_000  # all of them are 6 MB
-    assert runs.known_from > 0
-    assert (runs.values_at(4999 * 0.02) or {})["nt:/pose"] == pose(4999)
 
 
 def test_numbers_that_are_not_finite_arrive_and_come_back() -> None:

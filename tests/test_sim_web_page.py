@@ -150,46 +150,6 @@ def test_the_robot_is_dragged_turned_and_moved_by_keys(person: Seen) -> None:
     person.page.get_by_role("menuitemcheckbox", name="AprilTags").click()
 
 
-#: Counts how often each canvas is painted, by the class of the element around it.
-PAINTINGS = """
-    window.paintings = {};
-    const clear = CanvasRenderingContext2D.prototype.clearRect;
-    CanvasRenderingContext2D.prototype.clearRect = function (...box) {
-      const around = this.canvas.parentElement?.className;
-      window.paintings[around] = (window.paintings[around] ?? 0) + 1;
-      return clear.apply(this, box);
-    };
-"""
-
-#: Whether the page has shown ten moments, one after the other, for which it did not paint a picture.
-STAYS_THE_SAME = """
-    (picture) => {
-      const { painted } = window.last ?? {};
-      if (painted !== window.paintings[picture]) window.last = { painted: window.paintings[picture], times: new Set() };
-      return painted && window.last.times.add(window.model.t).size > 10;
-    }
-"""
-
-
-def test_a_picture_that_stays_the_same_is_painted_once(browser, server) -> None:
-    """A robot at rest is not painted again for each packet."""
-    with page_of(browser, server, script=PAINTINGS) as person:
-        page = person.page
-        page.evaluate("module('js/model.js').then(({ model }) => (window.model = model))")
-        for layout, picture in (("Mechanism", "mechanism"), ("Driving", "field-canvas")):
-            person.choose("Layout", layout)
-            page.wait_for_function(STAYS_THE_SAME, arg=picture)
-        field = page.locator(".field-canvas")
-        for change in (
-            lambda: field.press("ArrowRight"),
-            lambda: person.choose("What is drawn", "AprilTags"),
-            lambda: person.choose("What is drawn", "Turn the field round"),
-        ):
-            before = page.evaluate("window.paintings")["field-canvas"]
-            change()
-            page.wait_for_function("before => window.paintings['field-canvas'] > before", arg=before)
-
-
 def test_devices_are_found_set_and_pinned(person: Seen) -> None:
     page = person.page
     page.get_by_label("Search devices").fill("range")
@@ -282,17 +242,6 @@ def test_what_robot_code_publishes_for_the_field_is_understood(person: Seen) -> 
     assert found["swerve"] == pytest.approx({"speed": 1.0, "angle": 0.7})
     assert found["mechanism"] == ["Arm"]
     assert found["alike"] == ["Elevator/Drawing", "Arm/Drawing"]
-
-
-def test_names_on_the_field_do_not_cover_each_other(person: Seen) -> None:
-    placed = person.page.evaluate(
-        """async () => {
-          const { placeLabel } = await module("js/field/labels.js");
-          const placed = [];
-          return [[100, 50], [104, 52], [200, 50], [96, 38]].map(([x, y]) => placeLabel(placed, x, y, 40, 12));
-        }"""
-    )
-    assert placed == [50, 38, 50, 26]  # the second name stands above the first, the last one above both
 
 
 def test_nothing_of_the_robot_is_ever_html(person: Seen) -> None:

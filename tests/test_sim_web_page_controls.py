@@ -16,7 +16,6 @@ from browser_pages import (  # noqa: F401 - `person`, `browser`
 from playwright.sync_api import expect
 from sim_robots import PATIENCE
 from skips import require
-from web_pages import served
 
 require("the page of pyfrc sim in a browser", missing_browser())
 
@@ -113,12 +112,6 @@ PLACE_OF_ROBOT = """(canvas) => {
 }"""
 
 
-@pytest.fixture(scope="module", name="server")
-def server_of_many_devices(make_shared_project):
-    with served(make_shared_project(ROBOT), speed=1, paused=False) as server:
-        yield server
-
-
 def plot_motor(person: Seen) -> None:
     """Plot the motor's speed."""
     person.tab("Plot 1").click()
@@ -207,47 +200,6 @@ def test_joysticks_by_keys(browser, server) -> None:
         person.until(lambda: person.value("joysticks[0].buttons")[1] is True)
         page.evaluate("window.fakePads = []")
         choice.locator("option", has_text="Old Stick (not connected)").wait_for(state="attached")
-
-
-def test_keys_are_chosen_added_and_removed(person: Seen) -> None:
-    page = person.page
-    person.tab("Keys").click()
-    page.get_by_label("Keys that drive").select_option("Gamepad")
-    page.locator("kbd", has_text="I").first.wait_for()
-    page.get_by_label("Key", exact=True).press("n")
-    page.get_by_label("Kind").select_option("button")
-    page.get_by_role("spinbutton", name="number").fill("7")
-    person.button("Add").click()
-    page.locator("td", has_text="joystick 0 button 7").wait_for()
-    person.button("Enable").click()
-    page.keyboard.down("n")
-    person.until(lambda: person.value("joysticks[0].buttons")[7] is True)
-    page.keyboard.up("n")
-    person.until(lambda: person.value("joysticks[0].buttons")[7] is False)
-    page.get_by_label("Remove the key n").click()
-    page.locator("td", has_text="joystick 0 button 7").wait_for(state="detached")
-
-
-def test_a_tablet_has_two_sticks_and_four_buttons(browser, server) -> None:
-    with page_of(browser, server, has_touch=True) as person:
-        page = person.page
-        person.button("Enable").click()
-        person.tab("Touch sticks").click()
-        page.get_by_label("What the sticks move").select_option("Gamepad")
-        box = page.get_by_label("Right stick").locator(".area").bounding_box()
-        page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-        page.mouse.down()
-        # The corner of the square is outside of the circle.
-        page.mouse.move(box["x"] + box["width"], box["y"], steps=3)
-        person.until(lambda: person.value("joysticks[0].axes")[4] == pytest.approx(math.sqrt(0.5), abs=0.02))
-        assert person.value("joysticks[0].axes")[5] == pytest.approx(-math.sqrt(0.5), abs=0.02)
-        page.mouse.up()
-        person.until(lambda: list(person.value("joysticks[0].axes")[4:6]) == [0, 0])
-        page.locator(".touch-buttons .stick-button", has_text="2").hover()
-        page.mouse.down()
-        person.until(lambda: person.value("joysticks[0].buttons")[2] is True)
-        page.mouse.up()
-        person.until(lambda: person.value("joysticks[0].buttons")[2] is False)
 
 
 def test_menus_tabs_and_borders_by_keys_and_mouse(person: Seen) -> None:
@@ -380,24 +332,6 @@ def test_the_past_by_keys_buttons_and_the_console(person: Seen) -> None:
     lines.filter(has_text="line 0").first.wait_for()
     lines.first.get_by_title("Look at this moment").click()
     expect(clock).to_have_text("0:00.00")
-
-
-def test_a_plot_is_zoomed_by_the_wheel_and_leads_to_its_moment(person: Seen) -> None:
-    page = person.page
-    plot_motor(person)
-    person.button("Enable").click()
-    person.until(lambda: person.simulation.snapshot.time > 2)
-    person.pause()
-    person.button("All").first.click()
-    over = page.locator(".u-over").first
-    over.hover()
-    page.mouse.wheel(0, -500)
-    person.button("Follow again").wait_for()
-    over.dblclick()
-    person.button("Follow again").wait_for(state="detached")
-    over.click(modifiers=["Alt"], position={"x": 5, "y": 20})
-    page.locator(".past-actions").wait_for()
-    person.button("Live").click()
 
 
 def test_another_run_is_compared_in_plots_and_at_its_first_difference(person: Seen) -> None:

@@ -64,18 +64,6 @@ def test_a_number_is_edited_while_the_robot_is_paused(person: Seen) -> None:
     person.shows(box, "4.5")
 
 
-def test_a_gain_in_a_card_is_as_small_as_it_was_typed(person: Seen) -> None:
-    page = person.page
-    person.choose("Layout", "Tuning")
-    box = page.locator(".card", has_text="PIDController").get_by_label("i", exact=True)
-    person.set_number(box, "1e-6")
-    person.until(lambda: written(person, "nt:/SmartDashboard/Turn/i"))
-    person.shows(box, "0.000001")
-    box.click()
-    box.press("Enter")
-    assert written(person, "nt:/SmartDashboard/Turn/i") == [1e-6]
-
-
 def test_what_is_no_number_is_refused_with_the_reason(person: Seen) -> None:
     page = person.page
     kp = person.row(KP).locator("input")
@@ -109,12 +97,3 @@ def test_a_list_is_edited_with_all_digits_of_its_numbers(person: Seen) -> None:
     page.locator(".notice", has_text="gains: a list such as [1, 2.5] is needed, not “[1, 2”.").wait_for()
     person.set_number(box, "[0.3333333333333333,0.5]")
     person.until(lambda: list(written(person, target)[-1]) == [1 / 3, 0.5])
-
-
-def test_small_values_are_no_zeros_in_plots(person: Seen) -> None:
-    page = person.page
-    person.simulation.write({KP: 6e-5})
-    person.tab("NetworkTables").click()
-    person.row(KP).hover()
-    person.row(KP).get_by_title("Plot this value").click()
-    page.locator(".legend b", has_text="0.00006").wait_for()

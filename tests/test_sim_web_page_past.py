@@ -107,22 +107,6 @@ def test_a_branch_that_is_longer_than_the_present_is_shown_whole(person: Seen) -
     expect(page.locator("[data-panel='plot:1'] .legend b")).to_have_text("\N{EN DASH}")
 
 
-def test_a_curve_too_many_is_refused_in_words(person: Seen) -> None:
-    page = person.page
-    add = """async (count) => {
-      const { addToPlot } = await module("js/plotting.js");
-      for (let number = 0; number < count; number++) addToPlot(`pwm[${number}].value`, "plot:1");
-    }"""
-    page.evaluate(add, 12)
-    expect(page.locator("[data-panel='plot:1'] .curve-name")).to_have_count(12)
-    assert page.locator(".notice").count() == 0
-    page.evaluate(add, 13)
-    page.locator(".notice", has_text="A plot has at most 12 curves. Remove one of them").wait_for()
-    assert page.locator("[data-panel='plot:1'] .curve-name").count() == 12
-    person.button("Add value").click()
-    page.get_by_text("Only 60 values are listed: search for others.").wait_for()
-
-
 def test_a_key_with_another_use_cannot_drive(person: Seen) -> None:
     page = person.page
     person.tab("Keys").click()

@@ -340,23 +340,6 @@ def test_panels_are_moved_sized_closed_and_stay_so(person: Seen) -> None:
     person.tab("Console").wait_for()
 
 
-def test_a_second_window_sees_the_same_and_a_viewer_cannot_drive(browser, server) -> None:
-    with page_of(browser, server) as person:
-        context = browser.new_context()
-        viewer = Seen(context.new_page(), server).open(server.viewing_address)
-        person.page.get_by_text("2 windows").wait_for()
-        assert viewer.button("Enable").is_disabled()
-        assert viewer.button("E-STOP").is_disabled()
-        viewer.page.keyboard.press("Control+e")
-        viewer.page.keyboard.press(" ")
-        person.button("Enable").click()
-        viewer.state("Teleoperated enabled")
-        person.page.keyboard.press("Enter")
-        viewer.state("Teleoperated disabled")
-        context.close()
-        person.page.get_by_text("2 windows").wait_for(state="detached")
-
-
 def test_the_page_says_which_values_are_forgotten(browser, make_project, monkeypatch) -> None:
     monkeypatch.setattr("pyfrc_core.sim.ui.web.collector.Runs", partial(Runs, 1))
     with served(make_project(ROBOT)) as server, page_of(browser, server) as person:
@@ -384,22 +367,6 @@ def test_the_page_says_that_the_simulation_was_closed(browser, make_project) -> 
         assert person.button("Enable").is_disabled()
         person.state("Teleoperated disabled")
         person.wrong.clear()  # the browser's own words about the lost connection
-
-
-def test_a_robot_that_fails_at_once_offers_no_earlier_moment(browser, make_project) -> None:
-    made = make_project(ROBOT)
-    with served(made, speed=1, paused=False) as server, page_of(browser, server) as person:
-        robot = made.path / "robot.py"
-        robot.write_text(robot.read_text().replace("def robotInit(self):", "def robotInit(self)"))
-        person.choose("Restart, save, end", "Load the code again")
-        alert = person.page.get_by_role("alert")
-        alert.locator("strong", has_text="SyntaxError").wait_for()
-        offered = alert.get_by_role("button").all_inner_texts()
-        assert offered == ["Values of that moment", "Load the code again", "Restart"]
-        robot.write_text(robot.read_text().replace("def robotInit(self)", "def robotInit(self):"))
-        person.button("Load the code again").click()
-        alert.wait_for(state="detached")
-        person.state("Teleoperated disabled")
 
 
 def test_a_server_that_was_silent_is_connected_again(browser, server) -> None:

@@ -5,13 +5,11 @@ from __future__ import annotations
 import gc
 import math
 import os
-import select
 import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from textwrap import dedent
 from typing import TYPE_CHECKING, Any
@@ -24,16 +22,10 @@ from virtual_display import VirtualDisplay, require_window, virtual_display
 if missing_tkinter():  # some imports below need it
     require_window()
 
-from pyfrc_core.errors import SettingsError, UsageError
-from pyfrc_core.interruption import ending_like_ctrl_c
-from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
-from pyfrc_core.sim.engine.scene import Tag, Target
-from pyfrc_core.sim.engine.snapshot import Chooser, Failure
-from pyfrc_core.sim.ui.choose import FRONT_ENDS, Wishes, make_front_end
-from pyfrc_core.sim.ui.tk import TkFrontEnd
+from pyfrc_core.sim.ui.choose import FRONT_ENDS
 from pyfrc_core.sim.ui.tk.window import Window
 
 if TYPE_CHECKING:
@@ -463,34 +455,6 @@ def test_the_field_and_what_robot_code_draws(user: User) -> None:
     user.until(lambda: user.snapshot.scene.robot == pytest.approx(start, abs=1e-6))
 
 
-def test_targets_tags_and_trails(user: User) -> None:
-    """What a scene may have besides, without a robot that has it."""
-    field, shown = user.window.field, user.snapshot
-    user.press("F5")
-    user.until(lambda: user.status.state == "paused")
-    user.shown()
-    way = tuple((0.1 * number, 5.0 + math.sin(number / 20)) for number in range(450))
-    targets = Target(30.0, 10.0, True), Target(30.0, 20.0, False)
-    season = replace(shown.scene.field, tags=(Tag(7, 40.0, 10.0, math.pi),))
-    for length in (2, 99, 100, 101, 102, 450, 120, 0, 450):  # it grows by pieces, and goes back
-        scene = replace(shown.scene, field=season, trail=way[:length], targets=targets)
-        field.show(replace(shown, scene=scene), user.status)
-        drawn = [field.canvas.coords(piece) for piece in field.canvas.find_withtag("trail")]
-        points = [pair for piece in drawn for pair in zip(piece[::2], piece[1::2], strict=True)]
-        expected = [field.view.to_screen(*point) for point in way[:length]] if length else []
-        assert len(set(points)) == len(expected)
-        assert all(
-            point == pytest.approx(place, abs=0.6) for point, place in zip(dict.fromkeys(points), expected, strict=True)
-        )
-    rings = [field.canvas.bbox(item) for item in field.canvas.find_withtag("target")]
-    middles = {(round((x0 + x1) / 2), round((y0 + y1) / 2)) for x0, y0, x1, y1 in rings}
-    places = {tuple(round(each) for each in field.view.to_screen(target.x, target.y)) for target in targets}
-    assert len(middles) == 2
-    assert all(min(math.dist(middle, place) for place in places) < 2 for middle in middles)
-    texts = [item for item in field.canvas.find_withtag("field") if field.canvas.type(item) == "text"]
-    assert [field.canvas.itemcget(text, "text") for text in texts] == ["7"]
-
-
 def test_choices_before_a_match(user: User) -> None:
     match = user.window.match
     user.until(lambda: match._choosers)
@@ -529,50 +493,6 @@ def test_choices_before_a_match(user: User) -> None:
     user.until(lambda: user.snapshot.values["joysticks[1].axes"][1] == -1)
     user.keys("keyup", "Up")
     user.until(lambda: user.snapshot.values["joysticks[1].axes"][1] == 0)
-
-
-def test_there_is_room_for_every_word(make_project: MakeProject, sit: Sit) -> None:
-    """Also where a robot has no place, and the line under the field says so."""
-    user = sit(make_project({"robot.py": ROBOT["robot.py"]}).path)
-    user.until(lambda: "physics.py" in str(user.window.center._pose.cget("text")))
-    user.shown()
-    match = user.window.match
-    beside = match._grid.grid_slaves(match._message.grid_info()["row"], 0)
-    assert [label.cget("text") for label in beside] == ["Game data"]
-    hint, pose = user.window.center._how, user.window.center._pose
-    user.until(lambda: hint.cget("text") == "Wheel: zoom, drag: move")  # its width comes late
-    user.shown()
-    assert hint.winfo_width() == hint.winfo_reqwidth()
-    assert pose.winfo_width() == pose.winfo_reqwidth()
-    assert pose.winfo_x() + pose.winfo_width() < hint.winfo_x()
-
-
-@pytest.mark.skipif(not FORK_IS_SAFE or not hasattr(os, "pidfd_open"), reason="only where others' ends are seen")
-def test_nothing_is_left_when_the_display_goes(make_project: MakeProject) -> None:
-    """What Xlib does then ends the program at once, without a word to Python."""
-    told = 'Path(__file__).with_name("host").symlink_to(str(os.getppid()))'
-    robot = ROBOT["robot.py"].replace("import threading", "import os\n        import threading", 1)
-    robot = robot.replace('print("the robot is there")', told)
-    project = make_project({**ROBOT, "robot.py": robot})
-    with virtual_display() as screen:
-        running = project.start("sim", "--ui", "tk", "--nt-port", "0", env=screen.variable)
-        try:
-            screen.do("search", "--sync", "--onlyvisible", "--name", f"{project.path.name} - pyfrc")
-            for _ in range(_LOOKS):
-                if (project.path / "host").is_symlink():
-                    break
-                with suppress(subprocess.TimeoutExpired):
-                    running.wait(_PAUSE)
-            host = os.pidfd_open(int(str((project.path / "host").readlink())))
-        except BaseException:
-            running.kill()
-            raise
-    running.rest(120)
-    try:
-        assert select.select([host], [], [], 120)[0], "the robot's processes go on"
-    finally:
-        os.close(host)
-    assert list(project.temporary.iterdir()) == []
 
 
 def test_saving_the_recording(user: User, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -652,49 +572,6 @@ def seen_in(text: tk.Text) -> str:
     return str(text.get("@0,0", f"@0,{text.winfo_height()} lineend"))
 
 
-def test_words_are_not_cut_where_the_window_is_small(user: User) -> None:
-    from tkinter import font, ttk
-
-    root, window = user.window.root, user.window
-    bold = font.Font(root, ttk.Style(root).lookup("Segment.Toolbutton", "font", ["selected"]))
-    assert bold.actual("weight") == "bold"
-    root.geometry("1000x660")
-    user.until(lambda: root.winfo_width() == 1000)
-    for mode, button in window.station.mode_buttons.items():
-        user.click(button)
-        user.until(lambda mode=mode: user.snapshot.chosen_mode == mode)
-        user.shown()
-        assert button.winfo_width() >= bold.measure(button.cget("text")) + 2 * 10
-    user.press("ctrl+e")
-    user.until(lambda: user.snapshot.enabled)
-    user.shown()
-    state, stop = window.station.state, window.station.stop
-    assert state.winfo_width() == state.winfo_reqwidth()
-    assert state.winfo_x() + state.winfo_width() <= stop.winfo_x()
-    # Long names leave room for what is chosen.
-    long = Chooser("/SmartDashboard/What to do in autonomous, at first", ("Nothing at all",), "Nothing at all", "")
-    window.match._show_choosers((long,))
-    root.update()
-    assert window.match._start.winfo_width() > 80
-
-
-def test_what_there_is_no_room_for_is_scrolled(user: User) -> None:
-    root, column = user.window.root, user.window.column
-    names = [Chooser(f"/SmartDashboard/{number}", ("a",), "a", "a") for number in range(6)]
-    assert column.canvas.yview() == (0.0, 1.0)
-    user.window.match._show_choosers(tuple(names))
-    user.until(lambda: column.canvas.yview()[1] < 1)
-    user.display.do(*user._to(user.window.joystick.canvas, 20, 200), "click", "--repeat", 20, 5)
-    user.until(lambda: column.canvas.yview()[1] == 1)
-    help_text = user.window.drive._help
-    assert (
-        help_text.winfo_rooty() + help_text.winfo_height() <= column.canvas.winfo_rooty() + column.canvas.winfo_height()
-    )
-    root.geometry("1300x760")
-    user.window.match._show_choosers(())
-    user.until(lambda: column.canvas.yview() == (0.0, 1.0))
-
-
 def test_the_console_follows_what_is_printed(user: User) -> None:
     window, console = user.window, user.window.console
     for number in range(100):
@@ -723,74 +600,6 @@ def test_the_console_follows_what_is_printed(user: User) -> None:
     user.until(lambda: console.text.clipboard_get() == console.text.get("1.0", "1.0 lineend"))
 
 
-def test_the_console_says_where_the_program_starts_again(user: User) -> None:
-    console = user.window.console
-    user.window.announce("saved: robot.py")
-    user.press("F9")
-    user.until(lambda: console.text.get("1.0", "end").count("the robot is there") == 2)
-    marked = [line for line in console.text.get("1.0", "end").splitlines() if line.startswith("—")]
-    assert marked == ["— saved: robot.py —", "— the robot program starts again —"]
-
-
-def test_a_long_message_leaves_room_for_the_traceback(user: User) -> None:
-    console = user.window.console
-    console.show(Failure(f"robot.py:3: ValueError: {'long ' * 2000}", "the traceback", 1.0))
-    user.window.center.make_space_for_traceback(True)
-    user.window.root.update()
-    assert console.headline.cget("text").endswith("…\nafter 1.00 s")
-    assert console.text.winfo_height() > 60
-
-
-def test_the_end_of_the_recording_is_never_before_now(user: User) -> None:
-    user.press("F5")
-    user.until(lambda: user.status.state == "paused")
-    for _ in range(6):  # over a tenth of a second
-        at = user.snapshot.time
-        user.press("F6")
-        user.until(lambda at=at: user.snapshot.time > at and user.status.state == "paused")
-        user.shown()
-        assert user.window.time._length.cget("text") == user.window.time._time.cget("text")
-
-
-def test_a_colour_that_there_is_not(make_project: MakeProject, sit: Sit) -> None:
-    config = '{"pyfrc": {"field": {"objects": [{"color": "yelow", "rect": [20, 5, 2, 2]}]}}}'
-    user = sit(make_project({**ROBOT, "sim/config.json": config}).path)
-    note = user.window._note
-    user.until(lambda: "yelow" in note.cget("text"))
-    # What is newer comes before it.
-    user.press("space")
-    user.until(lambda: user.snapshot.emergency_stopped)
-    user.press("ctrl+e")
-    user.until(lambda: "emergency" in note.cget("text"))
-
-
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
-def test_ended_from_outside_while_a_file_is_chosen(name: str, user: User) -> None:
-    root, late = user.window.root, []
-    others: list[subprocess.Popen[bytes]] = []
-
-    def end() -> None:
-        if root.tk.eval("grab current .") == ".__tk_filedialog":
-            # A little later: Tk waits in C then, as it nearly always does.
-            kill = f"sleep 0.1; kill -s {name.removeprefix('SIG')} {os.getpid()}"
-            others.append(subprocess.Popen(["sh", "-c", kill]))
-        else:
-            root.after(10, end)
-
-    def give_up() -> None:
-        late.append(True)
-        root.tk.call("set", "::tk::Priv(selectFilePath)", "")
-
-    root.after(1, user.window.time.save.invoke)
-    root.after(10, end)
-    alarm = root.after(120_000, give_up)
-    with pytest.raises(KeyboardInterrupt), ending_like_ctrl_c():
-        user.window.loop()
-    root.after_cancel(alarm)
-    assert not late
-    assert others[0].wait() == 0
-
-
 # -- what cannot be shown ---------------------------------------------------------------------------------------------
 
 
@@ -817,28 +626,6 @@ def test_a_picture_of_the_field(make_project: MakeProject, sit: Sit) -> None:
     assert [color(x, y) for x, y in ((0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75))] == [
         (100, 0, 0), (0, 0, 100), (200, 0, 0), (0, 0, 200)
     ]  # fmt: skip
-
-
-def test_a_picture_that_tk_cannot_read(make_project: MakeProject, display: VirtualDisplay) -> None:
-    project = make_project(with_image(ROBOT, "field.jpg"))
-    (project.path / "sim/field.jpg").write_bytes(b"\xff\xd8\xff\xe0 no picture")
-    simulation = Simulation(Project(project.path / "robot.py"))
-    with pytest.raises(SettingsError, match="PNG") as raised:
-        Window(simulation, display.name)
-    assert "sim/config.json" in str(raised.value)
-    assert "field.jpg" in str(raised.value)
-
-
-def test_no_display(make_project: MakeProject, monkeypatch: pytest.MonkeyPatch) -> None:
-    simulation = Simulation(Project(make_project(ROBOT).path / "robot.py"))
-    monkeypatch.setenv("DISPLAY", ":987654")
-    with pytest.raises(UsageError, match="--ui none"):
-        TkFrontEnd().run(simulation)
-    if sys.platform == "linux":
-        monkeypatch.delenv("DISPLAY")
-        monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-        with pytest.raises(UsageError, match="needs a display"):
-            make_front_end("tk", Wishes(say=print))
 
 
 def test_the_command_offers_each_front_end() -> None:

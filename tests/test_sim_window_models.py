@@ -23,19 +23,14 @@ from pyfrc_core.sim import Field, Scene, Snapshot, Status
 from pyfrc_core.sim.engine.snapshot import Failure
 from pyfrc_core.sim.ui.models.devices import SETTABLE, DeviceRows, Row, RowKind, panels_of
 from pyfrc_core.sim.ui.models.driver_station_keys import DriverStationKeys
-from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading, hat_angle
+from pyfrc_core.sim.ui.models.gamepads import HINT, GamepadRouter, Reading
 from pyfrc_core.sim.ui.models.joysticks import RELEASED, Sticks, axis_labels, button_labels, direction
 from pyfrc_core.sim.ui.models.keyboard import GENTLE, LAYOUTS, KeyDriver, canonical, layout_for
 from pyfrc_core.sim.ui.models.time_controls import FASTEST, SLOWEST, slider_of_speed, speed_of_slider
-from pyfrc_core.sim.ui.models.viewport import FARTHEST, NEAREST, Viewport
+from pyfrc_core.sim.ui.models.viewport import Viewport
 from pyfrc_core.sim.ui.models.wording import (
-    clock,
     mode_text,
-    number_text,
-    plain_output,
-    pose_text,
     shown_number,
-    station_name,
     status_texts,
     typed_number,
 )
@@ -130,19 +125,6 @@ def test_each_device_has_its_row() -> None:
     }
 
 
-def test_each_row_shows_values_that_there_are() -> None:
-    for panel in rows(VALUES).values():
-        for row in panel.values():
-            assert all(path in VALUES for path in row.paths)
-            assert row.tooltip
-            assert row.low < row.high
-            if row.kind in SETTABLE:
-                assert len(row.paths) == 1
-    assert len(rows(VALUES)["Pneumatics"]["PH 1"].paths) == 16
-    assert "2 Claw" in rows(VALUES)["Pneumatics"]["PCM 0"].tooltip
-    assert rows(VALUES)["PWM"]["3  Arm"].tooltip.startswith("PWM 3, Arm: ")  # there may be no room for it beside the 3
-
-
 def test_the_window_draws_each_kind_of_row() -> None:
     assert ITEMS.keys() == set(get_args(RowKind))
     assert set(get_args(RowKind)) >= SETTABLE
@@ -151,18 +133,6 @@ def test_the_window_draws_each_kind_of_row() -> None:
 def test_only_what_the_robot_has_made_is_shown() -> None:
     assert rows({}) == {}
     assert list(rows({"pwm[0].value": 0.0})) == ["PWM"]
-
-
-def test_rows_are_made_anew_only_when_something_came_or_went() -> None:
-    model = DeviceRows(CONFIG)
-    assert model.update(VALUES)
-    panels = model.panels
-    assert not model.update({**VALUES, "pwm[0].value": 1.0, "control.enabled": True})
-    assert model.panels is panels
-    assert model.update({**VALUES, "pwm[7].value": 0.0})
-    assert model.update({**VALUES, "pwm[7].value": 0.0, "dio[1].is_input": False})
-    assert model.update({})
-    assert model.panels == ()
 
 
 @given(st.text(min_size=1), st.one_of(st.text(), st.integers(), st.lists(st.integers()), st.none()))
@@ -257,26 +227,6 @@ def test_the_whole_field_is_to_be_seen(width: float, height: float, across: int,
     assert 0 <= left < right <= across  # x to the right
     assert 0 <= top < bottom <= down  # y downwards
     assert (right - left) / (bottom - top) == pytest.approx(width / height)
-
-
-@given(st.floats(0.5, 2), st.floats(0.1, 0.9), st.floats(0.1, 0.9))
-def test_zooming_leaves_what_is_under_the_mouse(factor: float, across: float, down: float) -> None:
-    view = Viewport.whole(54, 27, 800, 400)
-    x, y = across * 800, down * 400
-    place = view.to_field(x, y)
-    zoomed = view.zoomed(2, x, y).zoomed(factor, x, y)
-    if 0 < zoomed.center_x < 54 and 0 < zoomed.center_y < 27:
-        assert zoomed.to_field(x, y) == pytest.approx(place)
-
-
-def test_zoom_has_ends_and_the_field_stays_in_sight() -> None:
-    view = Viewport.whole(54, 27, 800, 400)
-    assert view.zoomed(1000, 0, 0).zoom == NEAREST
-    assert view.zoomed(0.001, 0, 0).zoom == FARTHEST
-    lost = view.panned(-1e9, 1e9)
-    assert (lost.center_x, lost.center_y) == (54, 0)
-    resized = view.panned(10, 0).resized(400, 0)
-    assert (resized.width, resized.height, resized.center_x) == (400, 1, view.panned(10, 0).center_x)
 
 
 @pytest.mark.parametrize(
@@ -413,15 +363,6 @@ def test_what_the_robot_has_is_shown() -> None:
     assert (first.axes[1], first.pov) == (-0.5, RELEASED)
 
 
-def test_a_pov_is_told_only_what_is_new() -> None:
-    made, told = sticks()
-    made.turn(2, 90)
-    made.turn(2, 90)
-    made.turn(2, RELEASED)
-    made.plug(2, False)
-    assert told.calls == [("set_pov", 2, 0, 90), ("set_pov", 2, 0, RELEASED), ("plug", 2, False)]
-
-
 @given(st.integers(0, 7), st.floats(0.01, 100))
 def test_directions_of_a_pov(eighth: int, far: float) -> None:
     angle = math.radians(eighth * 45)
@@ -515,28 +456,12 @@ def test_keys_that_are_held_are_passed_on_again() -> None:
     assert told.calls == []
 
 
-def test_hats() -> None:
-    assert [hat_angle(*way) for way in ((0, 0), (0, 1), (1, 0), (0, -1), (-1, 1))] == [RELEASED, 0, 90, 180, 315]
-
-
 # -- words ------------------------------------------------------------------------------------------------------------
-
-
-def test_times() -> None:
-    assert [clock(seconds) for seconds in (0, 0.02, 59.999, 754.3)] == ["0:00.00", "0:00.02", "1:00.00", "12:34.30"]
 
 
 @given(st.floats(SLOWEST, FASTEST))
 def test_the_speed_slider_stands_where_the_speed_is(speed: float) -> None:
     assert speed_of_slider(slider_of_speed(speed)) == pytest.approx(speed, rel=0.08)
-
-
-def test_the_speed_slider_has_real_time_and_no_limit() -> None:
-    assert speed_of_slider(0) == SLOWEST
-    assert speed_of_slider(slider_of_speed(1.0)) == 1.0
-    assert speed_of_slider(slider_of_speed(8)) == FASTEST
-    assert speed_of_slider(1) == 0 == speed_of_slider(slider_of_speed(0))
-    assert slider_of_speed(0.5) - slider_of_speed(0.25) == pytest.approx(slider_of_speed(4) - slider_of_speed(2))
 
 
 @pytest.mark.parametrize(
@@ -578,14 +503,6 @@ def test_the_status_line() -> None:
     served = status_texts(snapshot(), Status("paused", network_address="127.0.0.1:5810"))
     assert served[1::3] == ["Paused", "NetworkTables 127.0.0.1:5810"]
     assert status_texts(snapshot(), Status("running", speed=0, reached=431.2))[1] == "Speed 431x, as fast as it goes"
-
-
-def test_small_words() -> None:
-    assert plain_output("\x1b[31mred\x1b[0m\r\n\x07bell\ttab") == "red\nbell\ttab"
-    assert [number_text(value, 2) for value in (-0.001, 1.005, 2e9, math.inf)] == ["0.00", "1.00", "2e+09", "inf"]
-    assert [station_name(station) for station in (0, 1, 6, None)] == ["", "Red 1", "Blue 3", ""]
-    assert pose_text(Pose(1.0, 2.5, math.radians(270))) == "x 1.00 ft   y 2.50 ft   heading -90.0°"
-    assert "create-physics" in pose_text(None)
 
 
 def test_numbers_are_shown_with_their_significant_digits() -> None:

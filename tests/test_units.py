@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import os
 import shutil
 import subprocess
@@ -38,37 +37,9 @@ def test_units_that_robots_use() -> None:
     assert (10 * units.fps).to("m/s").magnitude == pytest.approx(3.048)
 
 
-def test_it_is_a_registry_of_pints() -> None:
-    assert isinstance(units, pint.UnitRegistry)
-    assert units("5 feet") == units.parse_expression("5 feet") == 5 * units.feet
-    assert "cpm" in units
-    assert "counts_per_minute" in list(units)
-    assert {"tm_kv", "parse_units"} <= set(dir(units))
-    assert "UnitRegistry" in repr(units)
-    assert copy.deepcopy(units).parse_units("N_m") is not None
-    with pytest.raises(pint.UndefinedUnitError):
-        _ = units.furlongs_per_robot
-
-
 def test_a_unit_can_be_added() -> None:
     units.define("robot_length = 36.5 * inch")
     assert (2 * units.robot_length).to("inch").magnitude == pytest.approx(73)
-
-
-def test_every_special_method_of_a_registry_is_answered() -> None:
-    """Python looks them up in the class, so that each needs one in what stands for the registry."""
-    of_pint = {name for each in pint.UnitRegistry.__mro__ if each.__module__.startswith("pint") for name in vars(each)}
-    special = {name for name in of_pint if name.startswith("__") and callable(getattr(pint.UnitRegistry, name, None))}
-    construction = {
-        "__init__",
-        "__init_subclass__",
-        "__new__",
-        "__class_getitem__",
-        "__getattr__",
-        "__deepcopy__",
-        "__annotate_func__",
-    }
-    assert special - construction <= set(vars(type(units)))
 
 
 # -- quantities of other registries, and none --------------------------------------------------------------------------

@@ -126,30 +126,12 @@ def test_the_field_of_view_is_half_to_each_side_and_turns_are_counted_off() -> N
             assert sees(camera(AHEAD), (0, 0, math.radians(degrees) + turns * math.tau)) is visible
 
 
-def test_the_offset_is_positive_to_the_right() -> None:
-    right, left = VisionSimTarget(10, 1, 90, 270), VisionSimTarget(10, -2, 90, 270)
-    assert right.compute(0, *ORIGIN) == (1, 0, pytest.approx(5.710593), pytest.approx(math.sqrt(101)))
-    assert left.compute(0, *ORIGIN) == (1, 0, pytest.approx(-11.309932), pytest.approx(math.sqrt(104)))
-
-
-def test_targets_too_near_or_too_far_are_not_seen() -> None:
-    assert [sees(camera(AHEAD, start=4, end=8), (x, 0, 0)) for x in (1.9, 2, 6, 6.1)] == [False, True, True, False]
-
-
 def test_several_targets_come_with_the_least_offset_first() -> None:
     targets = [VisionSimTarget(10, y, 90, 270) for y in (-2, 1, 0, 40)]
     vision = camera(*targets)
     answer = run(vision, seconds(5))[0.06]
     assert [round(offset, 1) for _, _, offset, _ in answer] == [0.0, 5.7, -11.3]
     assert vision.get_immediate_distance() == 10
-
-
-def test_a_frame_without_a_target_says_so() -> None:
-    vision = camera(AHEAD)
-    assert vision.get_immediate_distance() == 0
-    assert run(vision, seconds(5), (0, 0, math.pi)) == {0.06: [(0, 0.0, math.inf, 0)]}
-    assert vision.get_immediate_distance() is None
-    assert run(camera(), seconds(5)) == {0.06: [(0, 0.0, math.inf, 0)]}
 
 
 def test_a_target_knows_its_camera() -> None:
@@ -199,18 +181,6 @@ def test_a_frame_shows_what_was_in_view_when_it_was_taken() -> None:
         [(1, 0.0, 0.0, 10.0)],
         [(0, 0.08, math.inf, 0)],
     ]
-
-
-def test_a_caller_that_is_late_gets_one_frame_at_each_call() -> None:
-    vision = camera(AHEAD, data_lag=0.3)
-    assert run(vision, [0.0, 0.1, 0.2]) == {}
-    frames = run(vision, [5.0, 5.1, 5.2, 5.4])
-    assert [frame[0][1] for frame in frames.values()] == [0.0, 0.1, 0.2, 5.0]
-
-
-def test_calls_rarer_than_frames_get_a_frame_each() -> None:
-    arrived = run(camera(AHEAD), seconds(5, step=0.5))
-    assert [(now, frame[0][1]) for now, frame in arrived.items()] == [(0.5, 0.0), (1.0, 0.5), (1.5, 1.0), (2.0, 1.5)]
 
 
 def test_disabling_loses_what_was_under_way_and_keeps_the_period() -> None:

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
-import tempfile
 from pathlib import Path
 
 import pytest
 
 from pyfrc_core.processes import crash_report
-from pyfrc_core.processes import exit as process_exit
-from pyfrc_core.processes.crash_report import CrashLog, Moment, describe_exit, moment_of, write_all
+from pyfrc_core.processes.crash_report import CrashLog, Moment, describe_exit, moment_of
 from pyfrc_core.processes.exit import EXIT_HANGS
-from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork
 from pyfrc_core.project.robot_files import RobotFiles
 
 PROJECT = Path("/home/user/project")
@@ -122,59 +118,3 @@ def test_a_moment_counts_once_the_robot_has_started(log: CrashLog) -> None:
         f"the robot's process ended itself with exit code 3, meanwhile, at 15.02 s in {'x' * 32} mode\n\nand a text"
     )
     os.close(log.descriptor)
-
-
-def test_what_is_no_moment() -> None:
-    assert moment_of(b"") is None
-    assert moment_of(b"Fatal Python error" * 10) is None
-    assert moment_of(b"\0moment\n" + b"\0" * 39) is None
-    assert moment_of(b"\0moment\n" + b"\0" * 40) == Moment(0, "")
-
-
-def test_all_is_written_though_the_system_takes_a_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    taken: list[bytes] = []
-
-    def write(descriptor: int, data: bytes) -> int:
-        taken.append(data[:3])
-        return len(taken[-1])
-
-    monkeypatch.setattr(os, "write", write)
-    write_all(9, b"abcdefgh")
-    assert taken == [b"abc", b"def", b"gh"]
-
-
-@pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork")
-def test_an_exit_of_robot_code_is_reported_and_what_has_to_happen_before_happens() -> None:
-    def work(send: object) -> None:
-        log = CrashLog(descriptor)
-        log.enable()
-        process_exit.before_sudden_exit["mark"] = lambda: log.write("saved")
-        os._exit(5)
-
-    with tempfile.TemporaryFile(buffering=0) as file:
-        descriptor = file.fileno()
-        fork = Fork(work)
-        while not fork.finished:
-            fork.poll()
-        assert fork.status == 5
-        report = os.pread(descriptor, 1 << 16, 0)
-    line = work.__code__.co_firstlineno + 4
-    text = f'os._exit(5) was called:\n  File "{__file__}", line {line} in work\nsaved'
-    assert report.endswith(text.encode())
-
-
-@pytest.mark.skipif(not FORK_IS_SAFE, reason="no fork")
-def test_a_fault_in_c_code_leaves_its_stack() -> None:
-    def work(send: object) -> None:
-        CrashLog(descriptor).enable()
-        os.kill(os.getpid(), signal.SIGSEGV)
-
-    with tempfile.TemporaryFile(buffering=0) as file:
-        descriptor = file.fileno()
-        fork = Fork(work)
-        while not fork.finished:
-            fork.poll()
-        assert fork.status == -signal.SIGSEGV
-        report = os.pread(descriptor, 1 << 16, 0)
-    described = describe_exit(report, fork.status, RobotFiles(Path(__file__).parent), "meanwhile")
-    assert described.startswith(f"test_crash_reports.py:{work.__code__.co_firstlineno + 2}: the robot's process was")

@@ -6,10 +6,8 @@ import os
 from pathlib import Path
 
 import pytest
-import wpiutil
 from wpiutil.log import DataLogReader, StringLogEntry
 
-from pyfrc_core.processes.exit import before_sudden_exit
 from pyfrc_core.runtime import data_logs
 from pyfrc_core.runtime.clock import KICKOFF
 from pyfrc_core.runtime.data_logs import DataLogs, LogPlace
@@ -39,41 +37,6 @@ def entries(file: Path) -> dict[str, list[object]]:
 
 def files(tmp_path: Path) -> list[str]:
     return sorted(each.name for each in (tmp_path / ".pyfrc/logs").glob("*.wpilog"))
-
-
-def test_the_managers_log_is_complete_when_the_run_ends(
-    tmp_path: Path, timeline: Timeline, capsys: pytest.CaptureFixture[str]
-) -> None:
-    logs = DataLogs(timeline.clock, place(tmp_path))
-    timeline.run_until(5)
-    logs.log("one")
-    timeline.run_until(7_000)
-    logs.log("two")
-    logs.start("another", "name")  # it has been started
-    assert logs.getLogDir() == str(tmp_path / ".pyfrc/logs")
-    logs.close()
-    assert files(tmp_path) == ["run.wpilog"]
-    found = entries(tmp_path / ".pyfrc/logs/run.wpilog")
-    assert found["messages"] == ["one", "two"]
-    # With the first flush from then on, every five seconds.
-    assert found["systemTime"] == [KICKOFF * 1_000_000 + 255_000, KICKOFF * 1_000_000 + 5_005_000]
-    assert (tmp_path / ".pyfrc/.gitignore").read_text() == "*\n"
-    output = capsys.readouterr()
-    assert output.out == "one\ntwo\n"
-    assert output.err.startswith("data log: ")
-    logs.close()
-
-
-def test_a_log_is_flushed_in_robot_time_at_most_once_a_packet(
-    tmp_path: Path, timeline: Timeline, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    logs = DataLogs(timeline.clock, place(tmp_path))
-    periods: list[tuple[int, int]] = []
-    monkeypatch.setattr(timeline.clock, "every", lambda period, rank, action: periods.append((period, rank)))
-    for period in (0.25, 0.001, 0.0200001, 1.0):
-        logs.open("", "log", period)
-    assert periods == [(250_000, 6), (20_000, 6), (20_000, 6), (1_000_000, 6)]
-    logs.close()
 
 
 def test_the_time_of_day_is_logged_every_five_seconds(tmp_path: Path, timeline: Timeline) -> None:
@@ -142,21 +105,6 @@ def test_so_many_logs_are_kept(tmp_path: Path) -> None:
     assert LogPlace.of_test(tmp_path, "a") == LogPlace(directory / "test", "a", 200)
 
 
-def test_a_writer_of_robot_codes_own(tmp_path: Path, timeline: Timeline) -> None:
-    logs = DataLogs(timeline.clock, place(tmp_path))
-    writer = logs.open_file(str(tmp_path / "own.wpilog"), "header")
-    entry = StringLogEntry(writer, "words")
-    entry.append("one")
-    logs.rename(writer, "renamed.wpilog")
-    before_sudden_exit["data logs"]()
-    assert entries(tmp_path / "renamed.wpilog") == {"words": ["one"]}
-    assert not (tmp_path / "own.wpilog").exists()
-    with pytest.raises(RuntimeError):
-        logs.open_file(str(tmp_path / "none/own.wpilog"))
-    assert DataLogs(timeline.clock, None).open_file(str(tmp_path / "b.wpilog")) is not None
-    assert not (tmp_path / "b.wpilog").exists()
-
-
 def test_a_log_that_cannot_be_written_or_completed_is_said(
     tmp_path: Path, timeline: Timeline, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -174,26 +122,3 @@ def test_a_log_that_cannot_be_written_or_completed_is_said(
 
 #: The name under which the module looks for room on the disk.
 FULL_DISK = next(name for name in ("check_disk_space", "lack_of_room") if hasattr(data_logs, name))
-
-
-def test_in_place_of_wpilibs_names(tmp_path: Path, timeline: Timeline, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(data_logs, "_started_at_import", [])
-    logs = DataLogs(timeline.clock, place(tmp_path))
-    current: list[DataLogs | None] = [None]
-    table = {name: value for _, name, value in data_logs.patches(lambda: current[0])}
-    start, writer, background = table["start"].__func__, table["DataLogWriter"], table["DataLogBackgroundWriter"]
-    start("", "at-import")
-    logs.start_as_at_import()
-    assert files(tmp_path) == ["run.at-import.wpilog"]
-    current[0] = logs
-    assert table["getLogDir"].__func__() == str(tmp_path / ".pyfrc/logs")
-    ours = background("", "background", 0.5)
-    assert isinstance(ours, background)
-    assert isinstance(ours, writer)
-    assert isinstance(ours, wpiutil.DataLogWriter)
-    table["setFilename"](ours, "renamed.wpilog")
-    assert isinstance(writer(str(tmp_path / "direct.wpilog")), writer)
-    assert (writer.__name__, background.__name__) == ("DataLogWriter", "DataLogBackgroundWriter")
-    assert writer.__module__ == wpiutil.DataLogWriter.__module__
-    logs.close()
-    assert files(tmp_path) == ["renamed.wpilog", "run.at-import.wpilog"]

@@ -60,21 +60,12 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "PWM channel 0 is used already, since robot.py:2",
             "own",
         ),
-        ("a = wpilib.PWMSparkMax(8)\nb = wpilib.Servo(8)", "PWM channel 8 is used already, since robot.py:2", "own"),
-        ("a = wpilib.PWMSparkMax(3)\nb = wpilib.AddressableLED(3)", "PWM channel 3 is used already", "own"),
         (
             "a = wpilib.DigitalInput(1)\nb = wpilib.Encoder(0, 1)",
             "DIO channel 1 is used already, since",
             "two channels",
         ),
         ("a = wpilib.Ultrasonic(1, 2)\nb = wpilib.DigitalOutput(2)", "DIO channel 2 is used already", "own"),
-        (
-            "a = wpilib.AnalogInput(1)\nb = wpilib.AnalogPotentiometer(1)",
-            "Analog Input 1 is used already, since",
-            "own",
-        ),
-        ("a = wpilib.AnalogOutput(0)\nb = wpilib.AnalogOutput(0)", "Analog Output 0 is used already, since", "own"),
-        ("a = wpilib.Relay(2)\nb = wpilib.Relay(2)", "Relay 2 is used already, since robot.py:2", "own"),
         (
             "m = wpilib.PneumaticsModuleType.REVPH\na = wpilib.Solenoid(m, 4)\nb = wpilib.DoubleSolenoid(m, 3, 4)",
             "channel 4 of this pneumatics module has a solenoid already",
@@ -86,12 +77,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "Create it once",
         ),
         ("wpilib.PWMSparkMax(42)", "there is no channel 42 for such a device", "PWM 0 to 9, DIO 0 to 9"),
-        ("wpilib.AnalogGyro(5)", "there is no channel 5 for Analog Gyro", "Change it"),
-        (
-            "a = wpilib.AddressableLED(3)\nb = wpilib.AddressableLED(4)",
-            "no more devices of this kind",
-            "1 AddressableLED",
-        ),
         ("a = [wpilib.Encoder(2 * i, 2 * i + 1) for i in range(9)]", "no more devices of this kind", "8 encoders"),
         (
             "t = rev.SparkMax.MotorType.kBrushed\na = rev.SparkMax(25, t)\nb = rev.SparkMax(25, t)",
@@ -117,7 +102,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ),
         ("wpilib.PWMSparkMax(1).set('0.5')", "set() does not take '0.5' ('0.5' is a text)", "set(value: number)"),
         ("wpilib.PWMSparkMax(1).set(0.5, 1)", "set() was called with 2 values, but takes 1", "set(value: number)"),
-        ("wpilib.PWMSparkMax()", "PWMSparkMax() was called with 0 values, but takes 1", "PWMSparkMax(channel: number)"),
         (
             "x = wpilib.XboxController(0)\nwpilib.PWMSparkMax(1).set(x.getLeftY)",
             "set() got the function x.getLeftY, and not its value",
@@ -140,12 +124,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "get() is called on the class wpilib.Timer, and not on an object of it",
             "self.it = wpilib.Timer(...). Then call: self.it.get(...)",
         ),
-        (
-            "class Mine(wpilib.Timer):\n    def get(self): return wpilib.Timer.get()\nMine().get()",
-            "wpilib.Timer.get() is called without self",
-            "Write super().get(), with what it takes.",
-        ),
-        ("t = wpilib.Timer()\nmin(t.get, 2)", "t.get is a function, and not its value", "Write t.get()"),
         ("wpilib.SmartDashboard()", "no object of SmartDashboard can be created", "wpilib.SmartDashboard.putNumber("),
         ("'a' + 3", 'can only concatenate str (not "int") to str', 'f"speed: {value}"'),
         ("[1][1]", "IndexError: list index out of range", "Indexes begin with 0"),
@@ -160,8 +138,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "UnboundLocalError",
             "as self.count; or write first",
         ),
-        ("commands2.cmd.run(3)", "toRun must be a function, but is of type int", ""),
-        ("t = wpilib.Timer()\nt.get < 2", "t.get is a function, and not its value", "Write t.get()"),
         (
             "c = wpilib.XboxController(0)\nspeed = 1 if -c.getLeftY else 0",
             "c.getLeftY is a function, and not its value",
@@ -169,19 +145,9 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ),
         ("import time\ntime()", "time is a module, and cannot be called", "Write time.time(), or what else it has"),
         (
-            "def speed(power, most=1): pass\nspeed(1, 2, 3)",
-            "speed() was called with 3 values",
-            "It takes: speed(power, most=1) (robot.py:2)",
-        ),
-        (
             "class Arm:\n    def __init__(self, motor): pass\nArm()",
             "Arm() was called with 0 values",
             "It takes: Arm(motor) (robot.py:3)",
-        ),
-        (
-            "class Arm:\n    def up(self, speed): pass\nArm().up(sped=1)",
-            "up() got an unexpected keyword argument 'sped'",
-            "",
         ),
         (
             "class Arm:\n    def up(self, speed): pass\na = Arm()\na.up(sped=1)",
@@ -212,24 +178,16 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
             "XboxController?",
         ),
         ("wpilib.IterativeRobot", "wpilib has no IterativeRobot any more", "Instead: wpilib.TimedRobot."),
-        ("wpilib.Timer().hasPeriodPassed(1)", "Timer has no hasPeriodPassed any more", "Instead: hasElapsed(seconds)"),
-        ("commands2.button.Trigger().whenHeld(1)", "Trigger has no whenHeld any more", "Instead: whileTrue."),
-        ("wpilib.XboxController(0).getY(1)", "XboxController has no getY any more", "getLeftY() or getRightY()"),
         ("wpilib.SendableChooser().addObject('a', 1)", "SendableChooser has no addObject any more", "addOption"),
         ("x = true", "NameError: name 'true' is not defined", "Did you mean True?"),
-        ("x = null", "NameError: name 'null' is not defined", "Did you mean None?"),
         ("this.x = 1", "NameError: name 'this' is not defined", "Did you mean self?"),
-        ("commands2.CommandBase", "commands2 has no CommandBase any more", "Instead: commands2.Command."),
         ("rev.CANSparkMax", "rev has no CANSparkMax any more", "Instead: rev.SparkMax."),
-        ("from wpilib import XBoxController", "wpilib has no XBoxController", "Did you mean XboxController?"),
-        ("from wpilib import SpeedControllerGroup", "no SpeedControllerGroup any more", "wpilib.MotorControllerGroup"),
         # Modules
         (
             "import networktables",
             "there is no module networktables",
             'Instead: import ntcore, and ntcore.NetworkTableInstance.getDefault().getTable("SmartDashboard")',
         ),
-        ("import wpilib.geometry", "there is no module wpilib.geometry", "Instead: wpimath.geometry"),
         (
             "from ctre import WPI_TalonSRX",
             "there is no module ctre",
@@ -238,7 +196,6 @@ def headline_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Raise:
         ),
         ("from .arm import Arm", "a dot before a module's name means", "Write: from arm import Arm"),
         ("from . import arm", "a dot before a module's name means", "Write: import arm"),
-        ("import wpilb", "there is no module wpilb", "Did you mean wpilib?"),
         (
             "import choreo",
             "there is no module choreo",

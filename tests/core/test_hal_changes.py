@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -16,7 +15,6 @@ from wpilib import simulation as sim
 from pyfrc_core.hal import HalData
 from pyfrc_core.hal.change_reader import MISSING, ChangeReader, Changes
 from pyfrc_core.hal.devices import KINDS
-from pyfrc_core.hal.output_gate import OutputGate
 from pyfrc_core.runtime.hal_resets import patches
 from pyfrc_core.runtime.patch_table import patched
 
@@ -124,18 +122,6 @@ def test_changes_after_a_reset_are_found(tree: HalData, reset: str) -> None:
     del later
 
 
-def test_a_reset_that_is_not_announced_is_noticed() -> None:
-    hs.resetAllSimData()
-    tree = HalData()
-    hub = wpilib.PneumaticHub(7)
-    changes = looking(tree)
-    sim.REVPHSim(7).resetData()
-    assert "ph[7][4].value" in changes.look().gone
-    sim.REVPHSim(7).setInitialized(True)
-    assert "ph[7][4].value" in found(changes.look())
-    del hub
-
-
 #: One device of each class: how robot code creates it, and a path that it has then.
 DEVICES: dict[str, tuple[Callable[[], object], str]] = {
     "pwm": (lambda: wpilib.PWMSparkMax(7), "pwm[7].value"),
@@ -166,20 +152,6 @@ def test_a_device_that_comes_and_one_that_goes_are_found(tree: HalData, name: st
     assert (path in changes.look().gone) is (path not in there)
 
 
-def test_joysticks_that_are_plugged_in_and_unplugged(tree: HalData) -> None:
-    changes = looking(tree)
-    sim.DriverStationSim.setJoystickButtonCount(1, 3)
-    sim.DriverStationSim.setJoystickButton(1, 2, True)
-    assert changes.look().changed == [
-        ("joysticks[1].buttons", MISSING, [False, False, True, False]),
-        ("joysticks[1].outputs", MISSING, 0),
-        ("joysticks[1].left_rumble", MISSING, 0),
-        ("joysticks[1].right_rumble", MISSING, 0),
-    ]
-    sim.DriverStationSim.setJoystickButtonCount(1, 0)
-    assert len(changes.look().gone) == 4
-
-
 def test_a_colour_and_the_length_of_a_led_strip(tree: HalData) -> None:
     strip = wpilib.AddressableLED(9)
     strip.setLength(2)
@@ -193,19 +165,6 @@ def test_a_colour_and_the_length_of_a_led_strip(tree: HalData) -> None:
     data = found(changes.look())["addressable_led[0].data"]
     assert data == tree["addressable_led"][0]["data"]
     assert data[-2:] == [[1, 2, 3], [7, 8, 9]]
-
-
-def test_currents_of_a_power_distribution_module_are_found(tree: HalData) -> None:
-    module = wpilib.PowerDistribution(1, wpilib.PowerDistribution.ModuleType.kRev)
-    changes = looking(tree)
-    for channel in (0, 23):
-        tree["pdp"][1]["current"][channel] = 2.5 + channel
-        assert found(changes.look()) == {"pdp[1].current": list(tree["pdp"][1]["current"])}
-        assert changes.look() == ([], [])
-    tree["pdp"][1]["current"][3] = math.nan
-    assert changes.look_at_values()[0].keys() == {"pdp[1].current"}
-    assert changes.look_at_values() == ({}, [])
-    del module
 
 
 def test_free_keys_that_come_change_and_go(tree: HalData) -> None:
@@ -226,17 +185,6 @@ def make(count: int) -> list[Any]:
     """Create SimDevices with 25 values each. Return them and their values."""
     devices = [hal.SimDevice(f"Motor[{number}]") for number in range(count)]
     return [devices, [device.createDouble(f"v{n}", 2, float(n)) for device in devices for n in range(25)]]
-
-
-def test_values_of_the_same_name_in_two_devices(tree: HalData) -> None:
-    devices, values = make(2)
-    changes = looking(tree)
-    values[3].set(100.0)
-    values[28].set(200.0)
-    assert found(changes.look()) == {'CAN["Motor[0]"].v3': 100.0, 'CAN["Motor[1]"].v3': 200.0}
-    values[3].set(values[3].get())
-    assert changes.look() == ([], [])
-    del devices
 
 
 @pytest.mark.parametrize("values_only", [False, True])
@@ -306,21 +254,6 @@ def test_devices_of_the_same_names_with_other_handles(tree: HalData) -> None:
     assert found(changes.look()) == {"CAN.A.angle": 2.0, "CAN.B.angle": 3.0}
 
 
-def test_all_trees_see_a_device_that_is_created_again(tree: HalData) -> None:
-    devices, values = make(1)
-    changes = [looking(each) for each in (tree, HalData())]
-    for number in range(3):
-        del devices, values
-        gc.collect()
-        devices, values = make(1)
-        for each in reversed(changes):
-            each.look()
-        values[1].set(7.0 + number)
-        assert [found(each.look()) for each in changes] == [{'CAN["Motor[0]"].v1': 7.0 + number}] * 2
-        changes.reverse()
-    del devices
-
-
 def test_a_reset_of_all_sim_devices_is_noticed(tree: HalData) -> None:
     before = make(1)
     changes = looking(tree)
@@ -332,18 +265,6 @@ def test_a_reset_of_all_sim_devices_is_noticed(tree: HalData) -> None:
     hs.resetSimDeviceData()
     assert len(changes.look().gone) == 25
     del before, again
-
-
-def test_an_output_that_is_created_later_is_turned_off_too(tree: HalData) -> None:
-    gate = OutputGate()
-    motor = hal.SimDevice("SPARK MAX [1]")
-    first = motor.createDouble("Applied Output", 2, 1.0)
-    with gate.closed_while_disabled():
-        assert first.get() == 0.0
-    second = motor.createDouble("Motor Voltage", 2, 12.0)
-    with gate.closed_while_disabled():
-        assert (first.get(), second.get()) == (0.0, 0.0)
-    assert (first.get(), second.get()) == (1.0, 12.0)
 
 
 # -- readers ----------------------------------------------------------------------------------------------------------
@@ -358,15 +279,4 @@ def test_readers_do_not_affect_each_other(tree: HalData) -> None:
     values[0].set(0.0)
     assert first.look().changed == [('CAN["Motor[0]"].v0', 5.0, 0.0)]
     assert second.look() == other_tree.look() == ([], [])  # it is as it was at their last look
-    del devices
-
-
-def test_a_reader_that_skips_finds_only_what_changes_later(tree: HalData) -> None:
-    devices, values = make(1)
-    changes = looking(tree)
-    values[0].set(5.0)
-    changes.skip()
-    assert changes.look() == ([], [])
-    values[0].set(7.0)
-    assert changes.look().changed == [('CAN["Motor[0]"].v0', 5.0, 7.0)]
     del devices

@@ -14,7 +14,7 @@ from wpilib.interfaces import MotorController
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.hal import HalData, modes
-from pyfrc_core.hal.kinds import BOOL, FLOAT, INT32, Choice, ValueKind, choice, number, text, whole
+from pyfrc_core.hal.kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
 from pyfrc_core.hal.output_gate import OutputGate
 
 OUTPUT, BOTH = hal.SimDevice.Direction.kOutput, hal.SimDevice.Direction.kBidir
@@ -155,17 +155,6 @@ def test_modes_by_name() -> None:
     assert (modes.is_enabled(), modes.is_stopped(), modes.is_attached()) == (False, False, True)
 
 
-def test_whoever_listens_hears_of_each_change_of_the_mode() -> None:
-    modes.reset_driver_station()
-    heard: list[str] = []
-    kept = modes.when_mode_changes(lambda name, value: heard.append(name))
-    modes.set_mode(autonomous=True, enabled=True)
-    modes.set_mode(test=True, enabled=True)
-    assert heard == ["Autonomous", "Enabled", "Autonomous", "Test"]
-    del kept
-    modes.reset_driver_station()
-
-
 def test_the_driver_station_at_first() -> None:
     modes.set_mode(enabled=True)
     modes.unplug(2)
@@ -237,18 +226,3 @@ def test_values_that_are_refused(kind: ValueKind, refused: Any, error: type[Exce
     with pytest.raises(error) as caught:
         kind.check(refused, "x")
     assert str(caught.value) == message
-
-
-def test_a_choice_is_its_number_and_its_name() -> None:
-    assert STATION.load is not None
-    red, other = STATION.load(1), STATION.load(7)
-    assert (red == "Red", red == 1, red != "Red", red != 2, str(red), repr(red)) == (
-        True,
-        True,
-        False,
-        True,
-        "Red",
-        "<Red: 1>",
-    )
-    assert (hash(red), red.__reduce__()) == (hash(1), (Choice, (1, "Red")))
-    assert (other, str(other)) == (7, "unknown 7")

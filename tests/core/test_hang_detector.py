@@ -11,8 +11,7 @@ import pytest
 
 from pyfrc_core.processes.standstill import Standstill
 from pyfrc_core.runtime import hang_detector
-from pyfrc_core.runtime.exceptions import TestFroze
-from pyfrc_core.runtime.hang_detector import EXIT_HANGS, HangDetector, not_watched
+from pyfrc_core.runtime.hang_detector import HangDetector, not_watched
 
 DRIVER = 11
 
@@ -110,25 +109,11 @@ def test_code_that_waits_for_something_outside_hangs_as_soon(monkeypatch: pytest
     )
 
 
-def test_code_that_waits_and_computes_in_turns_has_the_limit_for_each(monkeypatch: pytest.MonkeyPatch) -> None:
-    world = World(monkeypatch)
-    assert "is blocked here" in world.watch(world.passes(13.5, used=0.25))[1]
-
-
 def test_the_time_in_which_a_busy_machine_does_not_let_it_run_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
     assert world.watch(world.passes(39, used=0.25, starved=0.75)) == []
     world = World(monkeypatch)
     assert world.watch(world.passes(40, used=0.25, starved=0.75))[1].startswith("wall 40")
-
-
-def test_where_that_is_not_measured_code_that_computes_does_not_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    world = World(monkeypatch)
-    world.starved = None
-    assert world.watch(world.passes(39, used=0.25)) == []
-    world = World(monkeypatch)
-    world.starved = None
-    assert world.watch(world.passes(10))[1].startswith("wall 10")
 
 
 def test_a_process_that_was_stopped_does_not_hang(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -140,30 +125,6 @@ def test_a_process_that_was_stopped_does_not_hang(monkeypatch: pytest.MonkeyPatc
             yield 1
 
     assert world.watch(steps()) == []
-
-
-def test_where_the_code_stands_is_told_at_each_look(monkeypatch: pytest.MonkeyPatch) -> None:
-    world = World(monkeypatch)
-
-    def steps() -> Iterator[object]:
-        yield from world.passes(0.5)
-        world.run.clock.now_us = 20_000
-        yield 1
-
-    world.watch(steps())
-    assert world.told == [Standstill(0.25, "robot.py:7", 1.5), Standstill(0.5, "robot.py:7", 1.5), None]
-
-
-def test_it_is_interrupted_again_and_ended_only_with_a_crash_log(monkeypatch: pytest.MonkeyPatch) -> None:
-    world = World(monkeypatch)
-    entries = world.watch(world.passes(12.5, used=1))
-    assert [entry.partition(":")[0] for entry in entries] == ["failed", "wall 10", "failed", "wall 12.5"]
-    words: list[str] = []
-    log = SimpleNamespace(write=words.append, descriptor=7, forget_stacks=lambda: None)
-    world = World(monkeypatch, log=log)
-    assert f"exit {EXIT_HANGS}" in world.watch(world.passes(12.5, used=1))
-    assert words[0].startswith("robot.py:7: the robot code hangs here")
-    assert words[0].endswith("If it only takes long: hang_seconds under [tool.pyfrc.test].")
 
 
 def test_while_the_robots_code_does_not_run_nothing_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -217,44 +178,6 @@ def test_in_a_debugger_nothing_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch)
     world.detector.paused = True
     assert world.watch(world.passes(60)) == []
-
-
-def test_the_thread_whose_turn_it_is_is_the_one_that_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
-    world = World(monkeypatch)
-    world.turn = 22
-    assert world.watch(world.passes(10, used=1))[1].startswith("wall 10: 22 robot.py:7: a thread of the robot hangs")
-
-
-@pytest.mark.parametrize("thread", [False, True], ids=["the main thread", "another"])
-def test_an_interruption_raises_in_the_code_that_hangs(thread: bool) -> None:
-    interruption = hang_detector._Interruption()
-    caught: list[str] = []
-    ready = threading.Event()
-
-    def hangs() -> None:
-        try:
-            with interruption.possible():
-                ready.set()
-                for _ in range(10**9):
-                    pass
-        except TestFroze as froze:
-            caught.append(str(froze))
-
-    def interrupts(ident: int | None) -> None:
-        assert ready.wait(60)
-        interruption.interrupt(ident or 0, "it hangs")
-
-    if thread:
-        hanging = threading.Thread(target=hangs)
-        hanging.start()
-        interrupts(hanging.ident)
-        hanging.join(60)
-    else:
-        helper = threading.Thread(target=interrupts, args=(threading.main_thread().ident,))
-        helper.start()
-        hangs()
-        helper.join(60)
-    assert caught == ["it hangs"]
 
 
 def test_an_interruption_that_comes_too_late_does_nothing() -> None:

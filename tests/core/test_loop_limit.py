@@ -14,9 +14,8 @@ import wpilib
 from pyfrc_core.config.settings import Settings
 from pyfrc_core.hal import modes
 from pyfrc_core.project.robot_files import RobotFiles
-from pyfrc_core.runtime import refresh
-from pyfrc_core.runtime.loop_limit import LoopLimit, LoopWaitsError, is_magic
-from pyfrc_core.runtime.refresh import RefreshCheck, explain_missing_refresh
+from pyfrc_core.runtime.loop_limit import LoopLimit, LoopWaitsError
+from pyfrc_core.runtime.refresh import RefreshCheck
 from pyfrc_core.runtime.robot import RobotRun
 
 #: The library's loop: `magicbot` is recognized by its module's name.
@@ -148,51 +147,6 @@ def test_a_turn_is_judged_by_the_mode_in_which_it_began(run: RobotRun, library: 
     ]
 
 
-def test_loops_that_the_user_has_written_are_not_limited(run: RobotRun, library: Library, exceeded: Exceeded) -> None:
-    own = """
-    class Robot(RobotBase):
-        def startCompetition(self):
-            self.drive()
-
-        def drive(self):
-            wait(5000)
-
-        def endCompetition(self): ...
-    """
-    run.construct(library.robot(own))
-    run.start()
-    modes.set_mode(enabled=True)
-    run.run_until(1_000_000)
-    assert exceeded == []
-    assert run.overruns_until_now() == (0, 0)
-
-
-def test_a_magic_robot_whose_start_is_the_users_is_not_limited(
-    run: RobotRun, library: Library, exceeded: Exceeded
-) -> None:
-    run.construct(library.robot(MAGIC_ROBOT + "    def startCompetition(self):\n        wait(5000)\n"))
-    run.start()
-    run.run_until(1_000_000)
-    assert exceeded == []
-
-
-def test_by_default_a_turn_that_is_too_long_ends_the_run(run: RobotRun, library: Library, tmp_path: Path) -> None:
-    settings = replace(Settings(), test=replace(Settings().test, loop_seconds=0.1))
-    LoopLimit(run, RobotFiles(tmp_path / "project"), settings)
-    run.construct(library.robot(MAGIC_ROBOT.replace("wait(400)", "pass")))
-    library.waits += [0, 0, 500]
-    run.start()
-    with pytest.raises(LoopWaitsError, match=r"teleopPeriodic has not returned after 0\.1 s of robot time"):
-        run.run_until(1_000_000)
-    assert not run.alive
-
-
-def test_magic_robots_are_known_by_their_library(library: Library) -> None:
-    robot = library.robot(MAGIC_ROBOT)
-    assert is_magic(robot.__new__(robot))
-    assert not is_magic(object())
-
-
 # -- what the driver station sends ------------------------------------------------------------------------------------
 
 
@@ -224,64 +178,3 @@ def looks(run: RobotRun, check: RefreshCheck, seconds: float) -> list[tuple[floa
             found.append((run.clock.now, said))
         run.run_until(run.clock.now_us + 40_000)
     return found
-
-
-def test_a_robot_that_never_asks_the_driver_station_is_explained_once(run: RobotRun, library: Library) -> None:
-    check = RefreshCheck(run)
-    run.construct(own_loop(library, refreshes=False))
-    run.start()
-    run.run_until(20_000)
-    assert explain_missing_refresh(run) is None  # it is disabled
-    assert looks(run, check, 8) == []
-    modes.set_mode(enabled=True)
-    began = run.clock.now
-    ((at, said),) = looks(run, check, 12)
-    assert at - began == pytest.approx(refresh._LOOKS * 0.04)
-    assert at - began == pytest.approx(5)
-    assert said == explain_missing_refresh(run)
-    assert said.startswith("robot.py:2: Robot still finds itself disabled while the driver station has enabled it")
-
-
-def test_a_robot_that_asks_the_driver_station_needs_no_explanation(run: RobotRun, library: Library) -> None:
-    check = RefreshCheck(run)
-    run.construct(own_loop(library, refreshes=True))
-    run.start()
-    modes.set_mode(enabled=True)
-    run.run_until(60_000)
-    assert looks(run, check, 8) == []
-    assert explain_missing_refresh(run) is None
-
-
-def test_a_robot_with_wpilibs_loop_needs_no_explanation(run: RobotRun) -> None:
-    class Robot(wpilib.TimedRobot):
-        def teleopPeriodic(self) -> None: ...
-
-    run.construct(Robot)
-    run.start()
-    modes.set_mode(enabled=True)
-    run.run_until(60_000)
-    assert explain_missing_refresh(run) is None
-
-
-def test_the_first_line_of_a_waits_function_is_the_innermost(
-    run: RobotRun, library: Library, exceeded: Exceeded
-) -> None:
-    robot = library.robot(
-        """
-        class Robot(MagicRobot):
-            def teleopPeriodic(self):
-                self.outer()
-
-            def outer(self):
-                self.inner()
-
-            def inner(self):
-                wait(waits.pop(0) if waits else 0)
-        """
-    )
-    run.construct(robot)
-    run.start()
-    library.waits += [0, 150]
-    run.run_until(1_000_000)
-    ((_, error),) = exceeded
-    assert (error.place, error.begins_at, error.function) == ("robot.py:9", "robot.py:8", "teleopPeriodic")

@@ -9,7 +9,7 @@ import pytest
 import wpilib
 
 from pyfrc_core.runtime.clock import PACKET, ROBOT_LOOP
-from pyfrc_core.runtime.loop_watchdog import LoopOverruns, Watchdog
+from pyfrc_core.runtime.loop_watchdog import Watchdog
 
 from .timeline import Timeline
 
@@ -122,26 +122,3 @@ class Robot:
 
     def printWatchdogEpochs(self) -> None:
         self._note("epochs")
-
-
-def test_turns_that_took_too_long_are_reported_once_a_second(timeline: Timeline, messages: list[str]) -> None:
-    overruns = LoopOverruns(timeline.clock)
-    robot = Robot(timeline)
-    for began, took in ((0, 19.999), (20, 20), (100, 50), (1020, 30), (2000, 60), (2100, 10)):
-        timeline.run_until(began + took)
-        overruns.look(robot, began * 1000)  # type: ignore[arg-type]
-    assert messages == [
-        "40 error at Robot: Loop time of 0.020000s overrun: the turn that began at 0.020 s took 0.020 s",
-        "1050 error at Robot: Loop time of 0.020000s overrun: the turn that began at 1.020 s took 0.030 s",
-    ]
-    assert timeline.log == ["40 epochs", "1050 epochs"]
-    # Of a robot with a loop of its own, they are counted here.
-    assert (overruns.number, overruns.longest_us) == (3, 60_000)
-
-
-def test_overruns_are_counted(timeline: Timeline) -> None:
-    overruns = LoopOverruns(timeline.clock)
-    assert (overruns.number, overruns.longest_us) == (0, 0)
-    for took_us in (30_000, 50_000, 40_000):
-        overruns.count(took_us)
-    assert (overruns.number, overruns.longest_us) == (3, 50_000)

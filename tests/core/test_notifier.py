@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import gc
-import threading
 
 import pytest
 
-from pyfrc_core.runtime.clock import PACKET, PHYSICS, ROBOT_LOOP
 from pyfrc_core.runtime.notifier import Alarms, Notifier
 
 from .timeline import Timeline
@@ -41,15 +39,6 @@ def test_a_single_notification_comes_once(timeline: Timeline) -> None:
     assert timeline.run_until(100) == ["12.5 once"]
     notifier.startSingle(0.001)
     assert timeline.run_until(200) == ["12.5 once", "101 once"]
-
-
-def test_a_notifier_comes_between_the_packet_and_the_loop(timeline: Timeline) -> None:
-    notifier = Notifier(lambda: timeline.note("notifier"))
-    notifier.startPeriodic(0.02)
-    timeline.at(20, PHYSICS, "physics")
-    timeline.at(20, ROBOT_LOOP, "loop")
-    timeline.at(20, PACKET, "packet")
-    assert timeline.run_until(20) == ["20 packet", "20 notifier", "20 loop", "20 physics"]
 
 
 def test_stopping_starting_anew_and_another_handler(timeline: Timeline) -> None:
@@ -139,14 +128,3 @@ def test_an_alarm_that_is_cleaned_lets_its_thread_go(timeline: Timeline) -> None
     timeline.run_until(5)
     alarms.clean(handle)
     assert timeline.run_until(6) == ["5 (0, 0)"]
-
-
-def test_the_thread_of_a_notifier_that_was_dropped_ends_at_once(timeline: Timeline) -> None:
-    notifier = Notifier(lambda: None)
-    notifier.setName("dropped")
-    notifier.startPeriodic(10)
-    timeline.run_until(5)
-    assert "dropped" in {thread.name for thread in threading.enumerate()}
-    del notifier
-    timeline.run_until(6)
-    assert "dropped" not in {thread.name for thread in threading.enumerate()}

@@ -11,10 +11,9 @@ import wpilib
 import wpilib.simulation
 from hal import simulation as hs
 
-from pyfrc_core.errors import RobotCodeError
 from pyfrc_core.hal import ds_connection, modes
 from pyfrc_core.hal.ds_connection import DriverStationConnection
-from pyfrc_core.runtime import cooperative, driver_station, hal_resets
+from pyfrc_core.runtime import cooperative, driver_station
 from pyfrc_core.runtime.clock import PACKET_US, PHYSICS
 from pyfrc_core.runtime.exceptions import WrongThread
 from pyfrc_core.runtime.robot import RobotRun
@@ -122,44 +121,6 @@ def test_what_the_robot_raises_ends_its_run(run: RobotRun, log: Log) -> None:
     run.end()
 
 
-def test_a_turn_that_takes_longer_than_a_packet_is_an_overrun_while_it_goes_on(run: RobotRun, log: Log) -> None:
-    found: list[tuple[int, int]] = []
-
-    def waits() -> None:
-        found.append(run.overruns_until_now())
-        run.threads.sleep_until(run.clock.now_us + 20_000)
-        found.append(run.overruns_until_now())
-        run.threads.sleep_until(run.clock.now_us + 5_000)
-        found.append(run.overruns_until_now())
-
-    run.construct(robot_class(log, waits))
-    run.turn_began = lambda: run.timed_loop.loop_start_us if run.timed_loop.in_turn else None
-    run.start()
-    modes.set_mode(enabled=True)
-    run.run_until(30_000)
-    assert found == [(0, 0), (0, 0), (1, 25_000)]
-    run.turn_began = lambda: None
-    assert run.overruns_until_now() == (1, 25_000)
-
-
-def test_the_end_ends_the_loop_and_the_threads(run: RobotRun, log: Log) -> None:
-    def body() -> None:
-        try:
-            run.threads.sleep_until(1_000_000)
-        finally:
-            log.note("thread unwinds")
-
-    run.construct(robot_class(log))
-    run.start()
-    cooperative.start_in_robot_time(threading.Thread(target=body, daemon=True))
-    run.run_until(30_000)
-    log.clear()
-    run.end()
-    assert log == ["30 thread unwinds"]
-    assert run.still_running == []
-    assert not run.alive
-
-
 def test_only_who_lives_in_robot_time_lets_it_pass(run: RobotRun, log: Log) -> None:
     run.construct(robot_class(log))
     run.start()
@@ -212,44 +173,12 @@ def test_a_robot_with_a_loop_of_its_own_lives_until_that_ends(run: RobotRun, log
     assert log[2:] == ["40 endCompetition"]
 
 
-def test_a_forgotten_super_init_is_named(run: RobotRun) -> None:
-    class Robot(wpilib.TimedRobot):
-        def __init__(self) -> None:
-            pass
-
-    with pytest.raises(RobotCodeError, match=r"Robot.__init__ does not call super\(\).__init__\(\)") as caught:
-        run.construct(Robot)
-    assert caught.value.where == f"test_run.py:{Robot.__init__.__code__.co_firstlineno}"
-
-
 def test_a_process_has_one_run(run: RobotRun) -> None:
     with pytest.raises(RuntimeError, match="a robot runs already in this process"):
         RobotRun().open()
 
 
 # -- the driver station -----------------------------------------------------------------------------------------------
-
-
-def test_match_information_comes_with_the_first_packet(run: RobotRun) -> None:
-    table = {(owner, name): value for owner, name, value in driver_station.patches(lambda: run)}
-    station = wpilib.DriverStation
-
-    def seen() -> list[object]:
-        names = ("getEventName", "getGameSpecificMessage", "getMatchType", "getMatchNumber", "getReplayNumber")
-        return [table[station, name]() for name in names]
-
-    wpilib.simulation.DriverStationSim.setMatchType(station.MatchType.kQualification)
-    hs.setMatchNumber(12)
-    hs.setReplayNumber(1)
-    modes.set_game_message("LRL")
-    assert seen() == ["", "", station.MatchType.kNone, 0, 0]
-    run.clock.run_until(20_000)
-    station.refreshData()
-    assert seen() == ["sim-event", "LRL", station.MatchType.kQualification, 12, 1]
-    hs.setDriverStationDsAttached(False)
-    run.clock.run_until(40_000)
-    hs.setMatchNumber(13)
-    assert seen()[3] == 12  # what the last packet brought
 
 
 def test_waiting_for_a_connection_takes_robot_time(run: RobotRun) -> None:
@@ -261,33 +190,6 @@ def test_waiting_for_a_connection_takes_robot_time(run: RobotRun) -> None:
     assert wait(0.5) is True
     assert run.clock.now_us == 20_000
     assert run.connection.when_connected == []
-
-
-def test_packets_out_of_turn_and_resets(run: RobotRun) -> None:
-    rows = [*driver_station.patches(lambda: run), *hal_resets.patches(lambda: run)]
-    table = {(owner.__name__, name): value for owner, name, value in rows}
-    calls: list[str] = []
-
-    class Recorder:
-        def on_packet_out_of_turn(self) -> None:
-            calls.append("recorder")
-
-        def begin_outside(self) -> None: ...
-
-        def end_outside(self) -> None: ...
-
-    run.recorder = Recorder()  # type: ignore[assignment]
-    run.connection.when_connected.append(lambda: calls.append("packet"))
-    modes.set_mode(enabled=True)
-    table["hal.simulation", "notifyDriverStationNewData"]()
-    assert calls == ["recorder", "packet"]
-    table["DriverStationSim", "notifyNewData"]()
-    assert calls == ["recorder", "packet", "recorder"]
-    assert wpilib.DriverStation.isEnabled()
-    for reset in (("DriverStationSim", "resetData"), ("hal.simulation", "resetDriverStationData")):
-        hs.setDriverStationDsAttached(False)
-        table[reset]()
-        assert modes.is_attached()
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from pyfrc_core.runtime.clock import PACKET, PHYSICS, WAKE_UP
-from pyfrc_core.runtime.timed_loop import Periodic, TimedLoop
+from pyfrc_core.runtime.clock import PHYSICS
+from pyfrc_core.runtime.timed_loop import TimedLoop
 
 from .timeline import Timeline
 
@@ -60,14 +60,6 @@ def test_the_robots_initialisation_comes_first_and_then_the_first_turn_after_one
     assert loop.in_place
     # The loop was added last, and comes before all others.
     assert timeline.run_until(40)[3:] == ["20 loop", "20 of the constructor", "40 loop", "40 of the constructor"]
-
-
-def test_within_a_packet_the_order_is_packet_threads_loop_physics(timeline: Timeline) -> None:
-    make_loop(timeline)
-    timeline.at(20, PHYSICS, "physics")
-    timeline.at(20, WAKE_UP, "thread")
-    timeline.at(20, PACKET, "packet")
-    assert timeline.run_until(20) == ["20 packet", "20 thread", "20 loop", "20 physics"]
 
 
 def test_periods_and_offsets_count_from_the_robots_construction(timeline: Timeline) -> None:
@@ -186,16 +178,6 @@ def test_a_loop_on_a_thread_of_its_own_makes_the_same_calls(timeline: Timeline) 
     ]
     loop.stopped = True
     assert timeline.run_until(200)[-1].startswith(("80", "65"))
-
-
-@pytest.mark.parametrize(
-    ("called_at", "next_due"),
-    [(100, 110), (109, 110), (110, 120), (119, 120), (135, 140)],
-)
-def test_the_next_time_is_the_next_whole_period_after_the_call(called_at: int, next_due: int) -> None:
-    periodic = Periodic(lambda: None, 100, 10)
-    periodic.move_on(called_at)
-    assert periodic.due_us == next_due
 
 
 def test_callbacks_that_are_due_at_once_come_in_the_order_of_wpilibs_heap(timeline: Timeline) -> None:

@@ -76,10 +76,6 @@ def test_nan_is_no_change_of_nan() -> None:
     assert [sorted(line["set"]) for line in lines] == [["a"], ["b"], ["a"]]
 
 
-def test_numbers_that_are_equal_are_no_change() -> None:
-    assert len(trace_of({"a": 1}, {"a": 1.0}, {"a": True}, {"a": 0.0}, {"a": -0.0})) == 2
-
-
 def test_the_hash_is_of_all_lines_in_their_order() -> None:
     def digest(*looks: dict[str, Any]) -> list[Any]:
         return trace_of(*looks, digest=True)
@@ -98,22 +94,6 @@ def test_a_trace_without_a_file_has_the_same_hash() -> None:
         trace.look(0.0199999999)
     assert quiet.finish() == written.finish()
     assert json.loads(out.getvalue().splitlines()[1]) == {"t": 0.02, "set": {"a": 1.5}}
-
-
-def test_lines_that_are_asked_for_are_written_before_their_batch_is_full() -> None:
-    tree, out = Tree(), io.StringIO()
-    tree.paths, tree.values = ["a", "b"], [0, [0]]
-    trace = Trace(tree, out)  # type: ignore[arg-type]
-    for number in range(35):
-        tree.values = [number, [number]]
-        trace.look(float(number))
-        if number % 7 == 3:
-            trace.write_lines()
-            trace.write_lines()
-            assert json.loads(out.getvalue().splitlines()[-1])["set"] == {"a": number, "b": [number]}
-    trace.finish()
-    lines = [json.loads(line) for line in out.getvalue().splitlines()[1:-1]]
-    assert [(line["t"], line["set"]["a"]) for line in lines] == [(number, number) for number in range(35)]
 
 
 def test_lines_are_json_that_returns_each_value() -> None:
