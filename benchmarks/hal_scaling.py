@@ -80,10 +80,10 @@ def median_us(look: Callable[[], object]) -> float:
 def measure(kind: str, count: int) -> dict[str, Any]:
     """Return the figures of one row: to be called in a process of its own."""
     from pyfrc_core.project.robot_files import RobotFiles
-    from pyfrc_core.runtime.patches import patches
+    from pyfrc_core.runtime.patches.install import patches
     from pyfrc_core.runtime.robot import RobotRun
     from pyfrc_core.runtime.scripts.recorder import Recorder
-    from pyfrc_core.runtime.trace import Trace
+    from pyfrc_core.runtime.scripts.trace import Trace
 
     patches.install(RobotFiles(Path.cwd()))
     run = RobotRun()

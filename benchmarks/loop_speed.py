@@ -39,7 +39,7 @@ def in_place() -> tuple[float, int]:
     from pyfrc_core.hal import modes
     from pyfrc_core.project import find_project
     from pyfrc_core.runtime.loading import load_robot
-    from pyfrc_core.runtime.patches import patches
+    from pyfrc_core.runtime.patches.install import patches
     from pyfrc_core.runtime.robot import RobotRun
 
     project = find_project(Path.cwd())

@@ -32,7 +32,7 @@ def measure(way: str) -> float:
     from pyfrc_core.measure.processes import announced
     from pyfrc_core.project import find_project
     from pyfrc_core.runtime.loading import load_robot
-    from pyfrc_core.runtime.patches import patches
+    from pyfrc_core.runtime.patches.install import patches
     from pyfrc_core.runtime.robot import RobotRun
 
     project = find_project(Path.cwd())

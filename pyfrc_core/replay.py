@@ -17,13 +17,13 @@ from .invariants.watch import watch_invariants
 from .physics.construct import construct
 from .processes.lent_streams import lent_streams
 from .project import Project
+from .runtime.checks.failures import as_robot_code_error
+from .runtime.checks.hang_detector import HangDetector
+from .runtime.checks.loop_limit import LoopLimit
 from .runtime.clock import to_us
-from .runtime.data_logs import LogPlace
-from .runtime.failures import as_robot_code_error
-from .runtime.hang_detector import HangDetector
 from .runtime.loading import load_robot
-from .runtime.loop_limit import LoopLimit
-from .runtime.patches import patches
+from .runtime.patches.data_logs import LogPlace
+from .runtime.patches.install import patches
 from .runtime.real_time_pace import RealTimePace
 from .runtime.robot import RobotRun
 from .runtime.scripts.boots import boots_of
@@ -31,8 +31,8 @@ from .runtime.scripts.files import traced
 from .runtime.scripts.inputs_file import load_inputs
 from .runtime.scripts.player import Player
 from .runtime.scripts.script import InputScript, trace_beside
+from .runtime.scripts.trace_difference import Difference, first_difference
 from .runtime.seeds import seed_generators
-from .runtime.trace_difference import Difference, first_difference
 
 
 @dataclass(frozen=True)

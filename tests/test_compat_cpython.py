@@ -12,7 +12,7 @@ import pytest
 
 from pyfrc_core.compat import cpython_private
 from pyfrc_core.compat.private_name import IncompatibleLibraryError, PrivateName
-from pyfrc_core.runtime.locks import CooperativeLock
+from pyfrc_core.runtime.threads.locks import CooperativeLock
 
 
 @pytest.mark.parametrize("name", cpython_private.NAMES, ids=lambda name: name.path)
@@ -92,7 +92,7 @@ def test_pythons_own_simple_queue(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_robots_lock_has_all_that_pythons_has() -> None:
     missing = {name for name in dir(cpython_private.LockType) if not hasattr(CooperativeLock, name)}
-    assert not missing, f"_thread.lock has {missing}, which runtime.locks.CooperativeLock has not: code may call it"
+    assert not missing, f"_thread.lock has {missing}, which CooperativeLock has not: code may call it"
 
 
 def test_threads() -> None:

@@ -80,7 +80,7 @@ print("done")
 """
     assert said_by(program) == ["done"], (
         "the bindings no longer take a call from a function of the same name for one of super(): "
-        "runtime.construction and fuzz.motor_calls reach WPILib's own methods by that"
+        "runtime.patches.construction and fuzz.motor_calls reach WPILib's own methods by that"
     )
 
 
@@ -177,8 +177,8 @@ print(event in made, [waitForObject(each, 0)[0] for each in made if len(made) ==
 """
     states = "[False, True, False, True]" if "manual" in before else "[]"
     assert said_by(FIND_EVENT.format(before=before, after=after)) == ["True", "taken", f"False {states}"], (
-        "WPILib's motor-safety thread no longer waits for an event: runtime.motor_safety takes its place, or motors "
-        "are stopped at random"
+        "WPILib's motor-safety thread no longer waits for an event: runtime.time.motor_safety takes its place, "
+        "or motors are stopped at random"
     )
 
 
@@ -212,7 +212,7 @@ hal.provideNewDataEventHandle(event)
 packets()
 """
     said = said_by(program)
-    assert said[0] == "removed", "packets still wake WPILib's motor-safety thread: runtime.motor_safety stops that"
+    assert said[0] == "removed", "packets still wake WPILib's motor-safety thread: runtime.time.motor_safety stops that"
     assert "stopped" in said, "packets do not wake WPILib's motor-safety thread: is there nothing left to replace?"
 
 
@@ -230,7 +230,7 @@ time.sleep(0.1)
     less = -1 if "Watchdog" in before else 0
     assert said_by(program) == [f"True {less}"], (
         "WPILib's watchdogs no longer share a thread that waits for a notifier named Watchdog: "
-        "runtime.loop_watchdog takes its place, and turns of a loop are slower with it"
+        "runtime.time.loop_watchdog takes its place, and turns of a loop are slower with it"
     )
 
 

@@ -11,7 +11,7 @@ import pytest
 from pyfrc_core.fuzz.campaign_hints import CampaignHints
 from pyfrc_core.fuzz.growth import Growth, Growths
 from pyfrc_core.fuzz.match_hints import LoopTimes, MatchHints
-from pyfrc_core.runtime.timed_loop import Periodic
+from pyfrc_core.runtime.time.timed_loop import Periodic
 
 ROBOT = """
     import commands2

@@ -20,8 +20,8 @@ from wpilib.simulation import (
 from wpimath.system.plant import DCMotor, LinearSystemId
 
 from pyfrc_core.compat import unrepeatable
-from pyfrc_core.runtime import noise
 from pyfrc_core.runtime.patch_table import patched
+from pyfrc_core.runtime.patches import noise
 
 NEO = DCMotor.NEO(1)
 FLYWHEEL = LinearSystemId.flywheelSystem(NEO, 0.01, 1.0)

@@ -18,7 +18,7 @@ from conftest import MakeProject, RobotProject
 
 from pyfrc_core.compat import unrepeatable
 from pyfrc_core.runtime.scripts.script import ScriptError, load_script, parse_script
-from pyfrc_core.runtime.trace_lines import hashed_part
+from pyfrc_core.runtime.scripts.trace_lines import hashed_part
 
 #: The files of a stand-in for phoenix6.
 CONTROLS = """

@@ -8,8 +8,8 @@ from collections.abc import Generator
 import pytest
 from conftest import MakeProject, RobotProject
 
-from pyfrc_core.runtime import udp_ports
 from pyfrc_core.runtime.patch_table import PatchTable
+from pyfrc_core.runtime.patches import udp_ports
 
 # As photonlibpy's time server does: on a fixed port, in a thread of the library.
 LIBRARY = """

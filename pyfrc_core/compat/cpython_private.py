@@ -45,28 +45,31 @@ bare_threads: set[int] = set()
 
 
 PYTHON_RLOCK = PrivateName(
-    "threading:_PyRLock", "runtime.locks derives the robot's reentrant lock from it, which is made of a lock (_block)"
+    "threading:_PyRLock",
+    "runtime.threads.locks derives the robot's reentrant lock from it, made of a lock (_block)",
 )
 PYTHON_SIMPLE_QUEUE = PrivateName(
-    "queue:_PySimpleQueue", "runtime.locks derives the robot's queue from it, which is made of a semaphore"
+    "queue:_PySimpleQueue", "runtime.threads.locks derives the robot's queue from it, which is made of a semaphore"
 )
 ALLOCATE_LOCK = PrivateName(
-    "threading:_allocate_lock", "runtime.locks replaces it, since all locks inside threading's classes are made by it"
+    "threading:_allocate_lock",
+    "runtime.threads.locks replaces it, since threading's classes make their locks by it",
 )
 THREADING_TIME = PrivateName(
-    "threading:_time", "runtime.patches replaces it, since conditions compute the end of their time-outs by it"
+    "threading:_time", "runtime.patches.install replaces it, since conditions compute the end of their time-outs by it"
 )
 QUEUE_TIME = PrivateName(
-    "queue:time", "runtime.patches replaces it, since queues compute the end of their time-outs by it"
+    "queue:time", "runtime.patches.install replaces it, since queues compute the end of their time-outs by it"
 )
 THREAD_INITIALIZED = PrivateName(
-    "threading:Thread._initialized", "runtime.cooperative leaves a thread without it to Thread.start, which refuses it"
+    "threading:Thread._initialized",
+    "runtime.threads.cooperative leaves a thread without it to Thread.start",
 )
 THREAD_TARGET = PrivateName(
     "threading:Thread._target", "the reason not to fork a process names the function of each of its threads"
 )
 SET_ASYNC_EXCEPTION = PrivateName(
-    "ctypes:pythonapi.PyThreadState_SetAsyncExc", "runtime.hang_detector interrupts a thread that hangs by it"
+    "ctypes:pythonapi.PyThreadState_SetAsyncExc", "runtime.checks.hang_detector interrupts a thread that hangs by it"
 )
 
 #: Those that are attributes of modules and classes.

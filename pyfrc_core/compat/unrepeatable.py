@@ -4,7 +4,7 @@ In real time: CTRE's phoenix6 (26.3) simulates on threads of its own. Its clock 
 WPILib's stepped time, and its devices answer some milliseconds later. ``docs/vendors.md`` has the measurements.
 
 With noise: REV's `SparkSim.iterate` (2026.0) and WPILib's mechanisms with `measurementStdDevs` draw it from generators
-that start by chance and that nothing can seed. `runtime.noise` reports here what has drawn some.
+that start by chance and that nothing can seed. `runtime.patches.noise` reports here what has drawn some.
 """
 
 from __future__ import annotations

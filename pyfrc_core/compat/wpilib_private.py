@@ -14,32 +14,32 @@ if TYPE_CHECKING:
     import wpilib
 
 LOOP_FUNCTION = PrivateName(
-    "wpilib:IterativeRobotBase._loopFunc", "runtime.timed_loop runs one turn of the robot's loop by it"
+    "wpilib:IterativeRobotBase._loopFunc", "runtime.time.timed_loop runs one turn of the robot's loop by it"
 )
 SIMULATION_INIT = PrivateName(
     "wpilib:IterativeRobotBase._simulationInit",
-    "runtime.timed_loop calls it after robotInit, as WPILib's own loop does",
+    "runtime.time.timed_loop calls it after robotInit, as WPILib's own loop does",
 )
 SIMULATION_PERIODIC = PrivateName(
     "wpilib:IterativeRobotBase._simulationPeriodic",
-    "runtime.simulation_periodic switches outputs off while it looks at a disabled robot",
+    "runtime.time.simulation_periodic switches outputs off while it looks at a disabled robot",
 )
 MAGIC_SIMULATION_INIT = PrivateName(
     "magicbot:MagicRobot._simulationInit", "it is when a MagicRobot's robotInit is over: then its physics are made"
 )
 MAGIC_SIMULATION_PERIODIC = PrivateName(
     "magicbot:MagicRobot._simulationPeriodic",
-    "runtime.simulation_periodic switches outputs off while it looks at a disabled robot",
+    "runtime.time.simulation_periodic switches outputs off while it looks at a disabled robot",
 )
 STACK_TRACE_HOOK = PrivateName(
-    "wpiutil._stacktrace:_stack_trace_hook", "runtime.robot_stack puts it back when the patches are undone"
+    "wpiutil._stacktrace:_stack_trace_hook", "runtime.patches.robot_stack puts it back when the patches are undone"
 )
 SET_STACK_TRACE_HOOK = PrivateName(
     "wpiutil._wpiutil:_setup_stack_trace_hook",
-    "runtime.robot_stack has WPILib's errors come with the robot's lines by it",
+    "runtime.patches.robot_stack has WPILib's errors come with the robot's lines by it",
 )
 SUBSYSTEMS = PrivateName(
-    "commands2:CommandScheduler._subsystems", "runtime.simulation_periodic finds the robot's subsystems by it"
+    "commands2:CommandScheduler._subsystems", "runtime.time.simulation_periodic finds the robot's subsystems by it"
 )
 SCHEDULED_COMMANDS = PrivateName(
     "commands2:CommandScheduler._scheduledCommands", "fuzz.states finds the commands that run by it"

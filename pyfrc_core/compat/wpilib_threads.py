@@ -11,7 +11,7 @@ import time
 from functools import cache
 
 # Unlike the rest of this package, this module imports WPILib at once: it needs the original names, which
-# `runtime.patches` replaces for robot code.
+# `runtime.patches.install` replaces for robot code.
 import hal
 import hal.simulation
 import wpilib
@@ -69,8 +69,8 @@ def motor_safety_event() -> int:
 def _is_waited_for(handle: int) -> bool:
     """Return whether a thread waits for this event: such a thread resets it when it is set.
 
-    Other events stay as they are. A thread of another library's may be found, too: what `runtime.motor_safety` does
-    then harms it only if it waits for packets.
+    Other events stay as they are. A thread of another library's may be found, too: what
+    `runtime.time.motor_safety` does then harms it only if it waits for packets.
     """
     is_set, timed_out = waitForObject(handle, 0)
     if is_set:

@@ -14,8 +14,8 @@ from ..errors import ProjectError, PyfrcError, SettingsError
 from ..processes.call import run_in_subprocess
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_libraries
-from ..runtime.code_checks import find_code_warnings
-from ..runtime.code_warning import CodeWarning
+from ..runtime.checks.code_checks import find_code_warnings
+from ..runtime.checks.code_warning import CodeWarning
 from ..runtime.loading import load_robot
 from ..season import refuse_other_season
 from .check_result import CheckResult, hint, ok, problem

@@ -17,7 +17,7 @@ from pathlib import Path
 from ..project import Project
 from ..runtime.clock import PACKET_US, to_us
 from ..runtime.scripts.script import InputScript
-from ..runtime.trace_difference import first_difference
+from ..runtime.scripts.trace_difference import first_difference
 from ..text_files import keep_out_of_version_control
 from .campaign_data import CampaignOptions
 from .describe import story_of

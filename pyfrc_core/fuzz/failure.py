@@ -9,9 +9,9 @@ from types import CodeType, FrameType
 from ..errors import text_of
 from ..invariants.watch import BrokenInvariantError
 from ..project.robot_files import RobotFiles, innermost_entry
+from ..runtime.checks.failures import NamesItsPlace, headline, library_calls, with_library_calls
+from ..runtime.checks.loop_limit import LoopWaitsError
 from ..runtime.exceptions import TestFroze
-from ..runtime.failures import NamesItsPlace, headline, library_calls, with_library_calls
-from ..runtime.loop_limit import LoopWaitsError
 
 #: Kind of a failure: the code hangs.
 HANGS = "hangs"

@@ -9,7 +9,7 @@ from ..hal import HalData, devices_exist
 from ..invariants.load import Invariant, load_invariants
 from ..project import Project
 from ..runtime.loading import load_robot
-from ..runtime.patches import patches
+from ..runtime.patches.install import patches
 from .lines import RobotLines
 from .robot_constants import RobotConstants, find_constants
 

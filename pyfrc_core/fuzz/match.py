@@ -16,11 +16,11 @@ import ntcore
 from ..invariants.watch import BrokenInvariantError, watch_invariants
 from ..physics.construct import construct
 from ..project import Project
+from ..runtime.checks.crash_moment import CrashMoment
+from ..runtime.checks.hang_detector import HangDetector
+from ..runtime.checks.loop_limit import LoopLimit
 from ..runtime.clock import PACKET_US, to_us
-from ..runtime.crash_moment import CrashMoment
 from ..runtime.exceptions import TestEnded, TestRanTooLong
-from ..runtime.hang_detector import HangDetector
-from ..runtime.loop_limit import LoopLimit
 from ..runtime.real_time_pace import RealTimePace
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.boots import boots_of, restore_entries, without_entries

@@ -19,7 +19,7 @@ from ..processes.call import ForkedCall, can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
 from ..processes.fork import wait_for_any
 from ..project import Project
-from ..runtime.fork_obstacles import reasons_not_to_fork
+from ..runtime.threads.fork_obstacles import reasons_not_to_fork
 from ..runtime.turns import taking_turns
 from .boots import MEANWHILE
 from .goals import Line

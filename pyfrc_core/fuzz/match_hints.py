@@ -22,7 +22,7 @@ _MEASURED = 50
 #: For so long, the robot may still be importing modules.
 _FIRST_US = 1_000_000
 
-# Bound before `runtime.patches` replaces the names.
+# Bound before `runtime.patches.install` replaces the names.
 _real_time, _processor_time = time.perf_counter, time.thread_time
 
 

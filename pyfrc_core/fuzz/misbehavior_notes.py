@@ -7,7 +7,7 @@ from typing import NamedTuple
 from ..invariants.watch import BrokenInvariantError
 from ..project.robot_files import RobotFiles
 from ..runtime.clock import PACKET_US, Clock
-from ..runtime.threads import RobotThreads
+from ..runtime.threads.robot_threads import RobotThreads
 from .failure import FuzzFailure, MisbehaviorError, failure_of
 
 #: After these the robot's program does nothing that is of interest.

@@ -21,7 +21,7 @@ from ..project.robot_files import RobotFiles
 from ..runtime.clock import OBSERVE, PACKET_US
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript
-from ..runtime.timed_loop import Periodic
+from ..runtime.time.timed_loop import Periodic
 from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
 from .inert_motors import InertMotors

@@ -8,8 +8,8 @@ from pathlib import Path
 from ..errors import RobotCodeError
 from ..processes.call import run_in_subprocess
 from ..project import Project
+from ..runtime.checks.hang_detector import not_watched
 from ..runtime.clock import PACKET_US
-from ..runtime.hang_detector import not_watched
 from ..runtime.scripts.script import InputScript
 from .boots import MEANWHILE
 from .match import ReplayTask, play

@@ -8,7 +8,7 @@ from ..errors import PyfrcError
 from ..processes.call import can_fork, run_in_subprocess
 from ..processes.crash_report import CrashLog
 from ..project import Project
-from ..runtime.hang_detector import not_watched
+from ..runtime.checks.hang_detector import not_watched
 from .match_executor import shrink_alone
 from .shrink_task import ShrinkTask, Shrunk
 

@@ -10,10 +10,10 @@ from ..errors import text_of
 from ..hal import modes
 from ..hal.driver_station import program_state
 from ..project.robot_files import RobotFiles, innermost_entry
+from ..runtime.checks.failures import NamesItsPlace
 from ..runtime.clock import CHECK, PACKET_US
-from ..runtime.failures import NamesItsPlace
 from ..runtime.robot import RobotRun
-from ..runtime.timed_loop import Periodic
+from ..runtime.time.timed_loop import Periodic
 from .load import PARAMETERS, Invariant
 from .values import Moment, moment_of_return, values_at
 

@@ -14,11 +14,11 @@ from types import FrameType
 
 from ..compat.cpython_private import current_frames
 from ..project.robot_files import RobotFiles, is_pyfrc
-from ..runtime.cooperative import real_thread_start
 from ..runtime.patch_table import PatchTable
-from ..runtime.patches import patches
+from ..runtime.patches.install import patches
 from ..runtime.robot import RobotRun
-from ..runtime.threads import real_allocate_lock, real_thread_join
+from ..runtime.threads.cooperative import real_thread_start
+from ..runtime.threads.robot_threads import real_allocate_lock, real_thread_join
 from .figures import Figures
 from .stopwatch import innermost_line, is_waiting
 

@@ -22,8 +22,8 @@ from wpilib import TimedRobot
 from ..compat.cpython_private import get_frame
 from ..hal import modes
 from ..project.robot_files import RobotFiles
-from ..runtime.patches import patches
-from ..runtime.threads import RobotThread, RobotThreads
+from ..runtime.patches.install import patches
+from ..runtime.threads.robot_threads import RobotThread, RobotThreads
 from .figures import CodeLine, Figures, Measurand, Overrun
 
 #: Calls that take longer are stored until the loop's iteration is over, since they may be the cause of an overrun.

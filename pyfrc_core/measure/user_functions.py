@@ -19,11 +19,11 @@ import wpiutil
 
 from ..compat.wpilib_private import LOOP_FUNCTION
 from ..project.robot_files import RobotFiles
-from ..runtime.notifier import Notifier
 from ..runtime.patch_table import PatchTable
 from ..runtime.robot import RobotRun
-from ..runtime.threads import RobotThreads
-from ..runtime.timed_loop import Periodic, TimedLoop
+from ..runtime.threads.robot_threads import RobotThreads
+from ..runtime.time.notifier import Notifier
+from ..runtime.time.timed_loop import Periodic, TimedLoop
 from .figures import Measurand
 from .stopwatch import Stopwatch
 

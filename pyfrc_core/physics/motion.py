@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..runtime.patches import patches
+from ..runtime.patches.install import patches
 from .parameters import ParameterError, finite, not_negative, within_full_power
 
 

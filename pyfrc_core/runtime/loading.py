@@ -17,11 +17,11 @@ from ..processes.crash_report import reported_exit
 from ..processes.lent_streams import lent_streams
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_by_any_name
-from .construction import refused
+from .checks.hang_detector import importing, watching_exit
+from .checks.misspelled_methods import refuse_unawaited_methods
 from .exceptions import TestFroze
-from .hang_detector import importing, watching_exit
 from .keyboard_input import refuse_keyboard_input
-from .misspelled_methods import refuse_unawaited_methods
+from .patches.construction import refused
 from .robot_class import choose_robot_class
 
 #: Part of Python's messages about a file that it cannot decode.

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 from ..compat.unrepeatable import real_time_libraries
 from ..hal import modes
 from .patch_table import PatchTable
-from .real_time_loops import RealTimeLoops
 from .robot_time import PACKET_US
+from .time.real_time_loops import RealTimeLoops
 
 if TYPE_CHECKING:
     from ..config.settings import Settings

@@ -11,7 +11,7 @@ import threading
 import weakref
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import ntcore
 import wpilib
@@ -23,68 +23,20 @@ from ..hal import HalData, devices_exist, modes, timing
 from ..hal.ds_connection import DriverStationConnection
 from ..hal.output_gate import OutputGate
 from ..processes.exit import in_this_process
-from . import cooperative
 from .clock import OBSERVE, PACKET_US, Clock
-from .construction import missing_super_init, without_first_alarm
-from .data_logs import DataLogs, LogPlace
 from .exceptions import TestEnded, TestFroze, WrongThread
-from .loop_watchdog import LoopOverruns
-from .motor_safety import MotorSafetyCheck
-from .notifier import Alarms, Notifier
-from .simulation_periodic import gate_robot, gate_subsystems
-from .threads import RobotThread, RobotThreads
-from .timed_loop import TimedLoop
+from .patches.active_run import ExternalWrites, active_run
+from .patches.construction import missing_super_init, without_first_alarm
+from .patches.data_logs import DataLogs, LogPlace
+from .threads import cooperative
+from .threads.robot_threads import RobotThread, RobotThreads
+from .time.loop_watchdog import LoopOverruns
+from .time.motor_safety import MotorSafetyCheck
+from .time.notifier import Alarms
+from .time.simulation_periodic import gate_robot, gate_subsystems
+from .time.timed_loop import TimedLoop
 
 _SIMULATION_INIT = MAGIC_SIMULATION_INIT.name
-
-
-class ExternalWrites(Protocol):
-    """A listener for what is written from outside the robot program, such as a recorder."""
-
-    def begin_outside(self, stepping: bool = False, only_time: bool = False) -> None:
-        """External writes begin: before a packet, and of the match time alone."""
-
-    def end_outside(self, stepping: bool = False, only_time: bool = False) -> None:
-        """External writes end."""
-
-    def on_packet_out_of_turn(self) -> None:
-        """A packet is delivered between two of the clock's packets."""
-
-
-class ActiveRun:
-    """The run of this process, if a robot runs.
-
-    There is one of these, since the HAL, the patched names and the threads in robot time belong to the process.
-    """
-
-    def __init__(self) -> None:
-        self.run: RobotRun | None = None
-        #: Called when a robot's initialization is over.
-        self.when_started: Callable[[], object] = lambda: None
-
-    @contextlib.contextmanager
-    def set_to(self, run: RobotRun) -> Iterator[None]:
-        """Make `run` the active one while the context lasts.
-
-        :raises RuntimeError: when there is one already
-        """
-        if self.run is not None:
-            raise RuntimeError("a robot runs already in this process")
-        self.run = run
-        cooperative.scope.threads = Notifier.threads = run.threads
-        try:
-            yield
-        finally:
-            self.forget()
-
-    def forget(self) -> None:
-        """Return the process to real time."""
-        self.run = None
-        cooperative.scope.threads = Notifier.threads = None
-
-
-#: The run of this process.
-active_run = ActiveRun()
 
 
 class RobotRun:

@@ -22,7 +22,7 @@ from typing import IO, Any
 
 from ..compat.cpython_private import get_frame
 from ..project.robot_files import is_pyfrc
-from .robot import active_run
+from .patches.active_run import active_run
 
 #: Names the directory by which the processes of a command agree.
 _VARIABLE = "PYFRC_TURNS"

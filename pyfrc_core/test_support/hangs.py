@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from ..runtime.cooperative import test_that_started
-from ..runtime.hang_detector import HangDetector
-from ..runtime.threads import real_thread_join
+from ..runtime.checks.hang_detector import HangDetector
+from ..runtime.threads.cooperative import test_that_started
+from ..runtime.threads.robot_threads import real_thread_join
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog

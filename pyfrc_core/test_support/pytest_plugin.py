@@ -22,19 +22,25 @@ from ..hal import HalData
 from ..invariants.load import Invariant, load_invariants
 from ..processes.lent_streams import lent_streams
 from ..project import NO_PHYSICS, Project
-from ..runtime.cooperative import line_of_thread
-from ..runtime.crash_moment import CrashMoment
-from ..runtime.data_logs import TEST_LOGS, LogPlace
-from ..runtime.failures import NamesItsPlace, headline, headline_is_the_robots, leave_out_libraries, names_its_place
+from ..runtime.checks.crash_moment import CrashMoment
+from ..runtime.checks.failures import (
+    NamesItsPlace,
+    headline,
+    headline_is_the_robots,
+    leave_out_libraries,
+    names_its_place,
+)
+from ..runtime.checks.loop_limit import LoopLimit
+from ..runtime.checks.refresh import explain_missing_refresh
 from ..runtime.loading import load_robot
-from ..runtime.loop_limit import LoopLimit
-from ..runtime.patches import patches
+from ..runtime.patches.data_logs import TEST_LOGS, LogPlace
+from ..runtime.patches.install import patches
 from ..runtime.real_time_pace import RealTimePace
-from ..runtime.refresh import explain_missing_refresh
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.files import recorded, traced
 from ..runtime.seeds import seed_generators
-from ..runtime.threads import RobotThread
+from ..runtime.threads.cooperative import line_of_thread
+from ..runtime.threads.robot_threads import RobotThread
 from . import controller
 from .controller import TestController
 from .device_misuse import warning_of_misuse

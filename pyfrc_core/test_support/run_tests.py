@@ -13,7 +13,7 @@ from ..errors import PyfrcError, UsageError
 from ..processes.fork import FORK_IS_SAFE
 from ..processes.prefork import PreforkedProcess
 from ..project import Project
-from ..runtime.fork_obstacles import reasons_not_to_fork
+from ..runtime.threads.fork_obstacles import reasons_not_to_fork
 from .isolation.loop import IsolatedTests
 from .options import READY_MADE_TESTS, TestOptions
 from .pytest_plugin import PyFrcPlugin

@@ -19,7 +19,7 @@ import pytest
 from ..compat.library_output import LibraryOutput
 from ..compat.unrepeatable import explain_unrepeatable
 from ..project import Project
-from ..runtime.code_checks import find_code_warnings
+from ..runtime.checks.code_checks import find_code_warnings
 from .device_misuse import DeviceWarning
 from .reporting import BUG, UNREPEATABLE, put_first
 from .uncollected import find_uncollected

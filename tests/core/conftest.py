@@ -8,9 +8,9 @@ import hal
 import pytest
 
 from pyfrc_core.hal import modes, timing
-from pyfrc_core.runtime import cooperative
-from pyfrc_core.runtime.notifier import Notifier
 from pyfrc_core.runtime.robot import RobotRun
+from pyfrc_core.runtime.threads import cooperative
+from pyfrc_core.runtime.time.notifier import Notifier
 
 from .timeline import Timeline
 

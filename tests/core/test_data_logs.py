@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from wpiutil.log import DataLogReader, StringLogEntry
 
-from pyfrc_core.runtime import data_logs
 from pyfrc_core.runtime.clock import KICKOFF
-from pyfrc_core.runtime.data_logs import DataLogs, LogPlace
+from pyfrc_core.runtime.patches import data_logs
+from pyfrc_core.runtime.patches.data_logs import DataLogs, LogPlace
 
 from .timeline import Timeline
 

@@ -21,7 +21,7 @@ from pyfrc_core.errors import SettingsError
 from pyfrc_core.explain import explain
 from pyfrc_core.explain.names import GONE
 from pyfrc_core.project.robot_files import RobotFiles
-from pyfrc_core.runtime.failures import headline
+from pyfrc_core.runtime.checks.failures import headline
 
 rev = pytest.importorskip("rev")
 

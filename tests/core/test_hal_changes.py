@@ -15,13 +15,13 @@ from wpilib import simulation as sim
 from pyfrc_core.hal import HalData
 from pyfrc_core.hal.change_reader import MISSING, ChangeReader, Changes
 from pyfrc_core.hal.devices import KINDS
-from pyfrc_core.runtime.hal_resets import patches
 from pyfrc_core.runtime.patch_table import patched
+from pyfrc_core.runtime.patches.hal_resets import patches
 
 
 @pytest.fixture
 def tree() -> Iterator[HalData]:
-    with patched(patches(lambda: None)):
+    with patched(patches()):
         hs.resetAllSimData()
         yield HalData()
         gc.collect()

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from pyfrc_core.processes.standstill import Standstill
-from pyfrc_core.runtime import hang_detector
-from pyfrc_core.runtime.hang_detector import HangDetector, not_watched
+from pyfrc_core.runtime.checks import hang_detector
+from pyfrc_core.runtime.checks.hang_detector import HangDetector, not_watched
 
 DRIVER = 11
 

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from pyfrc_core.runtime.locks import CooperativeLock, CooperativeRLock, CooperativeSimpleQueue, make_lock
+from pyfrc_core.runtime.threads.locks import CooperativeLock, CooperativeRLock, CooperativeSimpleQueue, make_lock
 
 from .timeline import Timeline
 
@@ -128,7 +128,7 @@ def test_a_reentrant_lock_is_freed_by_its_last_release(timeline: Timeline) -> No
 
 
 def test_a_queue_hands_on_in_order(timeline: Timeline, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pyfrc_core.runtime.locks.on_behalf_of_robot_code", lambda frame: True)
+    monkeypatch.setattr("pyfrc_core.runtime.threads.locks.on_behalf_of_robot_code", lambda frame: True)
     monkeypatch.setattr(threading, "_allocate_lock", make_lock)
     items = CooperativeSimpleQueue()
     assert isinstance(items, CooperativeSimpleQueue)

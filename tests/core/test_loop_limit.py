@@ -14,8 +14,8 @@ import wpilib
 from pyfrc_core.config.settings import Settings
 from pyfrc_core.hal import modes
 from pyfrc_core.project.robot_files import RobotFiles
-from pyfrc_core.runtime.loop_limit import LoopLimit, LoopWaitsError
-from pyfrc_core.runtime.refresh import RefreshCheck
+from pyfrc_core.runtime.checks.loop_limit import LoopLimit, LoopWaitsError
+from pyfrc_core.runtime.checks.refresh import RefreshCheck
 from pyfrc_core.runtime.robot import RobotRun
 
 #: The library's loop: `magicbot` is recognized by its module's name.

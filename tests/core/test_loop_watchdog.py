@@ -9,7 +9,7 @@ import pytest
 import wpilib
 
 from pyfrc_core.runtime.clock import PACKET, ROBOT_LOOP
-from pyfrc_core.runtime.loop_watchdog import Watchdog
+from pyfrc_core.runtime.time.loop_watchdog import Watchdog
 
 from .timeline import Timeline
 
@@ -103,7 +103,7 @@ def test_what_is_late_again_is_reported_once_a_second(timeline: Timeline, messag
 
 
 def test_outside_a_run_it_never_expires(timeline: Timeline, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("pyfrc_core.runtime.cooperative.scope.threads", None)
+    monkeypatch.setattr("pyfrc_core.runtime.threads.cooperative.scope.threads", None)
     dog = make(timeline)
     dog.enable()
     timeline.run_until(1000)

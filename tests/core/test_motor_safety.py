@@ -13,7 +13,7 @@ from hal.simulation import setDriverStationDsAttached, setDriverStationEnabled
 from pyfrc_core.compat.wpilib_threads import motor_safety_event
 from pyfrc_core.hal import modes
 from pyfrc_core.hal.timing import deliver_packet, run_freely, step_us, stop_and_zero
-from pyfrc_core.runtime.motor_safety import MotorSafetyCheck
+from pyfrc_core.runtime.time.motor_safety import MotorSafetyCheck
 
 
 @pytest.fixture(autouse=True)

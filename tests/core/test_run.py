@@ -13,10 +13,11 @@ from hal import simulation as hs
 
 from pyfrc_core.hal import ds_connection, modes
 from pyfrc_core.hal.ds_connection import DriverStationConnection
-from pyfrc_core.runtime import cooperative, driver_station
 from pyfrc_core.runtime.clock import PACKET_US, PHYSICS
 from pyfrc_core.runtime.exceptions import WrongThread
+from pyfrc_core.runtime.patches import driver_station
 from pyfrc_core.runtime.robot import RobotRun
+from pyfrc_core.runtime.threads import cooperative
 
 
 class Log(list[str]):
@@ -182,7 +183,7 @@ def test_a_process_has_one_run(run: RobotRun) -> None:
 
 
 def test_waiting_for_a_connection_takes_robot_time(run: RobotRun) -> None:
-    (_, _, wait) = next(each for each in driver_station.patches(lambda: run) if each[1] == "waitForDsConnection")
+    (_, _, wait) = next(each for each in driver_station.patches() if each[1] == "waitForDsConnection")
     assert wait(0.015) is False
     assert run.clock.now_us == 15_000
     assert wait(0) is True

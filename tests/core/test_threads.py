@@ -6,10 +6,11 @@ import threading
 
 import pytest
 
-from pyfrc_core.runtime import cooperative, threads
 from pyfrc_core.runtime.clock import PACKET, PHYSICS, ROBOT_LOOP, WAKE_UP
 from pyfrc_core.runtime.exceptions import TestEnded
-from pyfrc_core.runtime.threads import RobotThread
+from pyfrc_core.runtime.threads import cooperative
+from pyfrc_core.runtime.threads import robot_threads as threads
+from pyfrc_core.runtime.threads.robot_threads import RobotThread
 
 from .timeline import Timeline
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from pyfrc_core.runtime.clock import PHYSICS
-from pyfrc_core.runtime.timed_loop import TimedLoop
+from pyfrc_core.runtime.time.timed_loop import TimedLoop
 
 from .timeline import Timeline
 

@@ -9,8 +9,8 @@ import random
 from typing import Any
 
 from pyfrc_core.hal.change_reader import ChangeReader
-from pyfrc_core.runtime.trace import FORMAT, Trace
-from pyfrc_core.runtime.trace_lines import hashed_part, line_time, trace_line, with_unrepeatable
+from pyfrc_core.runtime.scripts.trace import FORMAT, Trace
+from pyfrc_core.runtime.scripts.trace_lines import hashed_part, line_time, trace_line, with_unrepeatable
 
 
 class Tree:

@@ -14,11 +14,16 @@ import wpilib
 
 from pyfrc_core.errors import RobotCodeError, UsageError
 from pyfrc_core.project.robot_files import RobotFiles
-from pyfrc_core.runtime.failures import as_robot_code_error, headline, headline_is_the_robots, leave_out_libraries
-from pyfrc_core.runtime.foreign_paths import find_foreign_paths
+from pyfrc_core.runtime.checks.failures import (
+    as_robot_code_error,
+    headline,
+    headline_is_the_robots,
+    leave_out_libraries,
+)
+from pyfrc_core.runtime.checks.foreign_paths import find_foreign_paths
+from pyfrc_core.runtime.checks.misspelled_methods import find_misspelled_methods, refuse_unawaited_methods
 from pyfrc_core.runtime.match import MatchPeriods
-from pyfrc_core.runtime.misspelled_methods import find_misspelled_methods, refuse_unawaited_methods
-from pyfrc_core.runtime.patches import patches
+from pyfrc_core.runtime.patches.install import patches
 
 Import = Callable[..., ModuleType]
 

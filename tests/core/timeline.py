@@ -5,9 +5,9 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from pyfrc_core.runtime import cooperative
 from pyfrc_core.runtime.clock import Clock
-from pyfrc_core.runtime.threads import RobotThreads
+from pyfrc_core.runtime.threads import cooperative
+from pyfrc_core.runtime.threads.robot_threads import RobotThreads
 
 
 class Timeline:

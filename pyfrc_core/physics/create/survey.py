@@ -16,11 +16,11 @@ from ...errors import PyfrcError, RobotCodeError
 from ...hal import HalData
 from ...processes.crash_report import CrashLog
 from ...project import Project
+from ...runtime.checks.failures import as_robot_code_error, leave_out_libraries
+from ...runtime.checks.hang_detector import HangDetector
 from ...runtime.exceptions import TestEnded, TestFroze, TestRanTooLong
-from ...runtime.failures import as_robot_code_error, leave_out_libraries
-from ...runtime.hang_detector import HangDetector
 from ...runtime.loading import load_robot
-from ...runtime.patches import patches
+from ...runtime.patches.install import patches
 from ...runtime.robot import RobotRun
 from .can_devices import CanDevices, CanMotor, find_can_devices
 from .motors import Motor

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from ...processes.exit import before_sudden_exit
 from ..robot import RobotRun
-from ..trace import Trace
 from .recorder import Recorder
 from .script import trace_beside
+from .trace import Trace
 
 #: The bytes of a trace that are written at once: a robot with hundreds of values has some kilobytes in each packet.
 _BUFFER = 1 << 17

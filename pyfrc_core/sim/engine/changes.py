@@ -16,7 +16,7 @@ from itertools import islice
 from types import MappingProxyType
 from typing import Any
 
-from ...runtime.trace_lines import UNREPEATABLE
+from ...runtime.scripts.trace_lines import UNREPEATABLE
 from .history import History
 
 #: The types of values that cannot change, and have no parts.

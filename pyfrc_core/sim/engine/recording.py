@@ -14,8 +14,8 @@ from pathlib import Path
 
 from ...runtime.robot_time import to_us
 from ...runtime.scripts.script import InputScript, Step, trace_beside
-from ...runtime.trace import FORMAT
-from ...runtime.trace_lines import hashed_part, line_time
+from ...runtime.scripts.trace import FORMAT
+from ...runtime.scripts.trace_lines import hashed_part, line_time
 from ...text_files import write_whole
 from .history import History, entries
 from .messages import StationState, Update

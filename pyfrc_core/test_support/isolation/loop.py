@@ -27,9 +27,9 @@ from ...processes.fork import FORK_IS_SAFE
 from ...processes.worker import wait_for_any
 from ...processors import usable_processors
 from ...project.robot_files import RobotFiles
-from ...runtime.failures import headline_is_the_robots
-from ...runtime.fork_obstacles import reasons_not_to_fork
+from ...runtime.checks.failures import headline_is_the_robots
 from ...runtime.module_files import resolve_module_files
+from ...runtime.threads.fork_obstacles import reasons_not_to_fork
 from ...runtime.turns import taking_turns
 from ..hangs import ROBOT_FIXTURES
 from ..options import Jobs

@@ -12,7 +12,7 @@ from typing import Any
 import ntcore
 
 from ....hal import modes
-from ....runtime.trace_lines import trace_line
+from ....runtime.scripts.trace_lines import trace_line
 from ..network_paths import MODE, POSE, TYPE, VALUE
 from ..scene import Pose
 from .structs import StructReader

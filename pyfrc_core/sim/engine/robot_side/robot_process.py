@@ -23,13 +23,13 @@ from ....processes.crash_report import CrashLog
 from ....processes.exit import before_sudden_exit
 from ....project import Project
 from ....project.robot_files import past_pyfrc
-from ....runtime.code_checks import find_code_warnings
-from ....runtime.crash_moment import CrashMoment
-from ....runtime.data_logs import LogPlace
-from ....runtime.failures import as_robot_code_error, leave_out_libraries
-from ....runtime.hang_detector import HangDetector
+from ....runtime.checks.code_checks import find_code_warnings
+from ....runtime.checks.crash_moment import CrashMoment
+from ....runtime.checks.failures import as_robot_code_error, leave_out_libraries
+from ....runtime.checks.hang_detector import HangDetector
 from ....runtime.loading import load_robot
-from ....runtime.patches import patches
+from ....runtime.patches.data_logs import LogPlace
+from ....runtime.patches.install import patches
 from ....runtime.robot import RobotRun
 from ....runtime.seeds import seed_generators
 from ..extensions import WINDOW, load_extensions

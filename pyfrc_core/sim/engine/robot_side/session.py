@@ -12,10 +12,10 @@ from ....errors import PyfrcError
 from ....hal import modes
 from ....physics.core import PhysicsInterface
 from ....physics.pose import walls_of
+from ....runtime.checks.loop_limit import LoopLimit
+from ....runtime.checks.refresh import RefreshCheck
 from ....runtime.clock import INPUT, NO_LIMIT_US, OBSERVE, PACKET_US
 from ....runtime.exceptions import TestEnded
-from ....runtime.loop_limit import LoopLimit
-from ....runtime.refresh import RefreshCheck
 from ....runtime.robot import RobotRun
 from ....runtime.scripts.player import Player
 from ....runtime.scripts.recorder import Recorder

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ....runtime.trace import Trace
+from ....runtime.scripts.trace import Trace
 from .network_trace import NetworkTrace
 
 

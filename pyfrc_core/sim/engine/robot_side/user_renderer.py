@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
 from ....errors import UsageError
-from ....runtime.patches import patches
+from ....runtime.patches.install import patches
 from ..scene import Line, Point, Pose, Text
 from .drawing_styles import line_style, text_style
 

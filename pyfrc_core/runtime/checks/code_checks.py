@@ -1,0 +1,18 @@
+"""All checks of the robot code that is imported for mistakes that raise no error here."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .code_warning import CodeWarning
+from .foreign_paths import find_foreign_paths
+from .missing_super import find_missing_super
+from .misspelled_methods import find_misspelled_methods
+
+if TYPE_CHECKING:
+    from ...project import Project
+
+
+def find_code_warnings(project: Project) -> list[CodeWarning]:
+    """Return the mistakes in the project's imported modules."""
+    return [*find_misspelled_methods(project), *find_missing_super(project), *find_foreign_paths(project)]

@@ -1,0 +1,87 @@
+"""What the construction of a robot needs: no alarm that stops time, and an explanation when WPILib refuses it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import wpilib
+
+from ...compat.cpython_private import get_frame
+from ...compat.wpilib_private import end_competition
+from ...errors import RobotCodeError
+from ...project.robot_files import RobotFiles
+from ..patch_table import Patch, patched
+
+
+@contextmanager
+def without_first_alarm() -> Iterator[None]:
+    """Cancel the alarm that `wpilib.TimedRobot`'s constructor sets, as soon as it has set it.
+
+    The HAL lets no time pass before a thread waits for that alarm, and none does: a robot whose own constructor
+    waits after ``super().__init__()`` would hang.
+    """
+    original = wpilib.TimedRobot.__init__
+
+    def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
+        __tracebackhide__ = True
+        original(self, *args, **kwargs)
+        end_competition(self)
+
+    with patched([Patch(wpilib.TimedRobot, "__init__", __init__)]):
+        yield
+
+
+@contextmanager
+def refused(files: RobotFiles) -> Iterator[None]:
+    """Refuse robots that are made, or run, while the program is imported.
+
+    WPILib makes the robot, and its time would stand.
+    """
+
+    def refusing(robot_class: type[Any]) -> Patch:
+        original = robot_class.__init__
+
+        def __init__(self: Any, *args: Any, **kwargs: Any) -> None:
+            __tracebackhide__ = True
+            line: str | None = None
+            frame: FrameType | None = get_frame(1)
+            while frame is not None:  # the outermost line: the class has only been called there
+                line, frame = files.line_of_frame(frame) or line, frame.f_back
+            if line is None:
+                original(self, *args, **kwargs)
+                return
+            raise RobotCodeError(
+                f"a robot is made while the program is imported: {type(self).__name__}()",
+                where=line,
+                remedy="Delete this call: the robot program is its class, and pyfrc and WPILib make the robot.",
+            )
+
+        return Patch(robot_class, "__init__", __init__)
+
+    def run(robot_class: type[Any], **kwargs: Any) -> None:
+        __tracebackhide__ = True
+        raise RobotCodeError(
+            "wpilib.run() is called while the program is imported",
+            where=files.line_of_frame(get_frame(1)),
+            remedy="Remove this line: pyfrc and WPILib find the robot class and run it.",
+        )
+
+    bases = [wpilib.RobotBase, wpilib.IterativeRobotBase, wpilib.TimedRobot, wpilib.TimesliceRobot]
+    with patched([*(refusing(base) for base in bases), Patch(wpilib, "run", run)]):
+        yield
+
+
+def missing_super_init(robot_class: type[object], error: TypeError) -> RobotCodeError | None:
+    """WPILib complains of a forgotten ``super().__init__()`` without naming the place; this does."""
+    code = getattr(robot_class.__init__, "__code__", None)
+    if code is None or "__init__() must be called when overriding" not in str(error):
+        return None
+    return RobotCodeError(
+        f"{robot_class.__name__}.__init__ does not call super().__init__()",
+        where=f"{Path(code.co_filename).name}:{code.co_firstlineno}",
+        remedy="Make that its first line.",
+    )

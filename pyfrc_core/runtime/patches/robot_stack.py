@@ -1,0 +1,56 @@
+"""The stack that WPILib prints with an error or a warning: of the robot's own lines, not of what drives the robot.
+
+On a robot the user's code is nearly all that there is on it. Here a dozen calls of the runtime come before.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from types import FrameType
+from typing import TYPE_CHECKING
+
+import wpilib
+
+from ...compat.cpython_private import get_frame
+from ...compat.wpilib_private import show_stack, show_whole_stack
+from ..patch_table import Patch
+
+if TYPE_CHECKING:
+    from ...project.robot_files import RobotFiles
+
+
+def show_robots_lines(files: Callable[[], RobotFiles]) -> None:
+    """From now on, what is reported from C++ comes with the lines of the project that led there."""
+    show_stack(lambda: _lines(files(), get_frame(1)))
+
+
+def show_all_lines() -> None:
+    """From now on, it comes with all lines, as without this module."""
+    show_whole_stack()
+
+
+def patches(files: Callable[[], RobotFiles]) -> list[Patch]:
+    """Return the replacements of `wpilib.reportError` and `reportWarning`, which print a stack of their own."""
+
+    def reporting(name: str) -> Patch:
+        real = getattr(wpilib, name)
+
+        def report(error: str, printTrace: bool = False) -> None:
+            # Of an exception that is being handled they print the traceback, which has nothing of ours.
+            if printTrace and sys.exc_info()[1] is None:
+                error = f"{error}\n{_lines(files(), get_frame(1))}"
+                printTrace = False
+            real(error, printTrace)
+
+        report.__name__ = name
+        return Patch(wpilib, name, report)
+
+    return [reporting("reportError"), reporting("reportWarning")]
+
+
+def _lines(files: RobotFiles, frame: FrameType | None) -> str:
+    import traceback
+
+    calls = [call for call in traceback.walk_stack(frame) if files.is_project_file(call[0].f_code.co_filename)]
+    return "".join(traceback.StackSummary.extract(reversed(calls)).format())

@@ -1,0 +1,72 @@
+"""The first difference between two traces."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+from ..robot_time import to_us
+from .trace_lines import repeatable_part
+
+#: Outputs that robot code sets, and what it asks a motor controller for.
+_OUTPUT = re.compile(
+    r"(pwm|relay|solenoid|pcm|ph|digital_pwm|d0_pwm|addressable_led|analog_out)\[|CAN\[.*(Applied Output|Setpoint|Duty)"
+)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The first difference between two traces.
+
+    :param now: robot time, in seconds
+    :param path: the path in `hal_data`
+    :param recorded: the recorded value; None when there is none
+    :param replayed: the value in the replay; None when there is none
+    """
+
+    now: float
+    path: str
+    recorded: Any
+    replayed: Any
+
+
+def first_difference(recorded: Path, replayed: Path, run_us: int | None = None) -> Difference | None:
+    """Return the first difference between two traces; None if there is none.
+
+    :param run_us: differences from this time on do not count
+    """
+    equal: dict[str, Any] = {}  # the values of both until then
+    for old, new in zip_longest(_changes(recorded), _changes(replayed)):
+        if old == new:
+            equal.update(old["set"] if old is not None else {})
+            continue
+        moments = [change["t"] for change in (old, new) if change is not None]
+        now = min(moments)
+        if run_us is not None and to_us(now) >= run_us:
+            return None
+        before = equal | old["set"] if old is not None and old["t"] == now else equal
+        after = equal | new["set"] if new is not None and new["t"] == now else equal
+        different = [path for path in before | after if before.get(path) != after.get(path)]
+        if different:
+            path = min(different, key=_rank)
+            return Difference(now, path, before.get(path), after.get(path))
+        return Difference(now, "what there is", (old or {}).get("gone"), (new or {}).get("gone"))
+    return None
+
+
+def _rank(path: str) -> tuple[bool, bool, str]:
+    """Return what puts the outputs that robot code sets before the sensors that follow from them."""
+    return path.endswith(".raw_value"), _OUTPUT.match(path) is None, path
+
+
+def _changes(trace: Path) -> Iterator[dict[str, Any]]:
+    with trace.open(encoding="utf-8") as lines:
+        for line in lines:
+            change = json.loads(line)
+            if "t" in change and (repeats := repeatable_part(change)) is not None:
+                yield repeats

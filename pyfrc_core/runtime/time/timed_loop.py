@@ -1,0 +1,175 @@
+"""The loop of a `wpilib.TimedRobot`, in place: its loop body and periodic callbacks, called as they fall due.
+
+WPILib's own loop blocks in C++ until the next alarm, so it would need a thread of its own, and two hand-offs between
+threads for each loop. Here the clock calls the body on whichever thread moves the time. A robot that overrides
+`startCompetition` and calls `super().startCompetition()` gets `run_blocking` instead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from heapq import heappop, heappush
+from typing import TYPE_CHECKING
+
+import hal
+
+from ...compat.wpilib_private import LOOP_FUNCTION, SIMULATION_INIT
+from ..clock import ROBOT_LOOP, Clock, to_us
+
+if TYPE_CHECKING:
+    import wpilib
+
+    from ..threads.robot_threads import RobotThreads
+
+
+_NEVER = 1 << 62
+
+
+class Periodic:
+    """One callback with its own rate."""
+
+    __slots__ = ("call", "due_us", "period_us")
+
+    def __init__(self, call: Callable[[], object], first_due_us: int, period_us: int) -> None:
+        self.call = call
+        self.due_us = first_due_us
+        self.period_us = period_us
+
+    def __lt__(self, other: Periodic) -> bool:
+        return self.due_us < other.due_us
+
+    def move_on(self, called_at_us: int) -> None:
+        """Fix the next time, skipping the periods that were missed, as WPILib does."""
+        self.due_us += self.period_us + (called_at_us - self.due_us) // self.period_us * self.period_us
+
+
+class TimedLoop:
+    """The callbacks of one `TimedRobot`.
+
+    They are in a heap, as in WPILib. Which of several that are due at once comes first, depends on what was taken from
+    it and put into it before: Python's heaps break ties as the C++ library of the robot does.
+
+    :param created_us: when the robot was constructed; its periods count from there
+    :param on_initialized: called when the robot's own initialisation is over
+    :param when_overrun: called with the microseconds that a callback took, when these are more than its period
+    """
+
+    def __init__(
+        self,
+        clock: Clock,
+        created_us: int,
+        on_initialized: Callable[[], None],
+        when_overrun: Callable[[int], object],
+    ) -> None:
+        self._clock = clock
+        self._when_overrun = when_overrun
+        self._on_initialized = on_initialized
+        self._created_us = created_us
+        self._callbacks: list[Periodic] = []
+        self._turn_of_robot: Periodic | None = None
+        #: Whether the clock calls what is due: from the end of `robotInit` on.
+        self.in_place = False
+        self._turns_on_own_thread = False
+        self._alarm_us = _NEVER
+        self.stopped = False
+        #: Called after each callback, which began at `loop_start_us`.
+        self.after_calls: list[Callable[[Periodic], None]] = []
+        #: Called before these, after each callback in which robot time has passed.
+        self.after_waits: list[Callable[[Periodic], None]] = []
+        #: The callback that is WPILib's loop; None until `robotInit` is over.
+        self.main: Periodic | None = None
+        #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
+        self.loop_start_us = 0
+
+    def add(self, robot: wpilib.TimedRobot, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
+        """`TimedRobot.addPeriodic`: times in seconds."""
+        if not callable(call):
+            raise TypeError(f"addPeriodic: the callback is {call!r}, not a function: write it without parentheses")
+        period_us = to_us(period)
+        if period_us <= 0:
+            raise ValueError(f"addPeriodic: the period must be longer than 0 s, not {period!r}")
+        self._schedule_turns(robot)
+        periods_gone = (self._clock.now_us - self._created_us) // period_us
+        first = self._created_us + to_us(offset) + (periods_gone + 1) * period_us
+        callback = self.schedule(call, first, period_us)
+        if self.in_place and callback.due_us < self._alarm_us < _NEVER:
+            self._set_alarm(callback)
+
+    def _schedule_turns(self, robot: wpilib.TimedRobot) -> Periodic:
+        """Put WPILib's loop into the schedule, as the robot's constructor does: before all others."""
+        if self._turn_of_robot is None:
+            period_us = to_us(robot.getPeriod())
+            self._turn_of_robot = self.schedule(LOOP_FUNCTION.of(robot), self._created_us + period_us, period_us)
+        return self._turn_of_robot
+
+    def schedule(self, call: Callable[[], object], first_due_us: int, period_us: int) -> Periodic:
+        """Put a callback, or WPILib's loop, into the schedule."""
+        callback = Periodic(call, first_due_us, period_us)
+        heappush(self._callbacks, callback)
+        return callback
+
+    def begin(self, robot: wpilib.TimedRobot) -> None:
+        """What WPILib does before its first loop: the robot's own initialisation, then the loop's schedule."""
+        __tracebackhide__ = True
+        robot.robotInit()
+        SIMULATION_INIT.of(robot)()
+        self._on_initialized()
+        hal.observeUserProgramStarting()
+        self.main = self._schedule_turns(robot)
+
+    def run_in_place(self) -> None:
+        """Let the clock call what is due from now on."""
+        self.in_place = True
+        self._set_alarm(self._callbacks[0])
+
+    @property
+    def in_turn(self) -> bool:
+        """Whether a turn of the loop is going on."""
+        return self._alarm_us == _NEVER if self.in_place else self._turns_on_own_thread
+
+    def _set_alarm(self, callback: Periodic) -> None:
+        """Begin the next turn when this callback is due, instead of at the time that was set before."""
+        self._alarm_us = callback.due_us
+        self._clock.at(callback.due_us, ROBOT_LOOP, self._on_alarm)
+
+    def _on_alarm(self) -> None:
+        __tracebackhide__ = True
+        clock = self._clock
+        if self._alarm_us <= clock.now_us and not self.stopped:
+            self._alarm_us = _NEVER  # no other turn begins within this one, however long it takes
+            self._alarm_us = due_us = self._turn().due_us
+            clock.at(due_us, ROBOT_LOOP, self._on_alarm)  # as `_set_alarm`
+
+    def run_blocking(self, threads: RobotThreads) -> None:
+        """Call what is due on the calling thread, which waits in between, until the run ends."""
+        __tracebackhide__ = True
+        callback = self._callbacks[0]
+        while not self.stopped:
+            threads.sleep_until(callback.due_us)
+            self._turns_on_own_thread = True
+            callback = self._turn()
+            self._turns_on_own_thread = False
+
+    def _turn(self) -> Periodic:
+        """Call the callbacks that are due, one after the other, however long each takes. Return the next one."""
+        __tracebackhide__ = True
+        clock, callbacks = self._clock, self._callbacks
+        woken_us = clock.now_us
+        while callbacks[0].due_us <= woken_us and not self.stopped:
+            callback = heappop(callbacks)
+            self.loop_start_us = clock.now_us
+            callback.call()
+            if clock.now_us != self.loop_start_us:
+                self._on_wait(callback)
+            for listener in self.after_calls:
+                listener(callback)
+            callback.move_on(woken_us)
+            heappush(callbacks, callback)
+        return callbacks[0]
+
+    def _on_wait(self, callback: Periodic) -> None:
+        took_us = self._clock.now_us - self.loop_start_us
+        if took_us > callback.period_us:
+            self._when_overrun(took_us)
+        for listener in self.after_waits:
+            listener(callback)
