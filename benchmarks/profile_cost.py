@@ -42,7 +42,6 @@ def measure(way: str) -> float:
             settings = {
                 "root": str(project.root),
                 "directory": directory,
-                "stacks": False,
                 "calls": way == "cProfile",
             }
             closing.enter_context(announced("profile", settings))

@@ -150,8 +150,8 @@ def test_what_waits_takes_as_long_as_on_a_robot(make_project: MakeProject) -> No
     assert function["p50_ms"] < 100
     (overrun,) = [each for each in report["overruns"] if each["function_ms"] > 400]
     assert (overrun["function"], overrun["robot_time_s"]) == ("MyRobot.teleopPeriodic", 0.1)
-    (line,) = [line for line in report["lines"] if line["waiting_ms"]]
-    assert (line["place"], line["waiting_ms"]) == (project.place("robot.py", "time.sleep"), 500)
+    line = report["lines"][0]
+    assert (line["place"], line["ms"]) == (project.place("robot.py", "time.sleep"), pytest.approx(500, rel=0.2))
 
 
 @pytest.mark.skipif(not hasattr(time, "CLOCK_THREAD_CPUTIME_ID"), reason="a thread's processor time cannot be read")
@@ -355,13 +355,12 @@ def test_pstats_have_each_call_of_all_processes(make_project: MakeProject) -> No
     project = make_project(
         {"robot.py": SMALL_ROBOT, "tests/test_a.py": TELEOP + TELEOP.replace("test_teleop", "test_again")}
     )
-    result, report = profile(project, "test", options=("-o", "out/profile.pstats"))
+    _, report = profile(project, "test", options=("-o", "out/profile.pstats"))
     stats: Any = pstats.Stats(str(project.path / "out/profile.pstats"))
     calls = {name: counts[1] for (file, _, name), counts in stats.stats.items() if file.endswith("robot.py")}
     count = by_name(report)["MyRobot.teleopPeriodic"]["count"]
     assert calls == {"teleopPeriodic": count, "helper": count}
     assert count > 10  # both tests'
-    assert "cProfile" in result.stdout
 
 
 def test_the_flame_view_shows_the_robots_functions(make_project: MakeProject) -> None:
@@ -371,7 +370,7 @@ def test_the_flame_view_shows_the_robots_functions(make_project: MakeProject) ->
     page = (project.path / "pages/profile.html").read_text("utf-8")
     assert sampled("MyRobot.teleopPeriodic") in page
     assert sampled("MyRobot.work") in page
-    assert "timed_method" not in page
+    assert "stopwatch.py" not in page
 
 
 def test_without_pyinstrument_it_says_what_to_install(make_project: MakeProject) -> None:

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from array import array
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyfrc_core.measure.figures import CodeLine, Figures, Measurand, Overrun, added_up, distribution
+from pyfrc_core.measure.figures import Figures, Measurand, Overrun, StackEntry, added_up, distribution
 from pyfrc_core.measure.profile_report import as_json, as_text
-from pyfrc_core.measure.stopwatch_cost import Cost
+from pyfrc_core.project.robot_files import RobotFiles
 
 TELEOP = Measurand("robot", "MyRobot.teleopPeriodic", "robot.py:3")
 LOOP = Measurand("loop", "the whole loop", "")
-COST = Cost(call_ns=300, timing_ns=3e6, sampling_ns=2e6, profiled_calls=0, calls_ns=0, robot_ns=105e6)
+ROOT = Path("project").resolve()
+FILES = RobotFiles(ROOT)
+#: A line of the robot, which calls the standard library.
+STACK = (StackEntry("MyRobot.teleopPeriodic", str(ROOT / "robot.py"), 4), StackEntry("dumps", "/usr/json.py", 90))
 
 times = st.lists(st.integers(0, 10**12), min_size=1, max_size=300)
 
@@ -24,46 +26,43 @@ times = st.lists(st.integers(0, 10**12), min_size=1, max_size=300)
 @given(times)
 def test_at_least_so_many_calls_took_no_longer_than_a_percentile(nanoseconds: list[int]) -> None:
     spread = distribution(array("q", nanoseconds))
-    for percent, percentile in ((50, spread.p50), (95, spread.p95), (99, spread.p99)):
+    for percent, percentile in ((50, spread.p50_ms), (95, spread.p95_ms), (99, spread.p99_ms)):
         no_longer = sum(each / 1e6 <= percentile for each in nanoseconds)
         shorter = sum(each / 1e6 < percentile for each in nanoseconds)
         assert percentile in {each / 1e6 for each in nanoseconds}
         assert 100 * no_longer >= percent * len(nanoseconds) > 100 * shorter
-    assert spread.longest == max(nanoseconds) / 1e6
+    assert spread.max_ms == max(nanoseconds) / 1e6
     assert spread.count == len(nanoseconds)
 
 
-@given(st.lists(st.tuples(times, st.integers(0, 10**9), st.integers(0, 10**9)), min_size=1, max_size=5))
+@given(st.lists(st.tuples(times, st.integers(0, 10**9)), min_size=1, max_size=5))
 def test_what_processes_kept_adds_up(tmp_path_factory: pytest.TempPathFactory, processes: list[tuple]) -> None:
     directory = tmp_path_factory.mktemp("figures")
     files: list[Path] = []
-    for number, (nanoseconds, computing, waiting) in enumerate(processes):
-        figures = Figures(samples=2, sampling_ns=5)
+    for number, (nanoseconds, spent) in enumerate(processes):
+        figures = Figures()
         figures.times_of(TELEOP).extend(nanoseconds)
-        figures.on_line(CodeLine("robot.py:4", "MyRobot.teleopPeriodic"), computing, waiting)
-        figures.stacks[(("MyRobot.teleopPeriodic", "robot.py", 4),)] = computing
+        figures.stacks[STACK] = spent
         files.append(directory / f"{number}.figures")
         figures.save(files[-1])
     total = added_up(files)
-    assert list(total.times[TELEOP]) == [each for nanoseconds, _, _ in processes for each in nanoseconds]
-    computing, waiting = (sum(process[at] for process in processes) for at in (1, 2))
-    assert list(total.lines.values()) == [[computing, waiting]]
-    assert list(total.stacks.values()) == [computing]
-    assert (total.samples, total.sampling_ns) == (2 * len(processes), 5 * len(processes))
+    assert list(total.times[TELEOP]) == [each for nanoseconds, _ in processes for each in nanoseconds]
+    assert total.lines(FILES) == [("robot.py:4", "MyRobot.teleopPeriodic", sum(spent for _, spent in processes))]
 
 
 def overrun(seconds: float, mode: str, took: float, held_up: float = 0.0) -> Overrun:
-    """One of 20 ms, its times in milliseconds."""
-    return Overrun(seconds, mode, TELEOP, round(took * 1e6), round(took * 1e6), round(held_up * 1e6), 20_000_000, "")
+    """One of 20 ms."""
+    return Overrun(seconds, mode, TELEOP.name, TELEOP.place, took, took, held_up, 20.0, "")
 
 
 def test_the_report_groups_overruns_and_says_when_they_were() -> None:
-    figures = Figures(samples=1)
+    figures = Figures()
     figures.times_of(LOOP).extend([31_000_000] * 7)
     figures.times_of(TELEOP).extend([30_000_000] * 6 + [1_000_000])
     figures.overruns += [overrun(second, "teleop", 30 + second) for second in range(6)]
     figures.overruns.append(overrun(9.5, "test", 40, held_up=39))
-    text = as_text(figures, COST, top=1)
+    figures.stacks[STACK] = 210_000_000
+    text = as_text(figures, FILES, top=1)
     lines = [" ".join(line.split()) for line in text.splitlines()]
     assert "the whole loop 7 31.000 31.000 31.000 31.000 217.0" in lines
     assert "and 1 more function (--top 2)" in lines
@@ -73,17 +72,7 @@ def test_the_report_groups_overruns_and_says_when_they_were() -> None:
     assert "MyRobot.teleopPeriodic robot.py:3 test 1 40.0 ms 39.0 ms 20 ms 9.50 s" in lines
     assert lines.index(teleop) + 2 == next(at for at, line in enumerate(lines) if line.startswith("Held up:"))
     assert "Without that, 1 of these turns would have been in time." in lines
-    assert lines[-1] == (
-        "Cost of measuring: 3.0 ms for timing (0.30 µs a call), 2.0 ms for 1 sample; "
-        "5% of the 100.0 ms that the robot took without it."
-    )
-
-
-def test_the_report_has_cprofile_also_when_its_cost_was_too_small_to_measure() -> None:
-    figures = Figures()
-    figures.times_of(TELEOP).append(1_000_000)
-    text = as_text(figures, replace(COST, profiled_calls=1200), top=1)
-    assert "0.0 ms for 1,200 calls in cProfile, which the times above include;" in text
+    assert lines[-2:] == ["line function time", "robot.py:4 MyRobot.teleopPeriodic 210.0"]
 
 
 def test_the_report_says_how_much_of_the_period_each_periodic_function_takes() -> None:
@@ -91,7 +80,7 @@ def test_the_report_says_how_much_of_the_period_each_periodic_function_takes() -
     figures.times_of(LOOP).extend([2_000_000] * 9 + [4_000_000] * 10 + [30_000_000])
     figures.times_of(TELEOP).extend([1_000_000])
     figures.times_of(Measurand("command", "Lift.execute", "robot.py:9")).extend([1_000_000])
-    text = as_text(figures, COST, top=1).partition("The loop has 20 ms for each packet.")[2]
+    text = as_text(figures, FILES, top=1).partition("The loop has 20 ms for each packet.")[2]
     lines = [" ".join(line.split()) for line in text.splitlines()]
     assert lines[2:6] == [
         "the whole loop 4.000 ms 20.0% 4.000 ms 20.0% 30.000 ms 150.0%",
@@ -104,14 +93,14 @@ def test_the_report_says_how_much_of_the_period_each_periodic_function_takes() -
 def test_a_loop_that_is_too_slow_here_is_not_compared_with_a_slower_computer() -> None:
     figures = Figures(period_ns=20_000_000)
     figures.times_of(LOOP).append(30_000_000)
-    assert "times slower" not in as_text(figures, COST, top=1)
+    assert "times slower" not in as_text(figures, FILES, top=1)
 
 
 def test_all_of_it_is_in_the_json() -> None:
     figures = Figures()
     figures.times_of(TELEOP).append(30_000_000)
     figures.overruns.append(overrun(1.02, "teleop", 30))
-    report = as_json(figures, COST, "pyfrc test")
+    report = as_json(figures, FILES, "pyfrc test")
     assert report["command"] == "pyfrc test"
     assert report["functions"][0]["p99_ms"] == 30
     assert report["overruns"][0] == {
@@ -125,8 +114,7 @@ def test_all_of_it_is_in_the_json() -> None:
         "period_ms": 20,
         "test": "",
     }
-    assert report["cost"]["share"] == pytest.approx(0.05)
 
 
 def test_nothing_measured_is_said() -> None:
-    assert "no function of the robot was called" in as_text(Figures(), COST, top=5)
+    assert "no function of the robot was called" in as_text(Figures(), FILES, top=5)

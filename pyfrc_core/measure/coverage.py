@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import UsageError
 from ..project import Project
 from ..text_files import check_writable, write_whole
-from .never_run import never_run, summary
+from .never_run import never_run
 from .processes import announced, is_announced
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _report(combined: Coverage, options: CoverageOptions, as_json: Path) -> int:
         total = combined.report(show_missing=True, ignore_errors=True, file=sys.stdout)
         combined.json_report(outfile=str(as_json), ignore_errors=True)
         text = as_json.read_text("utf-8")
-        if unused := summary(never_run(json.loads(text))):
+        if unused := never_run(json.loads(text)):
             print(unused)
         if options.html is not None:
             combined.html_report(directory=str(options.html), ignore_errors=True)

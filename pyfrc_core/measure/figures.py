@@ -1,4 +1,4 @@
-"""The data of a profile: the times of each function's calls, overruns of the period, and the lines that ran.
+"""The data of a profile: the times of each function's calls, overruns of the period, and where the robot's code was.
 
 Each process has its own figures. They are saved to a file when it ends, and added up.
 """
@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import pickle
 from array import array
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from math import ceil
 from pathlib import Path
 from typing import NamedTuple
+
+from ..project.robot_files import RobotFiles
 
 
 class Measurand(NamedTuple):
@@ -28,39 +31,42 @@ class Measurand(NamedTuple):
     place: str
 
 
-class CodeLine(NamedTuple):
-    """A line of the robot's code.
-
-    :param place: its file and line, such as ``robot.py:12``
-    :param function: the name of the function with this line
-    """
-
-    place: str
-    function: str
+#: The loop of a robot; the functions that it calls are timed separately.
+WHOLE_LOOP = Measurand("loop", "the whole loop", "")
 
 
 class Overrun(NamedTuple):
-    """An iteration of the loop that took longer than its period.
+    """An iteration of the loop that took longer than its period, as in the JSON report.
 
-    :param seconds: the robot time at its start
+    :param robot_time_s: the robot time at its start
     :param mode: the driver station's mode
-    :param culprit: the innermost timed function that took at least half of it, else the loop itself
-    :param took_ns: the wall time of the iteration, with the robot time of its waits
-    :param culprit_ns: the same of the culprit
-    :param held_up_ns: the part of it in which the thread neither computed nor waited in robot time: the computer ran
+    :param function: the innermost timed function that took at least half of it, else the loop itself
+    :param place: the function's file and line
+    :param loop_ms: the wall time of the iteration, with the robot time of its waits
+    :param function_ms: the same of the function
+    :param held_up_ms: the part of it in which the thread neither computed nor waited in robot time: the computer ran
         something else, or robot code waited for something outside the program
-    :param period_ns: the loop's period
+    :param period_ms: the loop's period
     :param test: the test in which it happened, if there was one
     """
 
-    seconds: float
+    robot_time_s: float
     mode: str
-    culprit: Measurand
-    took_ns: int
-    culprit_ns: int
-    held_up_ns: int
-    period_ns: int
+    function: str
+    place: str
+    loop_ms: float
+    function_ms: float
+    held_up_ms: float
+    period_ms: float
     test: str
+
+
+class StackEntry(NamedTuple):
+    """A call in a stack: a function, its file, and the line that it is at."""
+
+    function: str
+    file: str
+    line: int
 
 
 @dataclass
@@ -70,52 +76,35 @@ class Figures:
     :param times: the duration of each call, in nanoseconds: processor time of its thread, and robot time of its waits
     :param period_ns: the period of the robot's loop; 0 if it has not run
     :param overruns: the iterations that took longer than their period
-    :param lines: for each line the time in which it was the robot's innermost one: computing, and waiting in robot time
-        within a timed function, both in nanoseconds
-    :param stacks: the time of each call stack, outermost first; each entry is a function, its file and its current line
-    :param samples: the number of samples behind `lines` and `stacks`
-    :param sampling_ns: the time that sampling took
+    :param stacks: the time of each call stack, outermost call first, in nanoseconds: by samples, and in waits
     """
 
     times: dict[Measurand, array[int]] = field(default_factory=dict)
     period_ns: int = 0
     overruns: list[Overrun] = field(default_factory=list)
-    lines: dict[CodeLine, list[int]] = field(default_factory=dict)
-    stacks: dict[tuple[tuple[str, str, int], ...], int] = field(default_factory=dict)
-    samples: int = 0
-    sampling_ns: int = 0
+    stacks: Counter[tuple[StackEntry, ...]] = field(default_factory=Counter)
 
     def times_of(self, what: Measurand) -> array[int]:
         """Return the array for the times of a function's calls."""
         return self.times.setdefault(what, array("q"))
 
-    def on_line(self, line: CodeLine, computing_ns: int, waiting_ns: int) -> None:
-        """Add time to a line."""
-        spent = self.lines.setdefault(line, [0, 0])
-        spent[0] += computing_ns
-        spent[1] += waiting_ns
+    def lines(self, files: RobotFiles) -> list[tuple[str, str, int]]:
+        """Return the time of each line of the robot's code in which it was the innermost one, the longest first.
+
+        :return: its file and line, its function, and nanoseconds
+        """
+        spent: Counter[tuple[str, str]] = Counter()
+        for stack, nanoseconds in self.stacks.items():
+            innermost = next(entry for entry in reversed(stack) if files.is_robot_code(entry.file))
+            spent[f"{files.relative(innermost.file)}:{innermost.line}", innermost.function] += nanoseconds
+        return sorted(((*line, each) for line, each in spent.items()), key=lambda line: (-line[2], line))
 
     def clear(self) -> None:
         """Delete all measurements; the arrays of times stay the same objects."""
         for times in self.times.values():
             del times[:]
         self.overruns.clear()
-        self.lines.clear()
         self.stacks.clear()
-        self.samples = self.sampling_ns = 0
-
-    def add(self, others: Figures) -> None:
-        """Add the measurements of another process."""
-        for what, times in others.times.items():
-            self.times_of(what).extend(times)
-        self.period_ns = max(self.period_ns, others.period_ns)
-        self.overruns += others.overruns
-        for line, (computing, waiting) in others.lines.items():
-            self.on_line(line, computing, waiting)
-        for stack, spent in others.stacks.items():
-            self.stacks[stack] = self.stacks.get(stack, 0) + spent
-        self.samples += others.samples
-        self.sampling_ns += others.sampling_ns
 
     def save(self, file: Path) -> None:
         """Write the figures to a file."""
@@ -126,29 +115,29 @@ def added_up(files: Iterable[Path]) -> Figures:
     """Return the sum of the figures in these files, one for each process."""
     total = Figures()
     for file in files:
-        total.add(pickle.loads(file.read_bytes()))
+        one: Figures = pickle.loads(file.read_bytes())
+        for what, times in one.times.items():
+            total.times_of(what).extend(times)
+        total.period_ns = max(total.period_ns, one.period_ns)
+        total.overruns += one.overruns
+        total.stacks.update(one.stacks)
     return total
 
 
 @dataclass(frozen=True)
 class Distribution:
-    """The distribution of a function's times, in milliseconds; percentiles by the nearest rank."""
+    """The distribution of a function's times, as in the JSON report; percentiles by the nearest rank."""
 
     count: int
-    p50: float
-    p95: float
-    p99: float
-    longest: float
-    total: float
+    p50_ms: float
+    p95_ms: float
+    p99_ms: float
+    max_ms: float
+    total_ms: float
 
 
 def distribution(times: array[int]) -> Distribution:
     """Return the distribution of times in nanoseconds, of which there is at least one."""
     ordered = sorted(times)
-
-    def percentile(share: float) -> float:
-        return ordered[max(0, ceil(share * len(ordered)) - 1)] / 1e6
-
-    return Distribution(
-        len(ordered), percentile(0.5), percentile(0.95), percentile(0.99), ordered[-1] / 1e6, sum(ordered) / 1e6
-    )
+    p50, p95, p99 = (ordered[ceil(share * len(ordered)) - 1] / 1e6 for share in (0.5, 0.95, 0.99))
+    return Distribution(len(ordered), p50, p95, p99, ordered[-1] / 1e6, sum(ordered) / 1e6)

@@ -40,17 +40,16 @@ def write_flame(figures: Figures, file: Path, title: str) -> None:
     from pyinstrument.session import Session
 
     whole = f"the robot{_PART}{_PART}0"
-    records = [
-        [[whole, *(f"{name}{_PART}{place}{_PART}{0}{_LINE}{line}" for name, place, line in stack)], spent / 1e9]
-        for stack, spent in figures.stacks.items()
-    ]
-    seconds = sum(figures.stacks.values()) / 1e9
+    seconds = figures.stacks.total() / 1e9
     session = Session.from_json(
         {
-            "frame_records": records,
+            "frame_records": [
+                [[whole, *(f"{name}{_PART}{file}{_PART}0{_LINE}{line}" for name, file, line in stack)], spent / 1e9]
+                for stack, spent in figures.stacks.items()
+            ],
             "start_time": 0.0,
             "duration": seconds,
-            "sample_count": figures.samples,
+            "sample_count": len(figures.stacks),
             "start_call_stack": [whole],
             "target_description": title,
             "cpu_time": seconds,

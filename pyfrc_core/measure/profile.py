@@ -18,13 +18,11 @@ from typing import Any
 from ..errors import UsageError
 from ..project import Project
 from ..project.robot_files import RobotFiles
-from ..runtime.patch_table import PatchTable
 from ..text_files import check_writable, write_whole
 from .figures import Figures, added_up
 from .flame import require_pyinstrument, write_flame
 from .processes import announced, is_announced
 from .profile_report import as_json, as_text
-from .stopwatch_cost import measured_cost
 
 
 @dataclass(frozen=True)
@@ -60,11 +58,9 @@ class _CallProfile:
             if self._on:
                 return function(*args, **kwargs)
             self._on = True
-            self._profile.enable()
             try:
-                return function(*args, **kwargs)
+                return self._profile.runcall(function, *args, **kwargs)
             finally:
-                self._profile.disable()
                 self._on = False
 
         try:
@@ -73,9 +69,8 @@ class _CallProfile:
             return profiled
 
     def clear(self) -> None:
-        """Delete all measurements, in a fork."""
-        self._profile = cProfile.Profile()
-        self._on = False
+        """Delete all measurements."""
+        self.__init__()  # type: ignore[misc]
 
     def save(self, file: Path) -> None:
         """Write the calls to a file, if there were any."""
@@ -86,36 +81,42 @@ class _CallProfile:
 
 def begin(settings: dict[str, Any]) -> Callable[[], None]:
     """Start measuring in this process; return a function that saves the result. A fork continues to measure."""
+    from ..runtime.patch_table import PatchTable
+    from ..runtime.robot import RobotRun
     from .sampler import Sampler
     from .stopwatch import Stopwatch
     from .user_functions import UserFunctions
 
-    figures, files = Figures(), RobotFiles(Path(settings["root"]))
-    stopwatch = Stopwatch(figures, files)
-    sampler = Sampler(figures, files, settings["stacks"])
-    calls = _CallProfile() if settings["calls"] else None
-    table, numbers = PatchTable(), count()
-    UserFunctions(stopwatch, files, calls.wrap if calls is not None else lambda function: function).install(table)
-    sampler.sample_runs(table)
+    figures, calls, files = Figures(), _CallProfile(), RobotFiles(Path(settings["root"]))
+    wrap = calls.wrap if settings["calls"] else lambda function: function
+    functions, sampler = UserFunctions(Stopwatch(figures, files), files, wrap), Sampler(figures, files)
+    table, numbers, real_open, real_close = PatchTable(), count(), RobotRun.open, RobotRun.close
 
-    def in_fork() -> None:
+    def open_run(run: RobotRun) -> None:
+        functions.time_callbacks_of_commands(table)
+        real_open(run)
+        sampler.start()
+
+    def close_run(run: RobotRun) -> None:
+        sampler.stop()
+        real_close(run)
+
+    def clear() -> None:
         figures.clear()
-        stopwatch.clear()
-        sampler.clear()
-        if calls is not None:
-            calls.clear()
+        calls.clear()
 
+    functions.install(table)
+    table.patch(RobotRun, "open", open_run)
+    table.patch(RobotRun, "close", close_run)
     if hasattr(os, "register_at_fork"):
-        os.register_at_fork(after_in_child=in_fork)
+        os.register_at_fork(after_in_child=clear)
 
     def save() -> None:
         sampler.stop()
-        name = f"{os.getpid()}-{next(numbers)}"
-        figures.save(Path(settings["directory"], f"{name}.figures"))
-        figures.clear()
-        if calls is not None:
-            calls.save(Path(settings["directory"], f"{name}.pstats"))
-            calls.clear()
+        name = Path(settings["directory"], f"{os.getpid()}-{next(numbers)}")
+        figures.save(name.with_suffix(".figures"))
+        calls.save(name.with_suffix(".pstats"))
+        clear()
         table.undo()
 
     return save
@@ -135,45 +136,30 @@ def profiling(project: Project, options: ProfileOptions, command: str) -> Iterat
         check_writable(option, file)
     # The directory for the figures of each process, until they are added up.
     with tempfile.TemporaryDirectory(prefix="pyfrc-profile-") as directory:
-        settings = {
-            "root": str(project.root),
-            "directory": directory,
-            "stacks": options.html is not None,
-            "calls": options.pstats is not None,
-        }
+        settings = {"root": str(project.root), "directory": directory, "calls": options.pstats is not None}
         try:
             with announced("profile", settings):
                 yield
         finally:
-            _report(Path(directory), options, command)
+            _report(Path(directory), RobotFiles(project.root), options, command)
 
 
-def _report(directory: Path, options: ProfileOptions, command: str) -> None:
-    figures = added_up(sorted(directory.glob("*.figures")))
-    profiled_calls = _add_up_calls(sorted(directory.glob("*.pstats")), options.pstats)
-    cost = measured_cost(figures, profiled_calls)
-
+def _report(directory: Path, files: RobotFiles, options: ProfileOptions, command: str) -> None:
     def print_path(text: str) -> None:
         if not options.quiet:
             print(text)
 
+    figures = added_up(sorted(directory.glob("*.figures")))
     print()
-    print(as_text(figures, cost, options.top))
-    if options.pstats is not None and profiled_calls:
+    print(as_text(figures, files, options.top))
+    calls = [str(file) for file in sorted(directory.glob("*.pstats"))]
+    if options.pstats is not None and calls:
+        options.pstats.parent.mkdir(parents=True, exist_ok=True)
+        pstats.Stats(*calls).dump_stats(options.pstats)
         print_path(f"profile for pstats: {options.pstats}")
     if options.html is not None:
         write_flame(figures, options.html, command)
         print_path(f"profile as a web page: {options.html}")
     if options.json is not None:
-        write_whole(options.json, [json.dumps(as_json(figures, cost, command), indent=1), "\n"])
+        write_whole(options.json, [json.dumps(as_json(figures, files, command), indent=1), "\n"])
         print_path(f"profile as JSON: {options.json}")
-
-
-def _add_up_calls(files: list[Path], wanted: Path | None) -> int:
-    """Write the `pstats` of all processes to one file; return the number of calls in it."""
-    if wanted is None or not files:
-        return 0
-    total = pstats.Stats(*map(str, files))
-    wanted.parent.mkdir(parents=True, exist_ok=True)
-    total.dump_stats(wanted)
-    return total.total_calls  # type: ignore[attr-defined,no-any-return]
