@@ -1,4 +1,4 @@
-"""Compares this pyfrc with the pyfrc of the 2026 season, side by side on this machine: what the benchmarks share.
+"""What the benchmarks share: samples taken in turn, and this pyfrc beside the pyfrc of the 2026 season.
 
 It needs nothing but Python's standard library and a pip that reaches a package index. The two sides get virtual
 environments of their own, in a cache directory.
@@ -9,18 +9,17 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import platform
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 CHECKOUT = Path(__file__).resolve().parents[1]
+CACHE = Path(__file__).resolve().with_name(".cache")
 
 ROBOTPY_VERSION = "2026.2.2"
 TODAYS = ("pyfrc==2026.0.3", f"robotpy=={ROBOTPY_VERSION}", "pytest")
@@ -30,14 +29,23 @@ CLEANED_FROM_ENVIRONMENT = ("PYTHON", "PYTEST", "PY_COLORS", "COVERAGE", "COV_",
 
 
 class BenchmarkError(Exception):
-    """A side could not be set up, or failed at what was to be timed: there is no figure to give."""
+    """A side could not be set up, or failed at what was to be measured: there is no figure."""
 
 
-# -- child processes ---------------------------------------------------------------------------------------------------
+# -- samples -----------------------------------------------------------------------------------------------------------
+
+
+def sample_in_turn(takes: Mapping[str, Callable[[], float]], rounds: int) -> dict[str, list[float]]:
+    """Take samples of everything in turn, so that what slows the machine down affects all alike."""
+    samples: dict[str, list[float]] = {name: [] for name in takes}
+    for _ in range(rounds):
+        for name, take in takes.items():
+            samples[name].append(take())
+    return samples
 
 
 def run(command: list[str], directory: Path, ends_with: int = 0) -> str:
-    """Run a child and answer what it printed, standard output only.
+    """Run a child process and return its standard output.
 
     :param ends_with: the exit code that means success
     :raises BenchmarkError: with all that it printed, when it ends otherwise
@@ -53,7 +61,7 @@ def run(command: list[str], directory: Path, ends_with: int = 0) -> str:
 
 
 def timed(command: list[str], directory: Path, expected: str, ends_with: int = 0) -> float:
-    """The seconds that a child takes, from its start to its end.
+    """Return the seconds that a child process takes, from its start to its end.
 
     :param expected: what it prints when it has done its work
     """
@@ -65,20 +73,15 @@ def timed(command: list[str], directory: Path, expected: str, ends_with: int = 0
     return seconds
 
 
-def tell(text: str) -> None:
-    """Tell of progress, apart from the figures."""
-    print(text, file=sys.stderr, flush=True)
-
-
 # -- the two sides -----------------------------------------------------------------------------------------------------
 
 
 class Environment:
     """A virtual environment in the cache directory, made by this interpreter."""
 
-    def __init__(self, cache: Path, name: str) -> None:
+    def __init__(self, name: str) -> None:
         version = ".".join(map(str, sys.version_info[:3]))
-        self.directory = cache / f"{name}-{version}"
+        self.directory = CACHE / f"{name}-{version}"
         self._scripts = self.directory / ("Scripts" if os.name == "nt" else "bin")
 
     @property
@@ -86,54 +89,35 @@ class Environment:
         return self.script("python")
 
     def script(self, name: str) -> str:
-        """The path of a command that is installed here."""
+        """Return the path of a command that is installed here."""
         return str(self._scripts / (f"{name}.exe" if os.name == "nt" else name))
 
     def provide(self, *requirements: str, always: bool = False) -> None:
-        """Have `requirements` installed.
+        """Install `requirements`.
 
         :param always: install them even when that has been done before
         """
+        CACHE.mkdir(parents=True, exist_ok=True)
+        (CACHE / ".gitignore").write_text("*\n", "utf-8")
         stamp = self.directory / "installed.json"
         wanted = json.dumps(requirements)
         present = stamp.is_file() and stamp.read_text("utf-8") == wanted
         if present and not always:
             return
-        tell(f"installing {' '.join(requirements)}")
+        print(f"installing {' '.join(requirements)}", file=sys.stderr, flush=True)
         if not present:
-            run([sys.executable, "-m", "venv", "--clear", str(self.directory)], self.directory.parent)
+            run([sys.executable, "-m", "venv", "--clear", str(self.directory)], CACHE)
         pip = [self.python, "-m", "pip", "--disable-pip-version-check", "install", "--quiet"]
         run([*pip, *requirements], self.directory)  # pip installs a directory anew, whatever its version
         stamp.write_text(wanted, "utf-8")
-
-    def versions(self, *packages: str) -> dict[str, str]:
-        """What is installed of these packages."""
-        code = "import sys, importlib.metadata as m; print(*map(m.version, sys.argv[1:]))"
-        printed = run([self.python, "-c", code, *packages], self.directory)
-        return dict(zip(packages, printed.split(), strict=True))
-
-
-def make_cache(cache: Path) -> None:
-    """Make the directory of the environments, which git ignores."""
-    cache.mkdir(parents=True, exist_ok=True)
-    (cache / ".gitignore").write_text("*\n", "utf-8")
-
-
-def provide_environments(cache: Path) -> tuple[Environment, Environment]:
-    """Ours and today's, ready to be used."""
-    make_cache(cache)
-    ours, todays = Environment(cache, "ours"), Environment(cache, "todays")
-    todays.provide(*TODAYS)
-    ours.provide(str(CHECKOUT), always=True)
-    return ours, todays
 
 
 # -- the cases ---------------------------------------------------------------------------------------------------------
 
 
-@dataclass
+@dataclass(frozen=True)
 class Case:
-    """One comparison, and what came of it.
+    """One comparison.
 
     :param ours: takes one sample of our side
     :param other: takes one sample of what we are compared with
@@ -141,106 +125,46 @@ class Case:
     :param is_met: decides it, by our median and the ratio of medians
     """
 
-    number: int
     name: str
     unit: str
     ours: Callable[[], float]
     other: Callable[[], float]
     target: str
     is_met: Callable[[float, float], bool]
-    our_samples: list[float] = field(default_factory=list)
-    other_samples: list[float] = field(default_factory=list)
 
-    def sample(self, rounds: int) -> None:
-        """One run of each to warm up, then both in turn: what slows the machine down meets both."""
-        tell(f"case {self.number}: {self.name}")
-        self.ours()
-        self.other()
-        for _ in range(rounds):
-            self.our_samples.append(self.ours())
-            self.other_samples.append(self.other())
-
-    def result(self) -> dict[str, Any]:
-        """The samples and what follows from them, for `--json` and for the table."""
-        ours, other = statistics.median(self.our_samples), statistics.median(self.other_samples)
-        ratios = [mine / others for mine, others in zip(self.our_samples, self.other_samples, strict=True)]
-        return {
-            "case": self.number,
-            "name": self.name,
-            "unit": self.unit,
-            "our_samples": self.our_samples,
-            "other_samples": self.other_samples,
-            "our_median": ours,
-            "other_median": other,
-            "ratio": ours / other,
-            "ratio_min": min(ratios),
-            "ratio_max": max(ratios),
-            "target": self.target,
-            "met": self.is_met(ours, ours / other),
-        }
+    def row(self, rounds: int) -> str:
+        """Run each side once to warm up, then both in turn, and return the row of the table."""
+        takes = {"ours": self.ours, "other": self.other}
+        sample_in_turn(takes, 1)
+        samples = sample_in_turn(takes, rounds)
+        ratios = [mine / others for mine, others in zip(*samples.values(), strict=True)]
+        ours, other = map(statistics.median, samples.values())
+        digits = 3 if self.unit == "s" else 0
+        figures = "".join(f"{f'{each:.{digits}f} {self.unit}':>16}" for each in (ours, other))
+        verdict = "met" if self.is_met(ours, ours / other) else "MISSED"
+        span = f"{min(ratios):.3f}..{max(ratios):.3f}"
+        return f"{self.name:<36}{figures}{ours / other:>8.3f}   {span:16} {verdict} ({self.target})"
 
 
-def print_table(machine: dict[str, Any], results: list[dict[str, Any]], rounds: int) -> None:
-    """The figures, for people."""
-    host = f"{machine['cores']} cores (load {machine['load']}), Python {machine['python']}, {machine['platform']}"
-    print(f"{host}; {rounds} rounds, medians")
-    for side in ("ours", "todays"):
-        print(f"{side}: " + ", ".join(f"{name} {version}" for name, version in machine[side].items()))
-    print(f"\n{'case':<43}{'ours':>16}{'other':>16}{'ratio':>8}   min..max of rounds")
-    for each in results:
-        digits = 3 if each["unit"] == "s" else 0
-        mine, others = (f"{each[key]:.{digits}f} {each['unit']}" for key in ("our_median", "other_median"))
-        span = f"{each['ratio_min']:.3f}..{each['ratio_max']:.3f}"
-        print(f"{each['case']}  {each['name']:<40}{mine:>16}{others:>16}{each['ratio']:>8.3f}   {span}")
-    print()
-    for each in results:
-        print(f"case {each['case']}: {'met' if each['met'] else 'MISSED'} ({each['target']})")
+def compare(description: str, make_cases: Callable[[Environment, Environment, Path], list[Case]]) -> None:
+    """Measure and print; the exit code says whether there was an error, not whether a target was missed.
 
-
-def parse_arguments(description: str, cases: int) -> argparse.Namespace:
-    """The command line of a comparison of so many cases."""
-    numbers = range(1, cases + 1)
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--only", type=int, choices=numbers, action="append", help="this case; may be repeated")
-    parser.add_argument("--rounds", type=int, default=5, metavar="N", help="samples of each side (default: 5)")
-    parser.add_argument("--cache", type=Path, default=Path(__file__).with_name(".cache"), help="for the environments")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write all samples there")
-    arguments = parser.parse_args()
-    if arguments.rounds < 1:
-        parser.error("--rounds must be 1 or more")
-    return arguments
-
-
-def compare(description: str, cases: int, make_cases: Callable[[Environment, Environment, Path], list[Case]]) -> None:
-    """Measure, print; the exit code tells of errors only, not of targets missed.
-
-    :param cases: how many there are
-    :param make_cases: makes them, of our environment, today's, and a directory that is there while they are sampled
+    :param make_cases: makes the cases, of our environment, today's, and a directory that exists while they are sampled
     """
-    arguments = parse_arguments(description, cases)
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--only", type=int, action="append", help="this row of the table; may be repeated")
+    parser.add_argument("--rounds", type=int, default=5, metavar="N", help="samples of each side (default: 5)")
+    options = parser.parse_args()
+    ours, todays = Environment("ours"), Environment("todays")
     try:
-        _compare(arguments, make_cases)
+        todays.provide(*TODAYS)
+        ours.provide(str(CHECKOUT), always=True)
+        load = f"load {os.getloadavg()[0]:.1f}, " if hasattr(os, "getloadavg") else ""
+        print(f"{os.cpu_count()} cores, {load}Python {sys.version.split()[0]}; medians of {options.rounds} rounds")
+        print(f"\n{'case':<36}{'ours':>16}{'other':>16}{'ratio':>8}   min..max of rounds", flush=True)
+        with tempfile.TemporaryDirectory(prefix="pyfrc-speed-") as directory:
+            for number, case in enumerate(make_cases(ours, todays, Path(directory).resolve()), 1):
+                if not options.only or number in options.only:
+                    print(case.row(options.rounds), flush=True)
     except BenchmarkError as error:
         sys.exit(f"error: {error}")
-
-
-def _compare(arguments: argparse.Namespace, make_cases: Callable[[Environment, Environment, Path], list[Case]]) -> None:
-    ours, todays = provide_environments(arguments.cache.resolve())
-    machine = {
-        "cores": os.cpu_count(),
-        "python": platform.python_version(),
-        "platform": platform.system(),
-        # Of what else goes on here, before anything is measured; Windows does not know it.
-        "load": round(os.getloadavg()[0], 2) if hasattr(os, "getloadavg") else None,
-        "ours": ours.versions("pyfrc", "wpilib", "pytest"),
-        "todays": todays.versions("pyfrc", "robotpy", "wpilib", "pytest"),
-    }
-    with tempfile.TemporaryDirectory(prefix="pyfrc-speed-") as directory:
-        cases = make_cases(ours, todays, Path(directory).resolve())
-        chosen = [case for case in cases if not arguments.only or case.number in arguments.only]
-        for case in chosen:
-            case.sample(arguments.rounds)
-    results = [case.result() for case in chosen]
-    print_table(machine, results, arguments.rounds)
-    if arguments.json:
-        arguments.json.write_text(json.dumps({"machine": machine, "cases": results}, indent=2) + "\n", "utf-8")

@@ -25,7 +25,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from comparison import TODAYS, Environment, make_cache
+from comparison import TODAYS, Environment, sample_in_turn
 from competition_robots import NAMES, copy_robot
 
 HERE = Path(__file__).resolve().parent
@@ -47,7 +47,6 @@ VENDORS = (
     *("robotpy-urcl", "robotpy-wpilib-utilities"),
 )
 TEST = (sys.executable, "-m", "pyfrc", "test")
-CACHE = HERE / ".cache"
 
 
 def main() -> None:
@@ -79,29 +78,41 @@ def main() -> None:
 def print_row(name: str, project: Path, rounds: int) -> None:
     """Measure one robot, everything in turn in each round."""
     bare: list[dict[str, float]] = []
-    plain, traced, recorded, alone, together = [], [], [], [], []
-    for _ in range(rounds):
+    spent: list[float] = []  # wall seconds of the last match
+
+    def loop() -> float:
         bare.append(bare_loop(project))
+        return bare[-1]["match"]
+
+    def match() -> float:
         begin = time.perf_counter()
-        plain.append(test(project))
-        match = time.perf_counter() - begin
-        traced.append(test(project, "--trace", "written"))
-        recorded.append(test(project, "--record", "written"))
-        alone.append(max(match, wall_seconds(project, "-k", "fuzz")))
-        together.append(wall_seconds(project))
-    loop, imports = (statistics.median(each[key] for each in bare) for key in ("match", "import"))
-    ours, trace, record = map(statistics.median, (plain, traced, recorded))
-    ratio, wall = ours / (loop + imports), statistics.median(together) / statistics.median(alone)
+        seconds = test(project)
+        spent[:] = [time.perf_counter() - begin]
+        return seconds
+
+    samples = sample_in_turn(
+        {
+            "loop": loop,
+            "match": match,
+            "trace": lambda: test(project, "--trace", "written"),
+            "record": lambda: test(project, "--record", "written"),
+            "alone": lambda: max(*spent, wall_seconds(project, "-k", "fuzz")),
+            "together": lambda: wall_seconds(project),
+        },
+        rounds,
+    )
+    least, ours, trace, record, alone, together = map(statistics.median, samples.values())
+    imports = statistics.median(each["import"] for each in bare)
+    ratio, wall = ours / (least + imports), together / alone
     met = ratio <= MOST and max(trace, record) <= MOST_TRACED * ours and wall <= MOST_WALL
     verdict = "met" if met else "MISSED"
-    figures = (loop, imports, ours, ratio, trace / ours, record / ours, wall)
+    figures = (least, imports, ours, ratio, trace / ours, record / ours, wall)
     print(f"{name:14}" + "".join(f"{figure:11.2f}" for figure in figures) + f"  {verdict}", flush=True)
 
 
 def provide_todays() -> Environment:
     """Install the pyfrc of the 2026 season and the vendors' packages, beside."""
-    make_cache(CACHE)
-    todays = Environment(CACHE, "todays-vendors")
+    todays = Environment("todays-vendors")
     todays.provide(*TODAYS, *VENDORS)
     return todays
 
@@ -109,8 +120,8 @@ def provide_todays() -> Environment:
 def print_todays(project: Path, todays: Environment, rounds: int) -> None:
     """Compare with today's tool, in turn."""
     command = [todays.python, "-m", "robotpy", "test"]
-    pairs = [(test(project), cpu_seconds(lambda: run(command, project))) for _ in range(rounds)]
-    ours, others = (statistics.median(side) for side in zip(*pairs, strict=True))
+    takes = {"ours": lambda: test(project), "todays": lambda: cpu_seconds(lambda: run(command, project))}
+    ours, others = map(statistics.median, sample_in_turn(takes, rounds).values())
     print(f"{'':14}without physics: pyfrc test {ours:.2f}, today's {others:.2f}, ratio {ours / others:.2f}", flush=True)
 
 

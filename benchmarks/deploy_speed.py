@@ -161,15 +161,13 @@ def make_cases(sides: list[Side], stack: ExitStack, ours: Environment, todays: E
     other = Side("todays", their_command, other_project, kill_script_of(todays), stack)
     sides += [mine, other]
 
-    def case(number: int, name: str, which: Callable[[Side], float], most: float) -> Case:
-        return Case(
-            number, name, "s", partial(which, mine), partial(which, other), f"ratio <= {most}", lambda _, r: r <= most
-        )
+    def case(name: str, which: Callable[[Side], float], most: float) -> Case:
+        return Case(name, "s", partial(which, mine), partial(which, other), f"ratio <= {most}", lambda _, r: r <= most)
 
     return [
-        case(1, f"first deploy, {FILES} files", Side.first, 0.15),
-        case(2, "unchanged redeploy", Side.unchanged, 0.08),
-        case(3, "one changed file", Side.changed, 0.15),
+        case(f"first deploy, {FILES} files", Side.first, 0.15),
+        case("unchanged redeploy", Side.unchanged, 0.08),
+        case("one changed file", Side.changed, 0.15),
     ]
 
 
@@ -178,7 +176,7 @@ if __name__ == "__main__":
         sys.exit(f"error: a look-alike of a roboRIO needs {', '.join(missing)}")
     with ExitStack() as stack:
         sides: list[Side] = []
-        compare((__doc__ or "").partition("\n")[0], 3, partial(make_cases, sides, stack))
+        compare((__doc__ or "").partition("\n")[0], partial(make_cases, sides, stack))
         print(f"\non the wire, medians ({ROUND_TRIP * 1000:.0f} ms round trips, {RATE * 8 / 1e6:g} Mbit/s)")
         for side in sides:
             side.print_costs()

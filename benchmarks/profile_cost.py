@@ -15,7 +15,10 @@ import sys
 import tempfile
 import time
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
+
+from comparison import sample_in_turn
 
 HERE = Path(__file__).resolve()
 ROBOTS = HERE.parents[1] / "tests" / "robots"
@@ -59,6 +62,12 @@ def measure(way: str) -> float:
     return seconds
 
 
+def measure_apart(robot: str, way: str) -> float:
+    command = [sys.executable, str(HERE), "--one", way]
+    done = subprocess.run(command, cwd=ROBOTS / robot, capture_output=True, text=True, check=True)
+    return float(done.stdout.splitlines()[-1])
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--rounds", type=int, default=7, help="samples of each, 7 by default")
@@ -70,17 +79,7 @@ def main() -> None:
         return
     print(f"{'robot':<10} {'loop':>10} {'profiled':>14} {'with cProfile':>16}")
     for robot in options.only or ("timed", "command", "magic", "fastloop", "square"):
-        samples: dict[str, list[float]] = {way: [] for way in WAYS}
-        for _ in range(options.rounds):
-            for way in WAYS:
-                done = subprocess.run(
-                    [sys.executable, str(HERE), "--one", way],
-                    cwd=ROBOTS / robot,
-                    capture_output=True,
-                    text=True,
-                    check=True,
-                )
-                samples[way].append(float(done.stdout.splitlines()[-1]))
+        samples = sample_in_turn({way: partial(measure_apart, robot, way) for way in WAYS}, options.rounds)
         plain, profiled, calls = (min(samples[way]) for way in WAYS)
         loop = f"{plain / (SECONDS / 0.02) * 1e6:.1f} µs"
         print(f"{robot:<10} {loop:>10} {profiled / plain - 1:>+14.0%} {calls / plain - 1:>+16.0%}")

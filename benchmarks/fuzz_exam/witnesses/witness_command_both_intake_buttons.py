@@ -1,9 +1,3 @@
-"""command_both_intake_buttons: fails with the patch, passes without it.
-
-Needs: A held; B held at the same time; enabled.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

@@ -1,9 +1,3 @@
-"""command_camera_no_target: fails with the patch, passes without it.
-
-Needs: Y pressed; a piece in the intake (beam broken); camera sends nothing, or an empty list.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

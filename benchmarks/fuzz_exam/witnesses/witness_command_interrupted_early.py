@@ -1,10 +1,3 @@
-"""command_interrupted_early: fails with the patch, passes without it.
-
-Needs: DriveDistance running (X, or autonomous); interrupted (mode change, disabled) before it has come near its goal
-for the first time.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

@@ -1,9 +1,3 @@
-"""commandsample_both_switches: fails with the patch, passes without it.
-
-Needs: top switch pressed; bottom switch pressed in the same loop; Y held.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

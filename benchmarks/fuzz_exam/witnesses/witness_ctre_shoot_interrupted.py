@@ -1,10 +1,3 @@
-"""ctre_shoot_interrupted: fails with the patch, passes without it.
-
-Needs: operator's right trigger pressed; released (or robot disabled) before the shot ends; piece in the intake (beam
-broken for 60 ms).
-"""
-
-
 def test_witness(control, hal_data, robot):
     operator = hal_data["joysticks"][1]
     with control.run_robot():

@@ -1,9 +1,3 @@
-"""elevatorarm_match_time: fails with the patch, passes without it.
-
-Needs: right bumper pressed in teleop; match time is -1 (no field, no practice mode).
-"""
-
-
 def test_witness(control, hal_data, robot):
     from wpilib.simulation import DriverStationSim
 

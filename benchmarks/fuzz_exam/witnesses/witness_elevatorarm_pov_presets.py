@@ -1,9 +1,3 @@
-"""elevatorarm_pov_presets: fails with the patch, passes without it.
-
-Needs: POV up pressed four times more often than POV down; teleop.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.1, autonomous=False, enabled=True)

@@ -1,8 +1,3 @@
-"""magic_missing_state: fails with the patch, passes without it.
-
-Needs: A held until the wheel has its speed; B pressed within the half second in which the feeder pushes.
-"""
-
 from wpilib.simulation import PWMSim
 
 

@@ -1,10 +1,3 @@
-"""magic_second_auto: fails with the patch, passes without it.
-
-Needs: autonomous that lasts more than 4 s; a second autonomous that lasts more than 4 s (practice day, field reset)
-without a restart.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=True, enabled=False)

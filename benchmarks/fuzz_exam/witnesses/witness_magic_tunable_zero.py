@@ -1,9 +1,3 @@
-"""magic_tunable_zero: fails with the patch, passes without it.
-
-Needs: tunable /components/shooter/speed set to 0 on the dashboard; A held, or autonomous shooting.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

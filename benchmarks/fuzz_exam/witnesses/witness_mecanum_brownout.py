@@ -1,8 +1,3 @@
-"""mecanum_brownout: fails with the patch, passes without it.
-
-Needs: right trigger beyond 0.5 in teleop; battery below 8 V at that moment.
-"""
-
 from wpilib.simulation import RoboRioSim
 
 

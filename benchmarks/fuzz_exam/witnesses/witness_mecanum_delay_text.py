@@ -1,8 +1,3 @@
-"""mecanum_delay_text: fails with the patch, passes without it.
-
-Needs: dashboard text 'Auto delay' changed to something that is no number; autonomous begins.
-"""
-
 import wpilib
 
 

@@ -1,9 +1,3 @@
-"""mecanum_unplugged: fails with the patch, passes without it.
-
-Needs: A pressed (an odd number of times); gamepad unplugged, or driver station without joystick data, while enabled
-in teleop.
-"""
-
 from wpilib.simulation import DriverStationSim
 
 

@@ -1,9 +1,3 @@
-"""pneumatics_wrist_end: fails with the patch, passes without it.
-
-Needs: gripper closed (switch touched, button 1 not held); potentiometer at its end (5 V); teleop.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

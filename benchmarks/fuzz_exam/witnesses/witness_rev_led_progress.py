@@ -1,10 +1,3 @@
-"""rev_led_progress: fails with the patch, passes without it.
-
-Needs: operator's back pressed (climber armed); operator's A pressed (goal 0), or still stowed; operator's left
-trigger beyond 0.5.
-"""
-
-
 def test_witness(control, hal_data, robot):
     operator = hal_data["joysticks"][1]
     with control.run_robot():

@@ -1,8 +1,3 @@
-"""sleeper_end_of_auto: fails with the patch, passes without it.
-
-Needs: 'Wait for partner' set to true on the dashboard; autonomous lasts longer than 10 s.
-"""
-
 import wpilib
 
 

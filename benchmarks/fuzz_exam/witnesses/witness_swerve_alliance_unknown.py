@@ -1,9 +1,3 @@
-"""swerve_alliance_unknown: fails with the patch, passes without it.
-
-Needs: back button pressed in teleop; alliance unknown.
-"""
-
-
 def test_witness(control, hal_data, robot):
     hal_data["alliance_station"] = "unknown"
     with control.run_robot():

@@ -1,9 +1,3 @@
-"""swerve_snap_direction: fails with the patch, passes without it.
-
-Needs: left bumper held; left stick inside its dead band; right stick outside its dead band.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

@@ -1,9 +1,3 @@
-"""tank_both_triggers: fails with the patch, passes without it.
-
-Needs: left stick's trigger held; right stick's trigger held at the same time; teleop.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

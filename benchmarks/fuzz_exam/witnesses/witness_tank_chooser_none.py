@@ -1,8 +1,3 @@
-"""tank_chooser_none: fails with the patch, passes without it.
-
-Needs: option 'Stay' chosen on the dashboard; autonomous lasts more than two seconds.
-"""
-
 from contextlib import suppress
 
 from wpilib.simulation import SendableChooserSim

@@ -1,9 +1,3 @@
-"""tank_game_data: fails with the patch, passes without it.
-
-Needs: game message that starts with neither R nor B (e.g. lower case); left stick's trigger held in teleop.
-"""
-
-
 def test_witness(control, hal_data, robot):
     control.game_specific_message = "b"
     with control.run_robot():

@@ -1,9 +1,3 @@
-"""tankarm_composed_twice: fails with the patch, passes without it.
-
-Needs: operator's POV left pressed; pressed a second time later.
-"""
-
-
 def test_witness(control, hal_data, robot):
     operator = hal_data["joysticks"][1]
     with control.run_robot():

@@ -1,9 +1,3 @@
-"""timed_log_name: fails with the patch, passes without it.
-
-Needs: Back pressed; then Start pressed; no driver chosen on the dashboard.
-"""
-
-
 def test_witness(control, hal_data, robot):
     buttons = hal_data["joysticks"][0]["buttons"]
     with control.run_robot():

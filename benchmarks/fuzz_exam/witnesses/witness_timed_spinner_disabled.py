@@ -1,9 +1,3 @@
-"""timed_spinner_disabled: fails with the patch, passes without it.
-
-Needs: A pressed in teleop (an odd number of times); robot disabled afterwards.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

@@ -1,9 +1,3 @@
-"""timedsample_diagonal_pov: fails with the patch, passes without it.
-
-Needs: trigger (button 1) held in teleop; POV pressed diagonally (45, 135, 225, 315).
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         control.step_timing(seconds=0.2, autonomous=False, enabled=True)

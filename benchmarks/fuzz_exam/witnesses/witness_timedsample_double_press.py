@@ -1,9 +1,3 @@
-"""timedsample_double_press: fails with the patch, passes without it.
-
-Needs: button 2 pressed in teleop; released and pressed again within 0.3 s.
-"""
-
-
 def test_witness(control, hal_data, robot):
     buttons = hal_data["joysticks"][0]["buttons"]
     with control.run_robot():

@@ -1,9 +1,3 @@
-"""worker_thread_log: fails with the patch, passes without it.
-
-Needs: sensor reads more than 0 V; then 0 V at the next sample; enabled.
-"""
-
-
 def test_witness(control, hal_data, robot):
     with control.run_robot():
         hal_data["analog_in"][0]["voltage"] = 2.0

@@ -1,3 +1,0 @@
-"""The tests that come with pyfrc."""
-
-from pyfrc.tests import *  # noqa: F403
