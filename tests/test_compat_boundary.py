@@ -1,4 +1,4 @@
-"""Only `pyfrc_core.compat` uses private names of WPILib, pytest and CPython.
+"""Only `pyfrc_core.compat` and `pyfrc_core.wpi` use private names of WPILib, pytest and CPython.
 
 An attribute is found by its name, unless pyfrc gives one of its own the same name.
 """
@@ -13,6 +13,7 @@ from pathlib import Path
 import pyfrc_core
 from pyfrc_core.collector import collector_paused
 from pyfrc_core.compat import cpython_private, pytest_private, wpilib_private
+from pyfrc_core.wpi import commands
 
 ROOT = Path(pyfrc_core.__file__).parents[1]
 FILES = [file for package in ("pyfrc", "pyfrc_cli", "pyfrc_core") for file in sorted((ROOT / package).rglob("*.py"))]
@@ -32,7 +33,7 @@ NAMED = {
         pytest_private.NAMES,
         pytest_private.ATTRIBUTES,
         wpilib_private.NAMES,
-        (wpilib_private.SUBSYSTEMS,),
+        (commands.SUBSYSTEMS,),
     )
     for each in names
     if each.name.startswith("_")
@@ -106,10 +107,13 @@ def test_private_names_of_libraries_are_used_in_compat_only() -> None:
     found = []
     for file in FILES:
         path = file.relative_to(ROOT).as_posix()
-        if path.startswith(("pyfrc_core/compat/", "pyfrc_cli/templates/")) or path in ON_ITS_OWN | TEXT_OF_OTHERS:
+        if (
+            path.startswith(("pyfrc_core/compat/", "pyfrc_core/wpi/", "pyfrc_cli/templates/"))
+            or path in ON_ITS_OWN | TEXT_OF_OTHERS
+        ):
             continue
         found += [f"{path}:{line}: {name}" for line, name in private_names(file, own)]
-    assert found == [], "use them through pyfrc_core.compat, with a test in tests/test_compat_*.py"
+    assert found == [], "use them through pyfrc_core.compat or pyfrc_core.wpi, with a test in tests/test_compat_*.py"
 
 
 def test_the_check_finds_them() -> None:

@@ -11,9 +11,13 @@ import pytest
 
 from pyfrc_core.compat import wpilib_private
 from pyfrc_core.compat.private_name import IncompatibleLibraryError, PrivateName
+from pyfrc_core.wpi import commands
+
+#: Not SUBSYSTEMS and SCHEDULED_COMMANDS, which are attributes of an instance.
+NAMES = (*wpilib_private.NAMES, commands.STATE_OF_MACHINE)
 
 
-@pytest.mark.parametrize("name", wpilib_private.NAMES, ids=lambda name: name.path)
+@pytest.mark.parametrize("name", NAMES, ids=lambda name: name.path)
 def test_it_is_there(name: PrivateName) -> None:
     try:
         name.find()
@@ -87,14 +91,14 @@ print("done")
 def test_subsystems() -> None:
     program = """
 import commands2
-from pyfrc_core.compat import wpilib_private
+from pyfrc_core.wpi import commands
 
 class Arm(commands2.Subsystem): pass
 
 arm = Arm()
-print([each is arm for each in wpilib_private.registered_subsystems()])
+print([each is arm for each in commands.registered_subsystems()])
 """
-    assert said_by(program) == ["[True]"], wpilib_private.SUBSYSTEMS.gone
+    assert said_by(program) == ["[True]"], commands.SUBSYSTEMS.gone
 
 
 def test_a_magic_robot_calls_it_when_robotinit_is_over() -> None:

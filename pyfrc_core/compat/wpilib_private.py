@@ -5,7 +5,7 @@ WPILib is imported only when one of these functions is called.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from .private_name import IncompatibleLibraryError, PrivateName
@@ -38,15 +38,6 @@ SET_STACK_TRACE_HOOK = PrivateName(
     "wpiutil._wpiutil:_setup_stack_trace_hook",
     "runtime.patches.robot_stack has WPILib's errors come with the robot's lines by it",
 )
-SUBSYSTEMS = PrivateName(
-    "commands2:CommandScheduler._subsystems", "runtime.time.simulation_periodic finds the robot's subsystems by it"
-)
-SCHEDULED_COMMANDS = PrivateName(
-    "commands2:CommandScheduler._scheduledCommands", "fuzz.states finds the commands that run by it"
-)
-STATE_OF_MACHINE = PrivateName(
-    "magicbot.state_machine:_StateData", "fuzz.states finds the states of magicbot's state machines by it"
-)
 NATIVE_HAL = PrivateName(
     "native.wpihal._init_robotpy_native_wpihal:__lib",
     "hal_data shows the channels of an encoder by it",
@@ -65,7 +56,6 @@ NAMES = (
     MAGIC_SIMULATION_PERIODIC,
     STACK_TRACE_HOOK,
     SET_STACK_TRACE_HOOK,
-    STATE_OF_MACHINE,
     NATIVE_HAL,
     NETWORK_LOG,
 )
@@ -89,30 +79,6 @@ def end_competition(robot: wpilib.TimedRobot) -> None:
         wpilib.TimedRobot.endCompetition(robot)
 
     endCompetition(robot)
-
-
-def registered_subsystems() -> Iterable[Any]:
-    """Return the subsystems that the robot has registered with commands2, which must have been imported."""
-    import commands2
-
-    subsystems: Iterable[Any] = SUBSYSTEMS.of(commands2.CommandScheduler.getInstance())
-    return subsystems
-
-
-def scheduled_commands() -> tuple[Any, ...]:
-    """Return the commands that run, in the order in which they began; commands2 must have been imported.
-
-    Without this private name of commands2, return none.
-    """
-    import commands2
-
-    return tuple(getattr(commands2.CommandScheduler.getInstance(), SCHEDULED_COMMANDS.name, ()))
-
-
-def is_state_of_machine(thing: object) -> bool:
-    """Return whether this is a state of one of magicbot's state machines."""
-    kind = type(thing)
-    return kind.__name__ == STATE_OF_MACHINE.name and kind.__module__ == "magicbot.state_machine"
 
 
 def show_stack(lines: Callable[[], str]) -> None:

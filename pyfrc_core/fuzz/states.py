@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from enum import Enum
 from typing import Any
 
-from ..compat.wpilib_private import is_state_of_machine, scheduled_commands
 from ..project.robot_files import RobotFiles
 from ..runtime.robot import RobotRun
+from ..wpi import commands
 from .device_names import DeviceNames
 from .goals import STATE, Goal
 from .growth import CONTAINERS
@@ -83,10 +83,10 @@ class RobotStates:
             if each.owner.get(each.name, _ABSENT) is not each.value:
                 self._change(each, now_us)
         if "commands2" in sys.modules:
-            commands = scheduled_commands()
-            if commands != self._commands:
-                self._commands = commands
-                names = sorted({command.getName() for command in commands})
+            running = commands.scheduled_commands()
+            if running != self._commands:
+                self._commands = running
+                names = sorted({command.getName() for command in running})
                 self._reach((STATE, "commands", "+".join(names)), now_us)
 
     def _reach(self, goal: Goal, now_us: int) -> None:
@@ -181,6 +181,6 @@ def _text_of(value: object) -> str | None:
         return str(value.name)
     if isinstance(value, types.MethodType):
         return value.__func__.__qualname__
-    if is_state_of_machine(value):
+    if commands.is_state_of_machine(value):
         return str(value.name)  # type: ignore[attr-defined]
     return None if value is not _ABSENT else "absent"

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..compat.wpilib_private import scheduled_commands
 from ..project.robot_files import RobotFiles
 from ..runtime.clock import Clock
+from ..wpi import commands
 
 #: How long a command has run that may be one.
 LONG_US = 8_000_000
@@ -34,13 +34,13 @@ class UnfinishedCommands:
 
     def begin(self) -> None:
         """Begin to watch if a command runs; commands2 must have been imported."""
-        if not scheduled_commands():
+        if not commands.scheduled_commands():
             return
         import commands2
 
         self.watching = True
         scheduler = commands2.CommandScheduler.getInstance()
-        for command in scheduled_commands():
+        for command in commands.scheduled_commands():
             self._on_begin(command)
         scheduler.onCommandInitialize(self._on_begin)
         scheduler.onCommandFinish(self._on_finish)

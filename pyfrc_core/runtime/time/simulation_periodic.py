@@ -10,8 +10,9 @@ import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ...compat.wpilib_private import SIMULATION_PERIODIC, registered_subsystems, simulation_periodic_of
+from ...compat.wpilib_private import SIMULATION_PERIODIC, simulation_periodic_of
 from ...hal import modes
+from ...wpi import commands
 
 if TYPE_CHECKING:
     from ...hal.output_gate import OutputGate
@@ -31,7 +32,7 @@ def gate_subsystems(gate: Callable[[], OutputGate]) -> None:
     commands2 = sys.modules.get("commands2")
     if commands2 is None:
         return
-    for subsystem in registered_subsystems():
+    for subsystem in commands.registered_subsystems():
         if type(subsystem).simulationPeriodic is not commands2.Subsystem.simulationPeriodic:
             subsystem.simulationPeriodic = _gated(subsystem, "simulationPeriodic", gate)
 

@@ -1,0 +1,35 @@
+"""WPILib, in our own few verbs: the one room that is written again for each season.
+
+In: what other rooms want of a robot's library, in robot terms (seconds, microseconds from 0, metres, radians). Out: a
+topic, such as `robots` or `geometry`, of the season whose WPILib is installed::
+
+    from ..wpi import robots
+
+    if robots.is_timed(robot): ...
+
+`season_2026` has a module for each topic, in that season's spelling. Another season is a package beside it, with
+modules and functions of the same names; nothing else changes. So a function says what pyfrc wants, and is not WPILib's
+name in another spelling: where a caller would need ten of WPILib's calls in a row, the whole step is the function.
+
+Only this room, `hal` (the table of devices) and `runtime.patches` (the names that are replaced) import WPILib. A topic
+is imported when it is asked for: importing this package imports no WPILib.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from ..season import CURRENT
+
+if TYPE_CHECKING:
+    from .season_2026 import commands as commands
+else:
+
+    def __getattr__(name: str) -> ModuleType:
+        topic = f"{__name__}.season_{CURRENT.year}.{name}"
+        if name.startswith("_") or find_spec(topic) is None:
+            raise AttributeError(f"module {__name__!r} has no topic {name!r}")
+        return import_module(topic)

@@ -1,0 +1,42 @@
+"""commands2 and magicbot: what runs of a robot that uses them. Only called when the robot has imported them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from ...compat.private_name import PrivateName
+
+SUBSYSTEMS = PrivateName(
+    "commands2:CommandScheduler._subsystems", "runtime.time.simulation_periodic finds the robot's subsystems by it"
+)
+SCHEDULED_COMMANDS = PrivateName(
+    "commands2:CommandScheduler._scheduledCommands", "fuzz.states finds the commands that run by it"
+)
+STATE_OF_MACHINE = PrivateName(
+    "magicbot.state_machine:_StateData", "fuzz.states finds the states of magicbot's state machines by it"
+)
+
+
+def registered_subsystems() -> Iterable[Any]:
+    """Return the subsystems that the robot has registered with commands2, which must have been imported."""
+    import commands2
+
+    subsystems: Iterable[Any] = SUBSYSTEMS.of(commands2.CommandScheduler.getInstance())
+    return subsystems
+
+
+def scheduled_commands() -> tuple[Any, ...]:
+    """Return the commands that run, in the order in which they began; commands2 must have been imported.
+
+    Without this private name of commands2, return none.
+    """
+    import commands2
+
+    return tuple(getattr(commands2.CommandScheduler.getInstance(), SCHEDULED_COMMANDS.name, ()))
+
+
+def is_state_of_machine(thing: object) -> bool:
+    """Return whether this is a state of one of magicbot's state machines."""
+    kind = type(thing)
+    return kind.__name__ == STATE_OF_MACHINE.name and kind.__module__ == "magicbot.state_machine"
