@@ -270,43 +270,6 @@ def test_mecanum(make_project: MakeProject, names: tuple[str, ...], axes: dict[s
     run_tests(project)
 
 
-def test_the_robot_of_pyfrc_init(make_project: MakeProject) -> None:
-    """Its own tests go on passing, and it drives, as far as its encoders count."""
-    project = make_project({})
-    assert project.run("init").code == 0
-    (project.path / "physics.py").unlink()
-    shutil.rmtree(project.path / "sim")
-    assert "left: PWM 0 (left_motor), PWM 1 (left_follower)" in create(project)
-    project.write(
-        {
-            "tests/test_physics.py": """
-            import pytest
-
-            def test_autonomous(control, robot, physics_controller):
-                start = physics_controller.get_pose()
-                with control.run_robot():
-                    for times in (1, 2):
-                        control.step_timing(seconds=5, autonomous=True, enabled=True)
-                        control.step_timing(seconds=1, autonomous=True, enabled=False)
-                        moved = physics_controller.get_pose().translation().distance(start.translation())
-                        assert moved > times
-                        assert robot.left_encoder.getDistance() == pytest.approx(moved, abs=0.01)
-                        assert robot.right_encoder.getDistance() == pytest.approx(moved, abs=0.01)
-            """
-        }
-    )
-    (project.path / "tests/test_drive.py").unlink()  # one of its tests turns an encoder itself
-    run_tests(project, "--", "-k", "not practice")
-    config = json.loads((project.path / "sim/config.json").read_text())
-    assert config["pyfrc"]["pwm"]["3"] == "right_follower"
-    assert config["pyfrc"]["dio"]["2"] == "right_encoder A"
-    assert config["$schema"] == "config.schema.json"
-    assert (project.path / "sim/config.schema.json").read_text().strip() == project.run(
-        "config", "schema"
-    ).stdout.strip()
-    assert project.run("config", "check").stdout == "sim/config.json: no mistakes\n"
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("template", "says"),

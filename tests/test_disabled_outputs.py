@@ -317,21 +317,6 @@ def gate() -> Iterator[OutputGate]:
     hs.resetDriverStationData()
 
 
-def test_a_setpoint_that_is_a_position_stays(gate: OutputGate) -> None:
-    device = hal.SimDevice("SPARK MAX [40]")
-    mode = device.createInt("Control Mode", hal.SimDevice.Direction.kOutput, 0)
-    setpoint = device.createDouble("Setpoint", hal.SimDevice.Direction.kOutput, 2.5)
-    with gate.closed_while_disabled():
-        assert setpoint.get() == 0
-    mode.set(3)
-    with gate.closed_while_disabled():
-        assert setpoint.get() == 2.5
-    mode.set(0)
-    modes.set_mode(enabled=True)
-    with gate.closed_while_disabled():
-        assert setpoint.get() == 2.5
-
-
 def test_what_a_vendors_model_writes_meanwhile_stays(gate: OutputGate) -> None:
     device = hal.SimDevice("SPARK MAX [41]")
     applied = device.createDouble("Applied Output", hal.SimDevice.Direction.kOutput, 0.5)

@@ -54,31 +54,6 @@ def as_metres(vector: DriveVector) -> tuple[float, float, float]:
 # -- as documented -----------------------------------------------------------------------------------------------
 
 
-def test_the_documented_example_runs() -> None:
-    driven: list[tuple[float, float, float]] = []
-
-    class Controller:
-        def drive(self, speed: float, rotation: float, tm_diff: float) -> None:
-            driven.append((speed, rotation, tm_diff))
-
-    class PhysicsEngine:
-        def __init__(self, physics_controller: Controller) -> None:
-            self.physics_controller = physics_controller
-            self.drivetrain = drivetrains.TwoMotorDrivetrain(deadzone=drivetrains.linear_deadzone(0.2))
-
-        def update_sim(self, hal_data: Any, now: float, tm_diff: float) -> None:
-            l_motor, r_motor = hal_data["pwm"][0]["value"], hal_data["pwm"][1]["value"]
-            speed, rotation = self.drivetrain.get_vector(l_motor, r_motor)
-            self.physics_controller.drive(speed, rotation, tm_diff)
-            self.l_encoder = self.drivetrain.l_speed * tm_diff
-
-    engine = PhysicsEngine(Controller())
-    engine.update_sim({"pwm": [{"value": -1.0}, {"value": 1.0}]}, 0.02, 0.02)
-    engine.update_sim({"pwm": [{"value": -0.2}, {"value": 0.2}]}, 0.04, 0.02)
-    assert driven == [(5.0, 0.0, 0.02), (0.0, 0.0, 0.02)]
-    assert engine.l_encoder == 0.0
-
-
 @pytest.mark.parametrize(
     ("name", "defaults"),
     [

@@ -439,30 +439,6 @@ def test_hangs_that_no_python_code_can_end_are_named_too(make_project: MakeProje
     assert without_self.startswith(f"{project.place('robot.py', '# no self')}: the method autonomousPeriodic() has no ")
 
 
-def test_two_devices_on_one_channel_are_told_without_other_peoples_code(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": """
-            import wpilib
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotInit(self):
-                    self.left = wpilib.PWMSparkMax(0)
-                    self.right = wpilib.PWMSparkMax(0)
-            """,
-            "tests/test_it.py": "def test_it(control, robot):\n    control.run_test(lambda tm: tm < 1)\n",
-        }
-    )
-    result = project.run("test")
-    (block,) = result.blocks().values()
-    before = project.place("robot.py", "self.left")
-    assert (
-        first_line(block) == f"{project.place('robot.py', 'self.right')}: PWM channel 0 is used already, since {before}"
-    )
-    assert "pluggy" not in block
-    assert not re.search(r"pyfrc_core[/\\]", block)
-
-
 # -- chance ---------------------------------------------------------------------------------------------------------
 
 ROBOT_THAT_DRAWS = """

@@ -77,30 +77,6 @@ def test_other_documented_keys(tree: HalData) -> None:
     assert (tree["analog_in"][0]["lsb_weight"], tree["analog_in"][0]["offset"]) == (1, 65535)
 
 
-def test_behaves_as_the_containers_it_replaces(tree: HalData) -> None:
-    sticks = tree["joysticks"]
-    assert len(list(tree["dio"])) == 26
-    assert sticks[-1] is sticks[5]
-    assert sticks[1:3] == [sticks[1], sticks[2]]
-    assert tree.get("nothing") is None
-    assert "pwm" in tree
-    assert "nothing" not in tree
-    assert tree["control"] == {**tree["control"]}
-    assert tree["control"].get("enabled") is False
-    assert tree["filter"] == [{"enabled": False, "period": 0}] * 3
-    assert "value" in repr(tree["pwm"][0])
-    assert "pwm" in repr(tree)
-    tree["control"] = {"enabled": True, "test": True}
-    assert (tree["control"]["enabled"], tree["control"]["test"]) == (True, True)
-    tree.setdefault("custom", {})["My Label"] = 1
-    assert tree["custom"] == {"My Label": 1}
-    kept = tree["custom"]
-    tree["custom"] = {"other": 2}
-    assert kept == {"other": 2}
-    with pytest.raises(KeyError):
-        del tree["pwm"]
-
-
 def test_pwm_shows_what_the_robot_set_and_takes_what_a_test_sets(tree: HalData) -> None:
     pwm = tree["pwm"][10]
     assert pwm["initialized"] is False

@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 from packaging.requirements import Requirement
-from skips import missing_programs, require
 
 from pyfrc_core._version import __version__, requirement
 
@@ -73,20 +72,6 @@ def test_the_environment_is_made_then_activated_then_filled_then_used(language: 
     assert rest == [f'pip install "{requirement()}"', "pyfrc doctor"]
 
 
-def test_in_bash_what_is_installed_goes_to_the_environment(tmp_path: Path) -> None:
-    require("the page on getting started, in bash", missing_programs("bash"))
-    made, activated, *_ = block("## Install", "bash")
-    made = f"{made.replace('python3', shlex.quote(sys.executable))} --without-pip"  # which takes the time of ten tests
-    done = subprocess.run(
-        ["bash", "-ec", "\n".join([made, activated, 'python -c "import sys; print(sys.prefix)"'])],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert Path(done.stdout.strip()).samefile(tmp_path / ".venv")
-
-
 @pytest.mark.parametrize("language", ["bash", "powershell"])
 def test_a_checkout_is_installed_by_its_directory(language: str) -> None:
     (line,) = block("### From a checkout", language)
@@ -103,16 +88,3 @@ def test_the_readme_installs_from_the_checkout_until_the_release_is_on_the_index
     (line,) = re.findall(r"^\$ (pip install .+)$", section, re.MULTILINE)
     assert shlex.split(line, comments=True) == ["pip", "install", *block("### From a checkout", "bash")[0].split()[2:]]
     assert f'pip install "{requirement()}"' in line.partition("#")[2]
-
-
-def test_a_project_can_carry_a_wheel_for_its_workflow(tmp_path: Path) -> None:
-    """The page's way for a machine that has no checkout, such as GitHub's."""
-    section = PAGE.partition("### From a checkout")[2]
-    (building,) = re.findall(r"`(pip wheel [^`]+)`", section)
-    (needed,) = re.findall(r"`(\./wheels/[^`]+)`", section)
-    command = shlex.split(building.replace("/path/to/pyfrc", shlex.quote(str(ROOT))))
-    python = [sys.executable, "-m"]
-    subprocess.run([*python, *command, "--quiet", "--no-build-isolation"], cwd=tmp_path, check=True)
-    (tmp_path / "requirements.txt").write_text(f"{needed}\n", "utf-8")
-    install = [*python, "pip", "install", "--quiet", "--dry-run", "--no-deps", "-r", "requirements.txt"]
-    subprocess.run(install, cwd=tmp_path, check=True)

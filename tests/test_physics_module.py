@@ -231,33 +231,6 @@ def test_a_faster_robot_has_faster_physics(make_project) -> None:
     assert result.code == 0, result.output
 
 
-def test_in_one_process_each_robot_has_physics_of_its_own(make_project) -> None:
-    project = make_project(
-        {
-            "robot.py": ROBOT,
-            "physics.py": MADE,
-            "tests/test_it.py": """
-                import __main__
-                import gc, weakref
-                import pytest
-
-                engines = []
-
-                @pytest.mark.parametrize("number", range(3))
-                def test_it(number, control, robot):
-                    assert all(old() is None for old in engines), gc.get_referrers(engines[0]())
-                    control.set_operator_control()
-                    control.run_test(lambda tm: tm < 1)
-                    assert __main__.engine.robot is robot
-                    engines.append(weakref.ref(__main__.engine))
-                    del __main__.engine
-                """,
-        }
-    )
-    result = project.run("test", "--no-isolation")
-    assert result.code == 0, result.output
-
-
 WATCHED = """
     import __main__
 

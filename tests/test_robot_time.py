@@ -410,62 +410,6 @@ def test_whose_loop_it_is_shows_nowhere_outside(loop: str, make_project) -> None
     passes(make_project, STEPPED_IN_BOTH_STYLES, LOOPS[loop])
 
 
-def test_both_styles_of_test_in_one_project(make_project) -> None:
-    passes(
-        make_project,
-        """
-        import pytest
-
-        class Steps:
-            def __init__(self):
-                self.calls = 0
-
-            def on_step(self, tm):
-                self.calls += 1
-                return tm < 1
-
-        def test_a_class(control, robot):
-            assert control.run_test(Steps).calls == 50
-
-        def test_an_object(control, robot):
-            steps = Steps()
-            assert control.run_test(steps) is None
-            assert steps.calls == 50
-
-        def test_today(control, robot):
-            with control.run_robot():
-                assert control.step_timing(seconds=1.0, autonomous=True, enabled=True) == 1.0
-                assert control.get_mode() == "autonomous"
-
-        def test_modes(control, robot):
-            modes = []
-            def step(tm):
-                modes.append(control.get_mode())
-                if tm >= 0.3: control.set_test_mode()
-                elif tm >= 0.2: control.set_operator_control()
-                elif tm >= 0.1: control.set_autonomous()
-                return tm < 0.4
-            control.run_test(step)
-            assert list(dict.fromkeys(modes)) == ["disabled", "autonomous", "teleop", "test"]
-
-        def test_game_message(control, robot):
-            import wpilib
-            control.game_specific_message = "LRL"
-            seen = set()
-            robot.each_loop = lambda: seen.add(wpilib.DriverStation.getGameSpecificMessage())
-            control.set_autonomous()
-            control.run_test(lambda tm: tm < 0.1)
-            assert seen == {"LRL"}
-
-        def test_only_once(control, robot):
-            control.run_test(lambda tm: False)
-            with pytest.raises(RuntimeError, match="run already"):
-                with control.run_robot():
-                    pass
-        """,
-    )
-
-
 def test_practice_match_of_another_season(make_project) -> None:
     passes(
         make_project,
@@ -502,36 +446,6 @@ def test_autonomous_runs_once_for_each_message_of_the_game(make_project) -> None
     result = project.run("test", "--", "-v", "-k", "autonomous")
     assert result.code == 0
     assert [name.partition("::")[2] for name in result.outcomes()] == ["test_autonomous[LLL]", "test_autonomous[RRR]"]
-
-
-def test_threads_started_while_the_robot_is_imported(make_project) -> None:
-    """They begin with the robot, in robot time, in a process of their own."""
-    passes(
-        make_project,
-        """
-        import robot as module
-
-        def test_it(control, robot):
-            control.run_test(lambda tm: tm < 1.05)
-            assert module.beats == [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
-        """,
-        """
-        import threading, time
-        import wpilib
-
-        beats = []
-
-        def beat():
-            while True:
-                time.sleep(0.1)
-                beats.append(round(time.monotonic(), 3))
-
-        threading.Thread(target=beat, daemon=True).start()
-
-        class MyRobot(wpilib.TimedRobot):
-            pass
-        """,
-    )
 
 
 def test_waits_that_python_computes_the_rest_of_end_on_time(make_project) -> None:
@@ -621,46 +535,6 @@ def test_the_robots_own_end_is_called_once_at_its_end(make_project) -> None:
             def endCompetition(self):
                 self.motor.stopMotor()
                 self.ended += 1
-        """,
-    )
-
-
-def test_robot_code_that_catches_everything_cannot_keep_the_test_from_ending(make_project) -> None:
-    passes(
-        make_project,
-        """
-        import pytest
-
-        def test_ends(control, robot, fake_time):
-            control.set_operator_control()
-            control.run_test(lambda tm: tm < 2)
-            assert fake_time.get() == 2
-
-        def test_another_threads_failure_is_told(control, robot):
-            robot.fail_at = 1.0
-            control.set_operator_control()
-            with pytest.raises(ValueError, match="from the thread"):
-                control.run_test(lambda tm: tm < 2)
-        """,
-        """
-        import threading, time
-        import wpilib
-
-        class MyRobot(wpilib.TimedRobot):
-            fail_at = 1000
-
-            def robotInit(self):
-                threading.Thread(target=self.work, daemon=True).start()
-
-            def work(self):
-                time.sleep(self.fail_at)
-                raise ValueError("from the thread")
-
-            def teleopPeriodic(self):
-                try:
-                    time.sleep(0.1)
-                except:
-                    pass
         """,
     )
 

@@ -195,24 +195,6 @@ def test_where_nothing_can_be_written_is_told_once(option: str, make_project) ->
     assert "test_practice" not in result.output
 
 
-def test_an_encoder_that_stands_still_is_recorded(make_project) -> None:
-    robot = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    def robotInit(self):\n"
-    robot += "        self.encoder = wpilib.Encoder(0, 1)\n"
-    test = """
-        def test_it(control, robot, hal_data):
-            with control.run_robot():
-                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
-                hal_data["encoder"][0]["rate"] = 5.0
-                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
-                hal_data["encoder"][0]["rate"] = 0.0
-                control.step_timing(seconds=0.1, autonomous=False, enabled=True)
-        """
-    project = make_project({"robot.py": robot, "tests/test_it.py": test})
-    assert project.run("test", "--record", "recordings").code == 0
-    replayed = project.run("replay", "recordings/tests_test_it.py.test_it.jsonl")
-    assert "equals" in replayed.stdout, replayed.output
-
-
 FAILING = """
     def test_it(control, hal_data, robot):
         control.set_operator_control()
@@ -415,13 +397,6 @@ def test_a_robot_that_exits_has_failed(code: str, message: str, make_project) ->
     result = project.run("replay", "script.jsonl")
     assert result.code == 1, result.output
     assert f"then {project.place('robot.py', code)}: {message}" in result.stdout.splitlines()
-
-
-def test_a_robot_that_exits_at_its_end_has_failed(make_project) -> None:
-    robot = EXITING.format("pass").replace("autonomousInit", "endCompetition").replace("pass", "exit()")
-    project = make_project({"robot.py": robot, "script.jsonl": text()})
-    result = project.run("replay", "script.jsonl")
-    assert (result.code, "exit() was called" in result.stdout) == (1, True), result.output
 
 
 def test_a_robot_with_a_loop_of_its_own_may_not_exit_either(make_project) -> None:

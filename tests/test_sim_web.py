@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import time
 from pathlib import Path
 
 import pytest
@@ -251,42 +250,6 @@ def test_new_code_replays_the_inputs_and_keeps_what_the_old_code_did_as_a_branch
         assert page.ask(type="values", t=0.45)["values"]["pwm[0].value"] == pytest.approx(0.25, abs=0.01)
 
 
-def test_a_crash_names_the_users_line_and_can_be_gone_back_from(make_project) -> None:
-    with served(make_project(FILES)) as server, server.page() as page:
-        page.run_for(0.1)
-        page.command("enable")
-        page.run_for(0.1)
-        page.command("button", stick=0, button=5, pressed=True)
-        page.command("step", packets=5)
-        page.until(lambda: page.status["state"] == "failed")
-        failure = page.status["failure"]
-        assert "ZeroDivisionError" in failure["headline"]
-        line = next(n for n, text in enumerate(FILES["robot.py"].splitlines(), 0) if "1 / 0" in text)
-        assert (failure["file"], failure["line"]) == ("robot.py", line)
-        page.until(lambda: any(mark["kind"] == "failure" for mark in page.marks))
-        assert any(line["level"] == "error" and line.get("file") == "robot.py" for line in page.console)
-        page.command("rewind", t=0.1)
-        page.until(lambda: page.status["state"] == "paused")
-        assert page.status["failure"] is None
-
-
-def test_several_pages_see_the_same_and_one_end_changes_nothing(make_project) -> None:
-    with served(make_project(FILES)) as server, server.page() as first:
-        first.run_for(0.1)
-        with server.page() as second:
-            first.until(lambda: first.parts["clients"] == 2)
-            second.command("enable")
-            first.run_for(0.2)
-            second.until(lambda: second.time == first.time)
-            assert second.values == first.values
-            assert second.station == first.station
-        first.until(lambda: first.parts["clients"] == 1)
-        with server.page() as again:  # a reload
-            assert again.values == first.values
-            assert again.console == first.console
-            assert again.time == first.time
-
-
 def test_a_page_that_does_not_read_gets_merged_updates(make_project) -> None:
     with (
         served(make_project(DASHBOARD)) as server,
@@ -313,16 +276,6 @@ def test_a_layout_is_saved_for_the_project(make_project) -> None:
             too_large = page.ask(type="layout", layout={"x": "x" * 300_000})
             assert too_large["type"] == "error"
     assert json.loads((made.path / ".pyfrc" / "sim-layout.json").read_text()) == {"panels": ["field", "plot"]}
-
-
-def test_of_two_pages_neither_overwrites_what_the_other_has_arranged(make_project) -> None:
-    with served(make_project(FILES)) as server:
-        with server.page() as one, server.page() as other:
-            one.ask(type="layout", layout={"version": 1, "pins": ["a"], "trees": {"driving": 1, "tuning": 1}})
-            other.ask(type="layout", layout={"version": 1, "theme": "dark", "trees": {"tuning": 2}})
-            one.ask(type="layout", layout={"version": 1, "trees": {"driving": None}})
-        with server.page() as page:
-            assert page.hello["layout"] == {"version": 1, "pins": ["a"], "theme": "dark", "trees": {"tuning": 2}}
 
 
 def test_a_recording_that_is_there_is_replaced_only_when_that_is_wanted(make_project) -> None:
@@ -395,28 +348,6 @@ def test_a_mistake_of_pyfrcs_own_that_would_stop_all_pages_ends_the_simulation(m
     simulation = Simulation(find_project(make_project(FILES).path), SimOptions(paused=True, network_values=True))
     with pytest.raises(ZeroDivisionError):
         WebFrontEnd(lambda _: None, WebOptions(opens_browser=False)).run(simulation)
-
-
-def test_a_flood_of_output_leaves_the_page_alive(make_project) -> None:
-    flood = {
-        "robot.py": """
-            import wpilib
-
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotPeriodic(self):
-                    for number in range(3000):
-                        print("flood", number, "x" * 50)
-        """
-    }
-    with served(make_project(flood)) as server, server.page() as page:
-        page.command("resume")
-        began = time.monotonic()
-        page.until(lambda: page.time > 1)
-        assert len(page.console) < 200_000
-        page.command("pause")
-        page.until(lambda: page.status["state"] == "paused")
-        assert time.monotonic() - began < 60
 
 
 def test_the_page_closes_the_simulation(make_project) -> None:

@@ -112,15 +112,6 @@ PLACE_OF_ROBOT = """(canvas) => {
 }"""
 
 
-def plot_motor(person: Seen) -> None:
-    """Plot the motor's speed."""
-    person.tab("Plot 1").click()
-    person.button("Add value").click()
-    person.page.get_by_label("Search all values").fill("pwm 0")
-    person.page.keyboard.press("Enter")
-    person.page.locator(".curve-name").first.wait_for()
-
-
 def script_writes(person: Seen, path: str) -> list[Any]:
     """Return what was set so far in this run."""
     return [step.writes[path] for step in person.simulation.script().steps if path in step.writes]
@@ -332,33 +323,6 @@ def test_the_past_by_keys_buttons_and_the_console(person: Seen) -> None:
     lines.filter(has_text="line 0").first.wait_for()
     lines.first.get_by_title("Look at this moment").click()
     expect(clock).to_have_text("0:00.00")
-
-
-def test_another_run_is_compared_in_plots_and_at_its_first_difference(person: Seen) -> None:
-    page = person.page
-    plot_motor(person)
-    person.button("Enable").click()
-    page.keyboard.down("w")
-    person.until(lambda: person.value("pwm[0].value") == 1)
-    page.keyboard.up("w")
-    person.until(lambda: person.simulation.snapshot.time > 2)
-    person.pause()
-    timeline = page.get_by_role("slider", name="Timeline")
-    timeline.focus()
-    page.keyboard.press("Home")
-    page.locator(".past-actions").wait_for()
-    person.button("Drive on from here").click()
-    person.until(lambda: person.simulation.snapshot.time < 0.1)
-    person.button("Enable").click()
-    for _ in range(50):
-        page.keyboard.press("F6")
-    person.choose("Compare with an earlier run", "")
-    page.locator("button", has_text="Differs at").click()
-    page.locator(".past-actions").wait_for()
-    # Its curve and its place on the field come from the branch.
-    page.wait_for_function("async () => (await module('js/compare.js')).compared.pose.t.length > 0")
-    person.choose("Compare with an earlier run", "")
-    page.locator("button", has_text="Differs at").wait_for(state="detached")
 
 
 def test_a_lost_driver_station_and_a_restart_after_a_failure(person: Seen) -> None:

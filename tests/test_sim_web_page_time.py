@@ -170,33 +170,6 @@ def test_looking_back_shows_the_past_everywhere_and_changes_nothing(person: Seen
     page.locator(".state em").wait_for(state="detached")
 
 
-def test_driving_on_from_the_past_keeps_the_rest_as_a_branch(person: Seen) -> None:
-    page = person.page
-    drive(person)
-    end = person.simulation.snapshot.time
-    page.get_by_role("button", name="Mark", exact=True).click()
-    page.get_by_label("A mark at").fill("here it was")
-    page.keyboard.press("Enter")
-    timeline = page.get_by_role("slider", name="Timeline")
-    timeline.focus()
-    page.keyboard.press("Home")
-    page.keyboard.press("PageUp")
-    page.locator(".clock", has_text="0:01.00").wait_for()
-    person.button("Drive on from here").click()
-    person.until(lambda: person.simulation.snapshot.time == pytest.approx(1.0))
-    page.locator(".clock", has_text="0:01.00").wait_for()
-    page.get_by_title("Compare with an earlier run").click()
-    page.get_by_role("menuitemcheckbox").first.click()
-    page.get_by_title("Compare with an earlier run").click()
-    page.locator("[role=menuitemcheckbox][aria-checked=true]").wait_for()
-    page.locator(".menu-list").get_by_text("Name “").click()
-    page.get_by_label("The name of the branch").fill("<b>before</b>")
-    page.keyboard.press("Enter")
-    page.get_by_title("Compare with an earlier run").click()
-    page.locator("[role=menuitemcheckbox]", has_text="<b>before</b>").wait_for()
-    assert end > 1.0
-
-
 def test_marks_and_moments_are_found_on_the_timeline(person: Seen) -> None:
     page = person.page
     drive(person)

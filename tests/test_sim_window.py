@@ -8,14 +8,14 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from textwrap import dedent
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from conftest import MakeProject, RobotProject
+from conftest import MakeProject
 from skips import missing_tkinter
 from virtual_display import VirtualDisplay, require_window, virtual_display
 
@@ -23,7 +23,6 @@ if missing_tkinter():  # some imports below need it
     require_window()
 
 from pyfrc_core.project import Project
-from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.sim import SimOptions, Simulation
 from pyfrc_core.sim.ui.choose import FRONT_ENDS
 from pyfrc_core.sim.ui.tk.window import Window
@@ -383,38 +382,6 @@ def test_devices_are_shown_and_set(user: User) -> None:
     user.until(lambda: "DIO 3" in user.window.devices._tooltip.text)
 
 
-def test_joysticks_by_mouse(user: User) -> None:
-    joystick = user.window.joystick
-    canvas = joystick.canvas
-    user.press("ctrl+e")
-    user.until(lambda: user.snapshot.mode == "teleop")
-    x, y = joystick.center_of(("button", 5))
-    user.display.do(*user._to(canvas, x - 30, y), "mousedown", 1)
-    user.until(lambda: user.snapshot.values["joysticks[0].buttons"][5])
-    user.display.do("mouseup", 1)
-    user.until(lambda: not user.snapshot.values["joysticks[0].buttons"][5])
-    x, y = joystick.center_of(("pov", 0))
-    user.click(canvas, x + 25, y, button=3)
-    user.until(lambda: user.snapshot.values["joysticks[0].povs"] == (90,))
-    x, y = joystick.center_of(("pad", 0))
-    user.drag(canvas, (x, y), (x, y - 200), button=3)  # beyond its end, and it stays there
-    user.until(lambda: user.snapshot.values["pwm[2].value"] == 1)
-    user.drag(canvas, (x, y - 20), (x, y - 25))  # and this springs back
-    user.until(lambda: user.snapshot.values["pwm[2].value"] == 0)
-    x, y = joystick.center_of(("axis", 3))
-    user.click(canvas, x + 30, y)
-    user.until(lambda: user.snapshot.values["joysticks[0].axes"][3] > 0.2)
-    user.click(joystick._plug)
-    user.until(lambda: "joysticks[0].axes" not in user.snapshot.values)
-    user.shown()
-    assert joystick._plug.cget("text") == "Not plugged in"
-    x, y = joystick.center_of(("button", 1))
-    joystick.chosen.set(4)
-    joystick._make()
-    user.click(canvas, x - 30, y, button=3)
-    user.until(lambda: user.snapshot.values["joysticks[4].buttons"][1])
-
-
 def test_the_field_and_what_robot_code_draws(user: User) -> None:
     field = user.window.field
     canvas, start = field.canvas, user.snapshot.scene.robot
@@ -453,58 +420,6 @@ def test_the_field_and_what_robot_code_draws(user: User) -> None:
     user.until(lambda: user.snapshot.scene.robot.angle == pytest.approx(math.pi / 2, abs=0.1))
     user.click(user.window.match.reset)
     user.until(lambda: user.snapshot.scene.robot == pytest.approx(start, abs=1e-6))
-
-
-def test_choices_before_a_match(user: User) -> None:
-    match = user.window.match
-    user.until(lambda: match._choosers)
-    user.shown()
-    (_, label, box) = next(iter(match._choosers.values()))
-    assert (label.cget("text"), box.get()) == ("Auto", "Nothing")
-    user.choose(box, 0)
-    user.until(lambda: user.snapshot.choosers[0].active == "Everything")
-    user.choose(match._alliance, 5)
-    user.until(lambda: user.snapshot.values["alliance_station"] == 6)
-    user.shown()
-    assert match._alliance.get() == "Blue 3"
-    user.display.do(*user._to(match._alliance, None, None), "click", 4, "mousemove_relative", "--", 5, 0)
-    user.shown()
-    assert match._alliance.get() == "Blue 3"  # the wheel chooses nothing
-    user.click(match._message, 10)
-    user.keys("type", "RRL")
-    user.press("Return")
-    user.until(lambda: user.snapshot.values["event.game_specific_message"] == "RRL")
-    assert "LRL" in match._message.cget("values")
-    assert not user.snapshot.emergency_stopped
-
-    # A list that is closed without a choice leaves nothing to the box: the arrows drive.
-    user.click(match._alliance)
-    user.until(lambda: int(match._alliance.tk.eval(f"winfo exists {match._alliance}.popdown.f.l")))
-    user.until(lambda: int(match._alliance.tk.eval(f"winfo ismapped {match._alliance}.popdown.f.l")))
-    user.simulation.set_game_message("LRL")  # while it is open, which takes the keys from what tkinter knows
-    user.until(lambda: match._message.get() == "LRL")
-    user.press("Escape")
-    user.until(lambda: user.window.root.focus_displayof() is user.window.field.canvas)
-
-    user.choose(user.window.drive.layout, 1)  # two joysticks
-    user.press("ctrl+e")
-    user.until(lambda: user.snapshot.enabled)
-    user.keys("keydown", "Up")
-    user.until(lambda: user.snapshot.values["joysticks[1].axes"][1] == -1)
-    user.keys("keyup", "Up")
-    user.until(lambda: user.snapshot.values["joysticks[1].axes"][1] == 0)
-
-
-def test_saving_the_recording(user: User, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    names = iter(["", str(tmp_path / "nowhere" / "run.jsonl"), str(tmp_path / "run.jsonl")])
-    monkeypatch.setattr("tkinter.filedialog.asksaveasfilename", lambda **_: next(names))
-    (tmp_path / "nowhere").write_text("a file, and no directory", encoding="utf-8")
-    user.click(user.window.time.save)
-    user.click(user.window.time.save)
-    user.until(lambda: "not saved" in user.window._note.cget("text"))
-    user.click(user.window.time.save)
-    user.until(lambda: "Saved" in user.window._note.cget("text"))
-    assert load_script(tmp_path / "run.jsonl").end_us > 0
 
 
 def test_a_robot_that_crashes_is_restarted(user: User) -> None:
@@ -567,65 +482,7 @@ def test_the_command(make_project: MakeProject, display: VirtualDisplay) -> None
     assert replayed.code == 0, replayed.output
 
 
-def seen_in(text: tk.Text) -> str:
-    """The lines that are to be seen."""
-    return str(text.get("@0,0", f"@0,{text.winfo_height()} lineend"))
-
-
-def test_the_console_follows_what_is_printed(user: User) -> None:
-    window, console = user.window, user.window.console
-    for number in range(100):
-        console.mark(f"line {number}{' and so on' * 30}")
-    window.root.update()
-    assert "line 99" in seen_in(console.text)
-    window.root.geometry("1000x660")  # the same words need more lines
-    user.until(lambda: window.root.winfo_width() == 1000)
-    console.mark("after another size")
-    window.root.update()
-    assert "after another size" in seen_in(console.text)
-    # Who reads something above stays there.
-
-    def scrolls_up() -> bool:
-        user.display.do(*user._to(console.text, 20, 20), "click", 4)  # again, if it came before the new layout
-        return not console._follows
-
-    user.until(scrolls_up)
-    seen = console.text.yview()[0]
-    console.mark("not seen")
-    window.root.update()
-    assert console.text.yview()[0] == pytest.approx(seen, abs=0.02)
-    # What is marked there can be taken along.
-    console.text.tag_add("sel", "1.0", "1.0 lineend")
-    user.press("ctrl+c")
-    user.until(lambda: console.text.clipboard_get() == console.text.get("1.0", "1.0 lineend"))
-
-
 # -- what cannot be shown ---------------------------------------------------------------------------------------------
-
-
-def with_image(files: Mapping[str, str], name: str) -> dict[str, str]:
-    return {**files, "sim/config.json": f'{{"pyfrc": {{"field": {{"image": "{name}"}}}}}}'}
-
-
-def test_a_picture_of_the_field(make_project: MakeProject, sit: Sit) -> None:
-    project: RobotProject = make_project(with_image(ROBOT, "field.ppm"))
-    # Left half red, right half blue; y downwards: the upper half is darker.
-    halves = [bytes([level, 0, 0]) * 8 + bytes([0, 0, level]) * 8 for level in (100, 200)]
-    (project.path / "sim/field.ppm").write_bytes(b"P6 16 8 255\n" + halves[0] * 4 + halves[1] * 4)
-    user = sit(project.path, SimOptions(paused=True))
-    user.shown()
-    field = user.window.field
-    picture, size = field._picture, field._simulation.field
-    assert picture is not None
-    left, top = (max(round(each), 0) for each in field.view.to_screen(0, 0))
-
-    def color(x: float, y: float) -> tuple[int, int, int]:
-        across, down = field.view.to_screen(x * size.width, y * size.height)
-        return picture.get(round(across) - left, round(down) - top)
-
-    assert [color(x, y) for x, y in ((0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75))] == [
-        (100, 0, 0), (0, 0, 100), (200, 0, 0), (0, 0, 200)
-    ]  # fmt: skip
 
 
 def test_the_command_offers_each_front_end() -> None:

@@ -85,10 +85,6 @@ def test_in_the_gate_each_is_a_failure(suite: Path) -> None:
     assert "3 failed, 1 passed, 1 error" in done.stdout
 
 
-def test_a_run_that_skips_nothing_has_no_such_line() -> None:
-    assert skips.summarize(Counter()) is None
-
-
 REASONS = Counter({"robots: needs root, sshd": 7, "windows: needs Xvfb, tkinter, xdotool": 5})
 
 
@@ -109,25 +105,6 @@ def test_the_one_command_is_of_the_systems_package_manager(
     line = skips.summarize(REASONS)
     assert line is not None
     assert line.rpartition(": ")[2] == command
-
-
-def test_with_all_programs_there_root_is_what_is_left() -> None:
-    line = skips.summarize(Counter({"robots: needs root": 7}))
-    assert line == "Not tested on this machine: robots (7 tests; needs root). To test this, too: sudo make test"
-
-
-def test_what_no_package_brings() -> None:
-    line = skips.summarize(Counter({"windows: needs Linux": 1}))
-    assert line is not None
-    assert line.endswith("To test this, too: run them on Linux (on Windows: in WSL)")
-
-
-def test_a_program_that_may_not_be_run_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "git").touch(0o644)
-    (tmp_path / "ip").touch(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path))
-    monkeypatch.setattr(skips, "_SYSTEM_PROGRAMS", ())
-    assert skips.missing_programs("git", "ip") == ["git"]
 
 
 def test_no_test_is_skipped_by_a_guard_of_its_own() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import errno
 import json
 import os
 import re
@@ -26,11 +25,9 @@ from started_commands import StartedCommand
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor.robot import RobotSearch
-from pyfrc_core.errors import PyfrcError
 from pyfrc_core.project import find_project
 from pyfrc_core.virtual_robot.console import ConsoleServer
 from pyfrc_core.virtual_robot.control import Control
-from pyfrc_core.virtual_robot.disk import RobotDisk
 from pyfrc_core.virtual_robot.supervisor import Supervisor
 
 pytestmark = pytest.mark.bare
@@ -283,26 +280,6 @@ def test_a_command_that_a_signal_ends_gives_the_exit_code_of_a_shell(project: Ro
     assert result.code == 128 + signal.SIGKILL, result.output
 
 
-def test_a_key_that_cannot_be_read_is_named(project: RobotProject, directory: Path) -> None:
-    directory.mkdir()
-    (directory / "host_key").write_bytes(bytes(range(128, 256)))
-    result = project.run("virtual-robot", "--directory", directory)
-    assert result.code == 1, result.output
-    assert result.first_error.startswith(f"{directory / 'host_key'}: this is not an SSH key: ")
-
-
-@pytest.mark.parametrize("write", ["pathlib.Path.mkdir", "pyfrc_core.virtual_robot.disk.write_whole"])
-def test_a_full_disk_is_named(write: str, directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object, **__: object) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(write, full)
-    with pytest.raises(PyfrcError) as caught, RobotDisk(directory, ROBORIO.layout) as disk:
-        disk.write_address("127.0.0.1:2222", 2222)
-    assert caught.value.message == "cannot store the virtual robot's files here: no space left on device"
-    assert caught.value.where == str(directory)
-
-
 def test_the_guides_example_deploys(project: RobotProject) -> None:
     guide = (Path(__file__).parents[1] / "docs/deploy.md").read_text("utf-8")
     (example,) = re.findall(r"^```sh\npyfrc (virtual-robot .*)\n```$", guide, re.MULTILINE)
@@ -365,34 +342,6 @@ def test_a_stopped_robot_leaves_no_child_processes(project: RobotProject, direct
             robot.command.send_signal(signal.SIGINT)
             robot.command.wait()
         assert all(ended(child) for child in children)
-
-
-def test_silent_connections_stop_no_deploy(project: RobotProject, directory: Path) -> None:
-    """To every port at which the robot listens: SSH, console, control, and its program's."""
-    missing = ["Linux"] if sys.platform != "linux" else []
-    require("that silent connections stop no deploy", missing)
-    with started(project, directory) as robot, contextlib.ExitStack() as silent:
-        deploy(robot, project)
-        program = robot.pid()
-        ports = listening_ports(parent_of(program)) | listening_ports(program)
-        assert len(ports) >= 3
-        for port in ports:
-            for _ in range(3):
-                silent.enter_context(socket.create_connection(("127.0.0.1", port), timeout=SECONDS))
-        project.write({"robot.py": ROBOT.replace("version 1", "version 2")})
-        assert "the program runs" in deploy(robot, project)
-        assert "release 2, running" in on(robot, project, "deploy-info")
-
-
-def parent_of(process: int) -> int:
-    return int(Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
-
-
-def listening_ports(process: int) -> set[int]:
-    """Return the TCP ports at which a process listens."""
-    links = {os.readlink(each) for each in Path(f"/proc/{process}/fd").iterdir()}  # noqa: PTH115
-    rows = [row.split() for row in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-    return {int(row[1].split(":")[1], 16) for row in rows if row[3] == "0A" and f"socket:[{row[9]}]" in links}
 
 
 def test_a_control_request_needs_the_key(project: RobotProject, directory: Path) -> None:

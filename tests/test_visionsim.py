@@ -42,48 +42,6 @@ def seconds(count: int, step: float = STEP) -> list[float]:
 # -- as documented -----------------------------------------------------------------------------------------------
 
 
-def test_the_documented_example_runs() -> None:
-    class Table:
-        def putNumberArray(self, key: str, value: Sequence[float]) -> None:
-            sent.append((key, value))
-
-    class Controller:
-        def get_position(self) -> Pose:
-            return (2.0, 1.0, 0.0)
-
-        def draw_vision_targets(self, targets: Any, seen: Any) -> None:
-            pass
-
-    class PhysicsEngine:
-        def __init__(self, physics_controller: Controller) -> None:
-            self.physics_controller = physics_controller
-            targets = [VisionSim.Target(10, 1, 90, 270)]
-            self.vision_sim = VisionSim(targets, 61.0, 1.5, 15, 15, physics_controller=physics_controller)
-            self.nt = Table()
-            self.camera_enabled = True
-
-        def update_sim(self, hal_data: Any, now: float, tm_diff: float) -> None:
-            x, y, angle = self.physics_controller.get_position()
-
-            if self.camera_enabled:
-                data = self.vision_sim.compute(now, x, y, angle)
-                if data is not None:
-                    self.nt.putNumberArray("/camera/target", data[0])
-            else:
-                self.vision_sim.dont_compute()
-
-    sent: list[Any] = []
-    engine = PhysicsEngine(Controller())
-    for now in seconds(5):
-        engine.update_sim({}, now, STEP)
-    assert sent == [("/camera/target", (1, 0.0, 0.0, 8.0))]
-    assert engine.vision_sim.get_immediate_distance() == 8.0
-    engine.camera_enabled = False
-    engine.update_sim({}, 0.1, STEP)
-    assert len(sent) == 1
-    assert VisionSim.Target is VisionSimTarget
-
-
 @pytest.mark.parametrize(
     ("start", "end", "visible_from"),
     [

@@ -5,19 +5,15 @@ from __future__ import annotations
 import io
 import os
 import signal
-import socket
 import threading
-import time
 from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
-from ports import refusing_port
 
-from pyfrc_core.deploy.agent import console, host, program, wire
+from pyfrc_core.deploy.agent import host, wire
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.compiling import Compiler
-from pyfrc_core.deploy.agent.console import ConsoleClient
 from pyfrc_core.deploy.agent.host import RealRobot
 from pyfrc_core.deploy.agent.program import Program
 from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
@@ -93,53 +89,12 @@ def test_a_pipe_that_the_laptop_reads() -> None:
     assert len(wire.parse_message(*read_frame(io.BytesIO(b"".join(received)).read))["text"]) == 1_000_000
 
 
-def test_a_pipe_that_the_laptop_does_not_read() -> None:
-    """A suspended laptop's connection stays: the agent would hold its lock for as long as the program prints."""
-    source, target = os.pipe()
-    pipe = OutputPipe(target, limit=0.01)
-    for _ in range(2):
-        with pytest.raises(ConnectionAbortedError):
-            Wire(io.BytesIO(), pipe).send(text=os.urandom(500_000).hex())
-    os.close(source)
-    os.close(target)
-
-
 # -- the console -------------------------------------------------------------------------------------------------------
 
 
 def message(kind: int, body: bytes) -> bytes:
     content = bytes([kind]) + body
     return len(content).to_bytes(2, "big") + content
-
-
-def text_message(text: str) -> bytes:
-    return message(console.TEXT, b"\0" * 6 + text.encode())
-
-
-def test_a_console_client() -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listener, refusing_port() as refusing:
-        ours = ConsoleClient((refusing, listener.getsockname()[1]))
-        assert ours.receive(0.0) == ""  # nothing listens
-        ours.connect()
-        robot, _ = listener.accept()
-        with robot:
-            robot.sendall(text_message("one") + text_message("two")[:-1])
-            heard = ""
-            while not heard:
-                heard = ours.receive(1.0)
-            assert heard == "one\n"
-            assert robot.recv(100) == console.KEEP_ALIVE
-            robot.sendall(text_message("two")[-1:])
-            while heard == "one\n":
-                heard += ours.receive(1.0)
-            assert heard == "one\ntwo\n"
-            assert ours.receive(0.0) == ""
-        while ours._socket is not None:
-            assert ours.receive(1.0) == ""
-        assert ours.receive(0.0) == ""
-        ours.connect()
-        ours.disconnect()
-        assert ours._socket is None
 
 
 # -- what is on the robot ----------------------------------------------------------------------------------------------
@@ -150,24 +105,6 @@ def test_the_image_of_a_roborio() -> None:
     assert ROBORIO.image_in({"image": "IMAGEVERSION=FRC_2026\n"}) == "FRC_2026"
     assert ROBORIO.image_in({"image": ""}) is None
     assert ROBORIO.image_in({"image": None}) is None
-
-
-def test_own_processes() -> None:
-    robot = RealRobot(RobotPaths(ROBORIO.layout))
-    assert robot.is_running(os.getpid())
-    assert not robot.is_running(2**22 + 1)
-    assert os.getpid() not in robot.processes()
-    state = program.process_state(robot, os.getpid())
-    assert state["cpu"] > 0
-    assert state["network_tables"] is False
-    assert program.process_state(robot, 2**22 + 1) == {}
-    age = host.age_of([os.getpid(), 2**22 + 1])
-    assert age is not None
-    assert 0 <= age < 86_400
-    assert host.age_of([]) is None
-    assert robot._is_jar(b"/home/lvuser/Robot.jar")
-    assert not robot._is_jar(b"/home/other/Robot.jar")
-    assert not robot._is_jar(b"/home/lvuser/Robot.jar.txt")
 
 
 # -- restarting --------------------------------------------------------------------------------------------------------
@@ -202,19 +139,6 @@ class World:
         return self._looks.pop(0) if len(self._looks) > 1 else self._looks[0]
 
 
-@pytest.mark.parametrize(("start", "options"), [(True, "-t -r"), (False, "-t")])
-def test_the_kill_script_is_run(start: bool, options: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    world = World(monkeypatch, [7], [8])
-    robot = robot_with_script(tmp_path, f'echo "$@" > {tmp_path}/options')
-    profile = tmp_path / "etc/profile.d/natinst-path.sh"
-    profile.parent.mkdir(parents=True)
-    profile.write_text(f"touch {tmp_path}/sourced\n")
-    assert robot.stop(start=start) is False
-    assert (tmp_path / "options").read_text() == f"{options}\n"
-    assert (tmp_path / "sourced").exists()
-    assert world.signals == []
-
-
 def test_a_program_that_survives_is_ended_by_signals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     world = World(monkeypatch, [7, 8], [7, 8, 9], [8], [9])
     assert robot_with_script(tmp_path, "").stop(start=True) is True
@@ -237,34 +161,6 @@ def test_what_cannot_be_stopped_is_reported(tmp_path: Path, monkeypatch: pytest.
     with pytest.raises(Refusal, match=r"it did not end within 2 s"):
         robot.stop(start=True, meanwhile=lambda: waits.append(1))
     assert waits
-
-
-def test_a_restart_is_watched_until_there_is_a_verdict(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    World(monkeypatch, [7], [7], [], [8])
-    ours = Program(robot_with_script(tmp_path, ""))
-    heard = iter(["", "WPILib version 2026\n", "********** Robot program startup complete **********\n"])
-
-    def receive(seconds: float) -> str:
-        time.sleep(seconds / 4)
-        return next(heard, "") if ours._monitor is None else ""  # it prints when it is watched
-
-    monkeypatch.setattr(ours._console, "receive", receive)
-    monkeypatch.setattr(RealRobot, "is_running", lambda robot, process: True)
-    monkeypatch.setattr(program, "_REPORT_SECONDS", 0.0)
-    ours.restart()
-    source, target = os.pipe()
-    answers = io.BytesIO()
-    with io.FileIO(source, "rb") as stream, io.FileIO(target, "wb"):
-        watched = ours.watch(Wire(stream, answers), 60, 60)
-    assert watched["verdict"] == "running"
-    assert (watched["heard"], watched["seen"]) == (True, True)
-    assert watched["age"] >= 0.6
-    answers.seek(0)
-    said = []
-    while answers.tell() < len(answers.getvalue()):
-        said.append(wire.parse_message(*read_frame(answers.read)))
-    assert "startup complete" in "".join(each.get("output", "") for each in said)
-    assert any("watching" in each for each in said)
 
 
 def test_a_watch_ends_when_the_laptop_wants_something_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

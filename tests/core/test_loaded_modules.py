@@ -62,20 +62,3 @@ def test_each_look_finds_what_is_new_and_leaves_out_what_is_gone(modules: dict[s
     assert names(loaded) == [name for name in expected if name not in ("m399", "m7")] + ["last"]
     modules["m7"] = module("again", "/robot/m7.py")
     assert "again" in names(loaded)
-
-
-def test_a_module_that_was_imported_again_is_the_new_one(modules: dict[str, ModuleType]) -> None:
-    modules["robot"] = module("robot", "/robot/robot.py")
-    loaded = LoadedModules()
-    loaded.look()
-    modules["robot"] = changed = module("robot", "/robot/robot.py")
-    assert loaded.look() == [changed]
-
-
-def test_what_is_no_module_is_left_out(modules: dict[str, object]) -> None:
-    modules["odd"] = modules["older"] = None
-    modules["robot"] = module("robot", "/robot/robot.py")
-    loaded = LoadedModules()
-    assert names(loaded) == ["robot"]
-    modules["robot"] = None
-    assert names(loaded) == []

@@ -1,7 +1,6 @@
 """The three rates, in numbers of calls."""
 
 import pytest
-from wpilib.simulation import DriverStationSim, EncoderSim, PWMSim
 
 
 def test_three_rates(control, robot):
@@ -43,22 +42,6 @@ def test_odometry_sums_what_the_encoder_counts(control, robot, hal_data):
     assert robot.metre_seconds == pytest.approx(2.25, abs=0.05)
 
 
-def test_odometry_integrates_over_time(control, robot, hal_data):
-    """A distance that stands still is summed up a hundred times a second."""
-    sums = {}
-
-    def on_step(tm):
-        hal_data["encoder"][0]["count"] = 1000
-        sums[round(tm, 2)] = robot.metre_seconds
-        return tm < 4
-
-    control.run_test(on_step)
-
-    # A metre for a second, give or take one sum of 10 ms.
-    assert sums[3.0] - sums[2.0] == pytest.approx(1.0, abs=0.0101)
-    assert sums[4.0] - sums[2.0] == pytest.approx(2.0, abs=0.0101)
-
-
 def test_controller_drives_to_the_target(control, hal_data):
     """Full speed while far away, half of the error's double near it, zero at it."""
     seen = {}
@@ -77,23 +60,3 @@ def test_controller_drives_to_the_target(control, hal_data):
     assert seen[1.0] == 1.0
     assert seen[1.5] == pytest.approx(0.5, abs=0.005)
     assert seen[2.5] == 0.0
-
-
-def test_controller_in_small_steps(control, robot):
-    """Today's style: the fast controller reacts within one packet."""
-    with control.run_robot():
-        encoder = EncoderSim(robot.encoder)
-        motor = PWMSim(0)
-
-        control.step_timing(seconds=1.0, autonomous=False, enabled=False)
-        assert motor.getSpeed() == 0.0
-        fast, odometry = robot.control_loops, robot.odometry_loops
-        seconds = control.step_timing(seconds=1.0, autonomous=False, enabled=True)
-        assert robot.control_loops - fast == pytest.approx(seconds * 200, abs=1)
-        assert robot.odometry_loops - odometry == pytest.approx(seconds * 100, abs=1)
-        assert motor.getSpeed() == 1.0
-
-        encoder.setCount(1250)
-        DriverStationSim.notifyNewData()
-        control.step_timing(seconds=0.02, autonomous=False, enabled=True)
-        assert motor.getSpeed() == pytest.approx(-0.5, abs=0.005)

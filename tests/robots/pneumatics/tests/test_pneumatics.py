@@ -1,7 +1,6 @@
 """What the sensors say to the robot, and what the robot says to its valves."""
 
 import pytest
-from wpilib.simulation import CTREPCMSim, DIOSim, REVPHSim
 
 OPEN_GRIPPER, SHIFT, BRAKE = 1, 2, 3
 
@@ -49,21 +48,6 @@ def test_both_modules_are_in_the_tree(control, hal_data):
     assert seen[3.5] == (True, False)
 
 
-def test_compressor(control, robot, hal_data):
-    """The compressor is under its module's control, and the robot sees what it does."""
-
-    def on_step(tm):
-        hal_data["compressor"]["on"] = tm >= 0.5
-        return tm < 1
-
-    control.set_operator_control(enabled=True)
-    control.run_test(on_step)
-
-    assert hal_data["compressor"]["initialized"]
-    assert hal_data["compressor"]["closed_loop_enabled"]
-    assert robot.compressor.isEnabled()
-
-
 def test_autonomous_lifts_to_half_a_metre(control, hal_data):
     """The lift climbs one count on each packet on which its motor turns."""
 
@@ -92,19 +76,3 @@ def test_analog_sensors(control, robot, hal_data):
 
     assert robot.wrist.get() == pytest.approx(135.0, abs=0.5)
     assert robot.gyro.getAngle() == pytest.approx(90.0)
-
-
-def test_valves_in_todays_style(control, robot):
-    """WPILib's own simulation classes show the same."""
-    with control.run_robot():
-        pcm, hub, switch = CTREPCMSim(0), REVPHSim(1), DIOSim(2)
-
-        control.step_timing(seconds=0.5, autonomous=True, enabled=True)
-        assert hub.getSolenoidOutput(0)
-        assert (pcm.getSolenoidOutput(0), pcm.getSolenoidOutput(1)) == (False, True)
-
-        switch.setValue(False)
-        control.step_timing(seconds=0.5, autonomous=True, enabled=True)
-        assert (pcm.getSolenoidOutput(0), pcm.getSolenoidOutput(1)) == (True, False)
-        assert robot.grips == 1
-        assert control.robot_is_alive

@@ -1,7 +1,5 @@
 """What the timed robot does in each mode, loop by loop."""
 
-import itertools
-
 import pytest
 from wpilib.simulation import DriverStationSim, PWMSim
 
@@ -34,16 +32,6 @@ def test_autonomous_drives_two_seconds_then_turns_one(control, hal_data):
     # To the left: the left side backward, the right side forward.
     assert seen.count((-0.5, -0.5)) == 50
     assert seen[-1] == (0.0, 0.0)
-
-
-@pytest.mark.parametrize(("message", "turn"), [("LRL", 0.5), ("RLR", -0.5), ("", 0.0)])
-def test_the_game_message_chooses_the_side(control, robot, message, turn):
-    """The field sends its message when autonomous starts."""
-    control.game_specific_message = message
-    control.set_autonomous(enabled=True)
-    control.run_test(lambda tm: tm < 1)
-
-    assert robot.turn == turn
 
 
 def test_stick_drives_the_motors_on_the_same_packet(control, hal_data):
@@ -90,24 +78,6 @@ def test_modes_follow_one_another(control, robot):
     assert list(dict.fromkeys(modes)) == ["disabled", "autonomous", "teleop"]
     assert (robot.disabled.entered, robot.autonomous.entered, robot.teleop.entered) == (2, 1, 1)
     assert (robot.autonomous.loops, robot.teleop.loops) == (50, 50)
-
-
-def test_time_follows_the_packets(control, fake_time):
-    """Robot time starts at zero and advances 20 ms a packet, exactly."""
-    fake_time.set_time_limit(20)
-    times = []
-
-    def on_step(tm):
-        assert tm == pytest.approx(fake_time.get())
-        times.append(tm)
-        return tm < 10
-
-    control.set_operator_control(enabled=True)
-    control.run_test(on_step)
-
-    assert times[-1] == pytest.approx(10.0)
-    steps = {round(later - earlier, 6) for earlier, later in itertools.pairwise(times)}
-    assert steps == {0.02}
 
 
 def test_enable_and_disable(control, robot):
