@@ -11,7 +11,7 @@ from .project_options import project_options
 from .robot_options import address_options, errors_shown, project_if_any, user_interface
 
 if TYPE_CHECKING:
-    from pyfrc_core.deploy.target_connection import RobotChoice
+    from pyfrc_core.deploy.team import RobotChoice
 
 
 @click.command("console", context_settings={"help_option_names": ["-h", "--help"]})

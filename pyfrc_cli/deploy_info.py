@@ -11,7 +11,7 @@ from .project_options import project_options
 from .robot_options import errors_shown, json_option, project_if_any, robot_options, user_interface
 
 if TYPE_CHECKING:
-    from pyfrc_core.deploy.target_connection import RobotChoice
+    from pyfrc_core.deploy.team import RobotChoice
 
 
 @click.command("deploy-info", context_settings={"help_option_names": ["-h", "--help"]})

@@ -16,7 +16,7 @@ from .verbosity import verbosity
 
 if TYPE_CHECKING:
     from pyfrc_core.deploy.progress import UserInterface
-    from pyfrc_core.deploy.target_connection import RobotChoice
+    from pyfrc_core.deploy.team import RobotChoice
     from pyfrc_core.project import Project
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -47,7 +47,7 @@ def robot_options(command: Function) -> Function:
         ssh_agent: bool,
         **others: object,
     ) -> Any:
-        from pyfrc_core.deploy.credentials import Credentials
+        from pyfrc_core.deploy.connection import Credentials
 
         choice = replace(
             choice,
@@ -67,7 +67,7 @@ def address_options(command: Function) -> Function:
     def with_address(*, robot: str | None, team: int | None, no_resolve: bool, **others: object) -> Any:
         if robot is not None and team is not None:
             raise click.UsageError("--robot and --team are mutually exclusive.")
-        from pyfrc_core.deploy.target_connection import RobotChoice
+        from pyfrc_core.deploy.team import RobotChoice
 
         return command(choice=RobotChoice(robot=robot, team=team, resolve=not no_resolve), **others)
 

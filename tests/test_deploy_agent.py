@@ -18,7 +18,7 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, Processes, directory_in_
 from pyfrc_core.deploy import agent
 from pyfrc_core.deploy.agent import console, wire
 from pyfrc_core.deploy.agent_client import DeployRequest, Watched
-from pyfrc_core.deploy.agent_package import agent_command, agent_package
+from pyfrc_core.deploy.agent_stream import agent_command, agent_package
 from pyfrc_core.deploy.errors import ConnectionFailedError, DeployError
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 

@@ -21,7 +21,7 @@ from at_terminal import run_at_terminal
 from roborio import Proxy, Roborio, require_roborio
 from skips import missing_programs, require
 
-from pyfrc_core.deploy.robot_setup import image_problem
+from pyfrc_core.deploy.robot_checks import image_problem
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 #: As the tool of today has it.

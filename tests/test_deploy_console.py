@@ -18,9 +18,9 @@ from roborio.fixtures import roborio  # noqa: F401 - `robot`
 from started_commands import StartedCommand
 
 import pyfrc_core.deploy.console
+from pyfrc_core.deploy.console import imitated_driver_station
 from pyfrc_core.deploy.discovery import Address
 from pyfrc_core.deploy.errors import NoConsoleError
-from pyfrc_core.deploy.imitated_driver_station import imitated_driver_station
 
 Follow = Callable[..., NoConsoleError]
 

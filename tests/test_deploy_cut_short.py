@@ -27,8 +27,8 @@ from pyfrc_core.deploy.manifest import Manifest
 from pyfrc_core.deploy.progress import DeployProgress, Phase, UserInterface
 from pyfrc_core.deploy.recovery_hints import explain_interruption
 from pyfrc_core.deploy.session import DeployOptions
-from pyfrc_core.deploy.target_connection import RobotChoice
 from pyfrc_core.deploy.targets.roborio import ROBORIO
+from pyfrc_core.deploy.team import RobotChoice
 from pyfrc_core.project import find_project
 
 REQUEST = DeployRequest("robot.py", {})

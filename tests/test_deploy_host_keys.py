@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import base64
-import socket
 import subprocess
 from pathlib import Path
 
 import pytest
 from skips import missing_programs, require
 
-from pyfrc_core.deploy.discovery import Address, FoundRobot, addresses_of, team_of
+from pyfrc_core.deploy.discovery import Address, addresses_of, team_of
 from pyfrc_core.deploy.errors import HostKeyError, KeyFileError
 from pyfrc_core.deploy.host_keys import KNOWN_HOSTS, HostKey, HostKeys, RobotKeys
 from pyfrc_core.deploy.target_connection import load_robot_keys
 from pyfrc_core.deploy.targets.roborio import ROBORIO
-from pyfrc_core.deploy.team import RobotTarget
+from pyfrc_core.deploy.team import find_target
 from pyfrc_core.errors import UsageError
 from pyfrc_core.project import Project
 
@@ -140,8 +139,7 @@ def test_another_team_s_robot_named_by_robot_in_a_team_s_project(
     HostKeys(tmp_path).of_robot(Address("10.99.99.2"), ROBORIO).check(THEIRS)
     if own_is_pinned:
         at(tmp_path).check(ONE)
-    with socket.socket() as unused:
-        keys = load_robot_keys(project, RobotTarget(robot=str(named)), FoundRobot(named, "by the command", unused))
+    keys = load_robot_keys(find_target(project, robot=str(named)), named)
     assert "this key is pinned for 10.99.99.2" in refused(keys, THEIRS)
     assert (keys.check(ONE).new_for is None) is (own_is_pinned and named == USB)
     if named == USB:
@@ -155,10 +153,7 @@ def test_another_team_s_address_named_by_robot_in_a_team_s_project(tmp_path: Pat
     (tmp_path / "pyproject.toml").write_text(f"[tool.pyfrc]\nteam = {TEAM}\n")
     theirs = Address("10.99.99.2")
     HostKeys(tmp_path).of_robot(theirs, ROBORIO).check(THEIRS)
-    with socket.socket() as unused:
-        keys = load_robot_keys(
-            Project(tmp_path / "robot.py"), RobotTarget(robot=str(theirs)), FoundRobot(theirs, "named", unused)
-        )
+    keys = load_robot_keys(find_target(Project(tmp_path / "robot.py"), robot=str(theirs)), theirs)
     assert keys.check(THEIRS).new_for is None
     refused(keys, UNKNOWN)
 

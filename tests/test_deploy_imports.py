@@ -14,8 +14,7 @@ from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 from pyfrc_core.deploy.agent.imports import installed_packages, is_there
 from pyfrc_core.deploy.errors import RefusedError
 from pyfrc_core.deploy.facts import DeployRequest
-from pyfrc_core.deploy.import_statements import imports_in
-from pyfrc_core.deploy.program_imports import ProgramImports
+from pyfrc_core.deploy.program_imports import ProgramImports, imports_in
 
 # --- the statements of one file
 

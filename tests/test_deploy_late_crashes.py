@@ -28,8 +28,8 @@ from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.progress import DeployProgress, UserInterface
 from pyfrc_core.deploy.session import DeployOptions
-from pyfrc_core.deploy.target_connection import RobotChoice
 from pyfrc_core.deploy.targets.roborio import ROBORIO
+from pyfrc_core.deploy.team import RobotChoice
 from pyfrc_core.project import find_project
 
 LATE = """

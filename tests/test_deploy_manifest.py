@@ -6,6 +6,7 @@ import hashlib
 import os
 import sys
 import tracemalloc
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pyfrc_core.deploy.errors import RefusedError
-from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded, private_files
+from pyfrc_core.deploy.manifest import LARGE, build_manifest, is_excluded
 from pyfrc_core.passes.contents import read_contents
 from pyfrc_core.project import Project
 
@@ -30,6 +31,10 @@ def make(root: Path, *names: str, content: bytes = b"x") -> None:
 
 def paths(root: Path, *exclude: str) -> list[str]:
     return [entry.path for entry in build_manifest(root, exclude).entries]
+
+
+def private_files(root: Path, exclude: Sequence[str] = (), meant: Sequence[str] = ()) -> dict[str, str]:
+    return dict(build_manifest(root, exclude, meant=meant).private)
 
 
 def test_large_projects_are_deployed_by_size_and_content(tmp_path: Path) -> None:

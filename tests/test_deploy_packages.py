@@ -18,8 +18,8 @@ from roborio.local import Agents, LocalRobot, project_of
 
 from pyfrc_core.config.robotpy import RobotPackages, load_robot_packages
 from pyfrc_core.deploy.facts import RobotFacts
+from pyfrc_core.deploy.robot_checks import VIRTUAL_IMAGE
 from pyfrc_core.deploy.robot_packages import ImportSearch, PackageProblem, unfit_packages
-from pyfrc_core.deploy.robot_setup import VIRTUAL_IMAGE
 from pyfrc_core.errors import SettingsError
 
 GUIDE = (Path(__file__).parents[1] / "docs/deploy.md").read_text("utf-8")

@@ -50,11 +50,13 @@ def test_places_count_in_their_order(first: int, target_of) -> None:
 
 
 def test_the_command_counts_most(target_of) -> None:
-    assert target_of(PLACES, team=7, ask=never) == RobotTarget(7)
+    target = target_of(PLACES, team=7, ask=never)
+    assert (target.team, target.robot, target.project_team) == (7, None, None)
 
 
 def test_a_robots_address_counts_most_of_all(target_of) -> None:
-    assert target_of(PLACES, team=7, robot="10.0.0.2:2222") == RobotTarget(robot="10.0.0.2:2222")
+    target = target_of(PLACES, team=7, robot="10.0.0.2:2222")
+    assert (target.team, target.robot, target.project_team) == (None, "10.0.0.2:2222", 1)
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ from pyfrc_core.deploy import session, starting
 from pyfrc_core.deploy.progress import DeployProgress, UserInterface
 from pyfrc_core.deploy.robot_packages import packages_by_module
 from pyfrc_core.deploy.session import DeployOptions
-from pyfrc_core.deploy.target_connection import RobotChoice
+from pyfrc_core.deploy.team import RobotChoice
 from pyfrc_core.project import find_project
 from pyfrc_core.scaffold import TEMPLATES
 

@@ -309,7 +309,7 @@ def main() -> None:
     from pyfrc_cli import main as commands
     from pyfrc_cli import start
     from pyfrc_core.config import settings
-    from pyfrc_core.deploy.agent_package import agent_package
+    from pyfrc_core.deploy.agent_stream import agent_package
     from pyfrc_core.project.loaded_modules import loaded_modules
 
     for module, _ in commands.COMMANDS.values():

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 from ..file_hash import open_file
 from . import recovery_hints
 from .agent import start_monitor, wire
-from .agent_package import agent_command, agent_package
-from .agent_stream import AgentStream, Channel, TimeLimits
+from .agent_stream import AgentStream, Channel, TimeLimits, agent_command, agent_package
 from .errors import ConnectionFailedError, DeployError, OtherComputerError
 from .facts import Deployed, DeployRequest, Plan, RobotFacts, RolledBack, StartState, Watched
 from .responses import Fields, ResponseError

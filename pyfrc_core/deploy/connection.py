@@ -6,19 +6,84 @@ import contextlib
 import logging
 import socket
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from .credentials import NONE_OFFERED, Credentials
 from .discovery import CONNECT_SECONDS, Address
-from .errors import ConnectionFailedError, DeployError
+from .errors import ConnectionFailedError, DeployError, RefusedError
 from .host_keys import HostKey, Recognized, RobotKeys
 from .targets import AdministratorTask, Controller
 
 if TYPE_CHECKING:
     import paramiko
+
+
+#: SSH servers usually disconnect after more keys.
+_MAX_KEYS = 5
+
+
+@dataclass(frozen=True)
+class Credentials:
+    """The keys to offer.
+
+    :param identity: a file with a private key without a passphrase
+    :param ssh_agent: whether to offer the keys of the SSH agent
+    """
+
+    identity: Path | None = None
+    ssh_agent: bool = False
+
+    def load(self) -> Iterator[paramiko.PKey]:
+        """Yield the keys to offer, the identity first.
+
+        :raises RefusedError: if the file has no readable key
+        """
+        if self.identity is not None:
+            yield _key_in(self.identity)
+        if self.ssh_agent:
+            import paramiko
+
+            agent = paramiko.Agent()
+            try:
+                yield from agent.get_keys()[:_MAX_KEYS]
+            finally:
+                agent.close()
+
+    def offered(self, count: int) -> str:
+        """Return a description of the offered keys, for an error message."""
+        if count == 0:
+            return "there is none in your SSH agent" if self.ssh_agent else "none was offered"
+        sources = [str(self.identity)] if self.identity is not None else []
+        if of_agent := count - len(sources):
+            sources.append(f"{of_agent} of your SSH agent's keys")
+        return " and ".join(sources)
+
+
+NONE_OFFERED = Credentials()
+
+
+def _key_in(file: Path) -> paramiko.PKey:
+    import paramiko
+
+    try:
+        return paramiko.PKey.from_path(file)
+    except (paramiko.PasswordRequiredException, TypeError):  # cryptography raises TypeError for this
+        raise RefusedError(
+            "this key has a passphrase",
+            where=file,
+            remedy="Add it to your SSH agent: ssh-add FILE, and use --ssh-agent.",
+        ) from None
+    except OSError as error:
+        raise RefusedError(f"this key cannot be read: {error.strerror or error}", where=file) from None
+    except Exception as error:  # invalid content causes many kinds of errors
+        raise RefusedError(
+            f"this is not a private key: {error}", where=file, remedy="Use the file without .pub at its end."
+        ) from None
+
 
 #: The first part of a virtual robot's SSH greeting.
 VIRTUAL_ROBOT_GREETING = "SSH-2.0-pyfrc_virtual_robot"

@@ -6,17 +6,139 @@ import contextlib
 import io
 import re
 import socket
+import struct
 import sys
+import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 
 from ..terminal_text import VisibleStream, visible
-from .agent.console import KEEP_ALIVE, PORTS
+from .agent.console import ERROR, KEEP_ALIVE, PORTS, TEXT, split_frames
 from .connection import VIRTUAL_ROBOT_GREETING
-from .console_frames import ConsoleFrames, ConsoleProtocolError
 from .discovery import CONNECT_SECONDS, Address
 from .errors import NoConsoleError
-from .imitated_driver_station import TCP_PORT, imitated_driver_station
+
+#: The robot's ports for a Driver Station: its TCP connection and its control packets.
+TCP_PORT, UDP_PORT = 1740, 1110
+_PACKET_SECONDS = 0.02
+#: Version, control (0: disabled, teleoperated, no emergency stop), request and alliance station.
+_DISABLED = bytes([1, 0, 0, 0])
+
+
+@contextmanager
+def imitated_driver_station(host: str, tcp_port: int = TCP_PORT, udp_port: int = UDP_PORT) -> Iterator[None]:
+    """Imitate a Driver Station that keeps the robot disabled, until the end of the ``with`` block.
+
+    :raises OSError: if the robot cannot be reached
+    """
+    ended = threading.Event()
+    with socket.create_connection((host, tcp_port), timeout=CONNECT_SECONDS) as tcp:
+        tcp.setblocking(False)
+        with socket.socket(tcp.family, socket.SOCK_DGRAM) as udp:
+            robot = (tcp.getpeername()[0], udp_port, *tcp.getpeername()[2:])
+            thread = threading.Thread(target=_send_packets, args=(tcp, udp, robot, ended), daemon=True)
+            thread.start()
+            try:
+                yield
+            finally:
+                ended.set()
+                thread.join()
+
+
+def _send_packets(tcp: socket.socket, udp: socket.socket, robot: tuple[str | int, ...], ended: threading.Event) -> None:
+    number = 0
+    while not ended.is_set():
+        number = (number + 1) & 0xFFFF
+        with suppress(OSError):  # temporary; the console's connection shows whether the link is lost
+            udp.sendto(number.to_bytes(2, "little") + _DISABLED, robot)
+        with suppress(OSError):  # discard the robot's data, so that its send buffer does not fill up
+            tcp.recv(1 << 16)
+        ended.wait(_PACKET_SECONDS)
+
+
+#: Kinds of messages are below this number. Kinds other than text and error are skipped.
+_KINDS = 32
+#: The maximum number of consecutive empty frames, which keep a connection alive. A robot sends few of them.
+MAX_EMPTY_FRAMES = 1000
+
+_TEXT_HEAD = struct.Struct(">BfH")  # kind, time in seconds, number
+_ERROR_HEAD = struct.Struct(">BfHHiB")  # kind, time in seconds, number, occurrences, error code, flags
+_LENGTH = struct.Struct(">H")
+
+
+class ConsoleProtocolError(ValueError):
+    """The data is not from a robot's console. The message has the reason."""
+
+
+class ConsoleFrames:
+    """The frames of one connection. At most one incomplete frame (64 KiB) is buffered."""
+
+    def __init__(self) -> None:
+        self._unread = b""
+        self._empty = 0
+
+    def lines(self, received: bytes) -> Iterator[str]:
+        """Yield the line of each complete frame, without a newline.
+
+        :param received: the next bytes
+        :raises ConsoleProtocolError: if the data is not from a robot's console
+        """
+        frames, self._unread = split_frames(self._unread + received)
+        for frame in frames:
+            if frame:
+                self._empty = 0
+                line = _line(frame)
+                if line is not None:
+                    yield line
+            else:
+                self._empty += 1
+                if self._empty > MAX_EMPTY_FRAMES:
+                    raise ConsoleProtocolError("it sends too many empty frames")
+        if len(self._unread) > 2:
+            _check_kind(self._unread[2])  # checked early, since the rest of the frame may never arrive
+
+    def reset_count(self) -> None:
+        """Reset the count of empty frames, after some time has passed."""
+        self._empty = 0
+
+
+def _check_kind(kind: int) -> None:
+    if kind >= _KINDS:
+        raise ConsoleProtocolError(f"it sends messages of kind {kind}, which does not exist")
+
+
+def _line(frame: bytes) -> str | None:
+    kind = frame[0]
+    _check_kind(kind)
+    if kind == TEXT:
+        if len(frame) < _TEXT_HEAD.size:
+            raise ConsoleProtocolError(f"it sends a text message of {len(frame)} bytes, which is too short")
+        _, seconds, _ = _TEXT_HEAD.unpack_from(frame)
+        return f"[{seconds:.2f}] {_decoded(frame[_TEXT_HEAD.size :])}"
+    if kind == ERROR:
+        if len(frame) < _ERROR_HEAD.size:
+            raise ConsoleProtocolError(f"it sends an error message of {len(frame)} bytes, which is too short")
+        _, seconds, _, _, code, _ = _ERROR_HEAD.unpack_from(frame)
+        details, location, stack = _texts(frame, 3)
+        return f"[{seconds:.2f}] {code} {details} {location} {stack}"
+    return None
+
+
+def _texts(frame: bytes, count: int) -> list[str]:
+    texts, position = [], _ERROR_HEAD.size
+    for _ in range(count):
+        start = position + _LENGTH.size
+        position = start + _LENGTH.unpack_from(frame, position)[0] if start <= len(frame) else start
+        if position > len(frame):
+            raise ConsoleProtocolError("it sends an error message with texts longer than the message")
+        texts.append(_decoded(frame[start:position]))
+    return texts
+
+
+def _decoded(text: bytes) -> str:
+    return text.decode(errors="replace")
+
 
 _SECONDS_BETWEEN_TRIES = 1.0
 _KEEP_ALIVE_SECONDS = 2.0

@@ -1,25 +1,125 @@
-"""Checks on this computer before a deploy: the tests, and whether the program can be imported."""
+"""The program to deploy, checked on this computer: its files, its tests, and whether it can be imported."""
 
 from __future__ import annotations
 
+import getpass
+import socket
+import subprocess
 import tempfile
 import threading
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from datetime import datetime
+from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
+from ..config.robotpy import RobotPackages, load_robot_packages
 from ..errors import PyfrcError, RobotCodeError
 from ..processes import spawn
 from ..processes.call import run_in_subprocess
 from ..project import MAIN_FILE, Project
+from ..wording import counted
 from .errors import RefusedError
-from .progress import DeployProgress, Questions
+from .manifest import Manifest, ascii_path, build_manifest, listed, listed_paths
+from .progress import UserInterface, ask_to_continue
+from .robot_packages import ImportSearch
+from .team import RobotChoice
 
 if TYPE_CHECKING:
     from ..processes.crash_report import CrashLog
-    from .manifest import Manifest
 
 
-def refuse_other_main_files(project: Project, nonstandard: bool) -> None:
+@dataclass(frozen=True)
+class DeployOptions:
+    """The options of a deploy.
+
+    :param choice: the robot to deploy to
+    :param builtin: run the ready-made tests if the project has none
+    :param skip_tests: run no tests
+    :param large: also upload files over 250,000 bytes
+    :param check_versions: refuse robots with another wpilib, without required packages, or with an old image
+    :param nonstandard: allow a main file with another name than robot.py
+    :param debug: start the program with debugging enabled
+    :param in_place: overwrite the running program's files, delete nothing, do not restart
+    :param dry_run: only show what would be done
+    :param auto_rollback: roll back if the new program ends during the watch
+    """
+
+    choice: RobotChoice = field(default_factory=RobotChoice)
+    builtin: bool = False
+    skip_tests: bool = False
+    large: bool = False
+    check_versions: bool = True
+    nonstandard: bool = False
+    debug: bool = False
+    in_place: bool = False
+    dry_run: bool = False
+    auto_rollback: bool = False
+
+
+@dataclass(frozen=True)
+class Program:
+    """A program to deploy.
+
+    :param manifest: its files
+    :param main: the name of its main file
+    :param deploy_json: the content of ``deploy.json`` on the robot
+    :param packages: what it requires on the robot
+    :param imports: what it imports
+    :param importing: the check that it can be imported; None if its tests run
+    """
+
+    manifest: Manifest
+    main: str
+    deploy_json: Mapping[str, str]
+    packages: RobotPackages
+    imports: ImportSearch
+    importing: ImportCheck | None
+
+
+def prepare(project: Project, options: DeployOptions, talk: UserInterface) -> Program:
+    """Check the project, and return the program to deploy.
+
+    :raises RefusedError: if it must not be deployed
+    """
+    progress, settings = talk.progress, project.settings.deploy
+    _refuse_other_main_files(project, options.nonstandard)
+
+    def read() -> Manifest:
+        return build_manifest(project.root, settings.exclude, options.large, settings.private)
+
+    manifest, importing = read(), None
+    if manifest.private:
+        _ask_about_private_files(manifest.private, options, talk)
+    if not options.dry_run:
+        if options.skip_tests or (project.find_tests() is None and not options.builtin):
+            if not options.skip_tests:
+                progress.note("this project has no tests; the ready-made ones run with --builtin")
+            importing = ImportCheck(project)
+        elif (since := _passed_already(project, options.builtin)) is not None:
+            with progress.phase("tests") as phase:
+                phase.detail = f"passed at {since}; nothing has changed since"
+        else:
+            passed, before = _run_tests(project, options.builtin, talk), manifest
+            manifest = read()
+            if passed:
+                _refuse_untested(before, manifest, talk)
+    with progress.phase("files") as phase:
+        phase.detail = f"{counted(len(manifest.entries), 'file')}, {size_text(manifest.total_bytes)}"
+        main = project.main_file.name
+        imports = ImportSearch(manifest, project.root, main)
+        packages = load_robot_packages(project.pyproject)
+        return Program(manifest, main, _deploy_json(project.root), packages, imports, importing)
+
+
+def size_text(count: int) -> str:
+    """Return a number of bytes with its unit."""
+    if count < 10_000:
+        return f"{count} bytes"
+    return f"{count / 1000:.0f} kB" if count < 10_000_000 else f"{count / 1e6:.1f} MB"
+
+
+def _refuse_other_main_files(project: Project, nonstandard: bool) -> None:
     """Check the name of the main file.
 
     :param nonstandard: allow another name than robot.py
@@ -35,11 +135,10 @@ def refuse_other_main_files(project: Project, nonstandard: bool) -> None:
         )
 
 
-def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = False) -> bool:
+def _run_tests(project: Project, builtin: bool, talk: UserInterface) -> bool:
     """Run the project's tests with `pyfrc test`, and return whether all passed.
 
-    :param output: a stream with a file descriptor, for their output
-    :param quiet: print the output only if a test fails
+    :raises RefusedError: if they failed, unless the user deploys nevertheless
     """
     if project.settings_file is not None:
         which = ["--project", str(project.settings_file.parent)]
@@ -47,6 +146,22 @@ def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = Fa
         which = ["--main", str(project.main_file)]
     which += [f"--robot-class={project.class_name}"] if project.class_name else []
     command = ["-m", "pyfrc", "test", *which, *(["--builtin"] if builtin else [])]
+    with talk.progress.phase("tests", own_output=True) as phase:
+        passed = _run(command, talk.progress.child_output, talk.progress.quiet)
+        phase.detail = "passed" if passed else "failed"
+    if not project.main_file.is_file():
+        raise RefusedError("not deployed: it was removed while the tests ran", where=project.main_file)
+    if not passed:
+        ask_to_continue("the tests failed", talk.ask, "Correct the failures, or deploy without tests: --skip-tests")
+    return passed
+
+
+def _run(command: list[str], output: IO[str], quiet: bool) -> bool:
+    """Run Python, and return whether it succeeded.
+
+    :param output: a stream with a file descriptor, for its output
+    :param quiet: print the output only if it fails
+    """
     output.flush()
     if not quiet:
         return spawn.run_python(command, output) == 0
@@ -58,7 +173,17 @@ def run_tests(project: Project, builtin: bool, output: IO[str], quiet: bool = Fa
         return passed
 
 
-def passed_already(project: Project, builtin: bool) -> str | None:
+def _ask_about_private_files(private: Mapping[str, str], options: DeployOptions, talk: UserInterface) -> None:
+    what = "files would be uploaded that seem to be private: "
+    what += listed([f"{ascii_path(path)} ({why})" for path, why in private.items()])
+    if options.dry_run:
+        talk.progress.warning(what)
+        return
+    remedy = "Under [tool.pyfrc.deploy] in pyproject.toml, leave them out with exclude = [...], or upload them with "
+    ask_to_continue(what, talk.ask, f"{remedy}private = [...].")
+
+
+def _passed_already(project: Project, builtin: bool) -> str | None:
     """Return when the project's tests passed, if nothing that they read has changed since, such as ``16:40``."""
     from ..passes.memory import Passes
 
@@ -68,7 +193,7 @@ def passed_already(project: Project, builtin: bool) -> str | None:
     return f"{since:%H:%M}" if since.date() == datetime.now().astimezone().date() else f"{since:%Y-%m-%d %H:%M}"
 
 
-def refuse_untested(tested: Manifest, manifest: Manifest, progress: DeployProgress) -> None:
+def _refuse_untested(tested: Manifest, manifest: Manifest, talk: UserInterface) -> None:
     """Check that the files to deploy are those that the tests have run with.
 
     A changed source is refused: it was saved while the tests ran. So is a new one, which robots may import from a
@@ -80,8 +205,6 @@ def refuse_untested(tested: Manifest, manifest: Manifest, progress: DeployProgre
     :param manifest: the files to deploy
     :raises RefusedError: with the changed sources
     """
-    from .manifest import listed_paths
-
     before, now = ({each.path: each.sha256 for each in files.entries} for files in (tested, manifest))
     changed = sorted(path for path in before.keys() | now.keys() if before.get(path) != now.get(path))
     sources = [path for path in changed if path.endswith(".py")]
@@ -92,7 +215,7 @@ def refuse_untested(tested: Manifest, manifest: Manifest, progress: DeployProgre
             "[tool.pyfrc.deploy] in pyproject.toml.",
         )
     if others := [path for path in changed if path in before]:
-        progress.warning(f"files have changed since the tests began: {listed_paths(others)}")
+        talk.progress.warning(f"files have changed since the tests began: {listed_paths(others)}")
 
 
 class ImportCheck:
@@ -104,10 +227,15 @@ class ImportCheck:
         self._thread = threading.Thread(target=self._run)
         self._thread.start()
 
-    def result(self) -> PyfrcError | None:
-        """Wait for the import. Return its error, or None."""
+    def refuse_failure(self, talk: UserInterface) -> None:
+        """Wait for the import.
+
+        :raises RefusedError: if it failed, unless the user deploys nevertheless
+        """
         self._thread.join()
-        return self._error
+        if self._error is not None:
+            failure = f"the robot program cannot be imported: {self._error}"
+            ask_to_continue(failure, talk.ask, "On the robot, it would end immediately.", self._error)
 
     def _run(self) -> None:
         try:
@@ -124,13 +252,48 @@ def _load(project: Project, log: CrashLog) -> None:
     load_robot(project)
 
 
-def ask_to_continue(failure: str, ask: Questions | None, remedy: str, error: PyfrcError | None = None) -> None:
-    """Ask the user whether to deploy in spite of a failure.
+_GIT_SECONDS = 5.0
 
-    :param ask: None if the user cannot be asked
-    :raises RefusedError: if the user says no or cannot be asked
+
+def _deploy_json(root: Path) -> dict[str, str]:
+    """Return the record, with the same keys as other tools. The git keys exist only in a git checkout.
+
+    :param root: the code's directory
     """
-    if ask is None:
-        raise RefusedError(f"not deployed: {failure}", remedy=remedy) from error
-    if not ask.yes(f"{failure[:1].upper()}{failure[1:]}. Deploy anyway?"):
-        raise RefusedError(f"not deployed: {failure}") from error
+    record = {
+        "deploy-host": socket.gethostname(),
+        "deploy-user": _user(),
+        "deploy-date": datetime.now().isoformat(timespec="seconds"),
+        "code-path": str(root),
+    }
+    commit = _git(root, "rev-parse", "HEAD")
+    if commit:
+        record["git-hash"] = commit
+        # Ends in "-dirty" if there are uncommitted changes.
+        record["git-desc"] = _git(root, "describe", "--dirty=-dirty", "--always") or commit
+        record["git-branch"] = _git(root, "rev-parse", "--abbrev-ref", "HEAD") or "HEAD"
+    return record
+
+
+def _user() -> str:
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):
+        return "unknown"
+
+
+def _git(root: Path, *arguments: str) -> str | None:
+    """Return the output of git, or None without git, a checkout or a commit."""
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(root), *arguments],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=_GIT_SECONDS,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip()

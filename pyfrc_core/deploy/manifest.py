@@ -1,19 +1,115 @@
-"""The project's files to deploy, with their sizes and hashes."""
+"""The project's files to deploy, with their sizes and hashes; those that seem private, and those that are excluded."""
 
 from __future__ import annotations
 
 import os
+import re
 import stat
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
+from typing import NamedTuple
 
 from ..file_hash import hash_file
 from ..project.environments import is_environment
 from .errors import RefusedError
-from .patterns import matches
-from .private_files import IgnoredSecrets
+
+
+def matches(path: str, pattern: str) -> bool:
+    """Return whether a path (relative, with forward slashes) matches a pattern.
+
+    A pattern without a slash matches the name of a file or directory at any depth. A pattern with a slash matches the
+    whole path; ``**`` matches any number of directories.
+    """
+    parts, wanted = path.split("/"), pattern.strip("/").split("/")
+    if "/" in pattern.rstrip("/"):
+        return _parts_fit(parts, wanted)
+    return len(wanted) == 1 and fnmatchcase(parts[-1], wanted[0])
+
+
+def _parts_fit(parts: Sequence[str], wanted: Sequence[str]) -> bool:
+    if not wanted:
+        return not parts
+    if wanted[0] == "**":
+        return any(_parts_fit(parts[skipped:], wanted[1:]) for skipped in range(len(parts) + 1))
+    return bool(parts) and fnmatchcase(parts[0], wanted[0]) and _parts_fit(parts[1:], wanted[1:])
+
+
+_SECRET = re.compile(
+    r"secret|passw(or)?d|credential|token|private|api[_ -]?key|[_ -]keys?\b|id_(rsa|ed25519)"
+    r"|\.(env|key|pem|p12|pfx|jks|kdbx)\b",
+    re.IGNORECASE,
+)
+
+
+class _Rule(NamedTuple):
+    """One line of a ``.gitignore``.
+
+    :param directory: the directory of the file
+    :param ignores:   whether it ignores files, or takes them back (``!``)
+    :param is_secret: whether it, or the comment above it, names secrets
+    """
+
+    directory: Path
+    pattern: str
+    ignores: bool
+    is_secret: bool
+
+
+class IgnoredSecrets:
+    """The rules of the ``.gitignore`` files that apply to a project's directory and below it.
+
+    A file is named as a secret if git ignores it, and its own name, the line that ignores it, or the comment above that
+    line has a word such as "secret", "token" or "password".
+
+    :param root: the project's directory
+    """
+
+    def __init__(self, root: Path) -> None:
+        self._rules: list[_Rule] = []
+        repository = next((each for each in (root, *root.parents) if (each / ".git").exists()), root)
+        above = [each for each in (root, *root.parents) if each.is_relative_to(repository)]
+        for each in reversed(above):
+            self.add(each)
+
+    def add(self, directory: Path) -> None:
+        """Add the rules of a directory's ``.gitignore``, if it has one. Those of its parent must have been added."""
+        file = directory / ".gitignore"
+        if file.is_file():
+            self._rules += _rules(directory, file.read_text(encoding="utf-8", errors="replace").splitlines())
+
+    def include(self, file: Path) -> bool:
+        """Return whether a file is named as a secret."""
+        is_named = _SECRET.search(file.name) is not None
+        if not any(_fits(rule, file) for rule in self._rules if rule.ignores and (is_named or rule.is_secret)):
+            return False
+        # The last rule that fits counts.
+        return next((rule.ignores for rule in reversed(self._rules) if _fits(rule, file)), False)
+
+
+def _rules(directory: Path, lines: Iterable[str]) -> Iterator[_Rule]:
+    heading = ""
+    for line in lines:
+        text = line.strip()
+        if not text:
+            heading = ""
+        elif text.startswith("#"):
+            heading = text
+        else:
+            pattern = text.removeprefix("!").removeprefix("\\")
+            yield _Rule(directory, pattern, not text.startswith("!"), bool(_SECRET.search(f"{heading}\n{pattern}")))
+
+
+def _fits(rule: _Rule, file: Path) -> bool:
+    """Return whether a rule fits a file, or a directory that contains it."""
+    if not file.is_relative_to(rule.directory):
+        return False
+    parts = file.relative_to(rule.directory).parts
+    paths = ["/".join(parts[:count]) for count in range(1, len(parts) + 1)]
+    return any(matches(path, rule.pattern) for path in (paths[:-1] if rule.pattern.endswith("/") else paths))
+
 
 #: Other tools exclude these as well.
 _DIRECTORIES_LEFT_OUT = {"__pycache__", "venv", "ctre_sim"}
@@ -46,29 +142,36 @@ class Entry:
 
 @dataclass(frozen=True)
 class Manifest:
-    """All files of a program, sorted by path."""
+    """All files of a program, sorted by path.
+
+    :param private: the paths that are probably not meant to be uploaded, each with the reason
+    """
 
     entries: tuple[Entry, ...]
+    private: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def total_bytes(self) -> int:
         return sum(entry.size for entry in self.entries)
 
 
-def build_manifest(root: Path, exclude: Sequence[str] = (), large: bool = False) -> Manifest:
+def build_manifest(root: Path, exclude: Sequence[str] = (), large: bool = False, meant: Sequence[str] = ()) -> Manifest:
     """Return the files to upload from the program's directory.
 
     :param exclude: patterns of excluded files, from ``[tool.pyfrc.deploy] exclude``
     :param large: whether to upload files over 250,000 bytes
+    :param meant: patterns of files that are not private, from ``[tool.pyfrc.deploy] private``
     :raises RefusedError: with the files that cannot be uploaded
     """
     with _naming_unreadable_files(root):
-        found = sorted(_Walk(root, exclude).files())
+        walk = _Walk(root.resolve(), exclude)
+        found = sorted(walk.files())
         refuse_unless_utf8([path for path, _ in found])
         sizes = {path: file.stat().st_size for path, file in found}
         if not large:
             _refuse_large({path: size for path, size in sizes.items() if size > LARGE})
-        return Manifest(tuple(_entry(path, file) for path, file in found))
+        private = {path: why for path, why in sorted(walk.private.items()) if not is_excluded(path, meant)}
+        return Manifest(tuple(_entry(path, file) for path, file in found), private)
 
 
 @contextmanager
@@ -89,27 +192,13 @@ def is_excluded(path: str, patterns: Sequence[str]) -> bool:
     return any(matches(path, pattern) for pattern in patterns)
 
 
-def private_files(root: Path, exclude: Sequence[str] = (), meant: Sequence[str] = ()) -> dict[str, str]:
-    """Return the files that are probably not meant to be uploaded, each with the reason.
-
-    :param meant: patterns of files that are, from ``[tool.pyfrc.deploy] private``
-    """
-    with _naming_unreadable_files(root):
-        walk = _Walk(root, exclude, IgnoredSecrets(root.resolve()))
-        paths = [path for path, _ in walk.files()]
-    return {path: walk.private[path] for path in paths if path in walk.private and not is_excluded(path, meant)}
-
-
 class _Walk:
-    """A walk through a project's directories that follows links within the project.
+    """A walk through a project's directories that follows links within the project."""
 
-    :param secrets: what ``.gitignore`` names as secrets, if private files are wanted
-    """
-
-    def __init__(self, root: Path, exclude: Sequence[str], secrets: IgnoredSecrets | None = None) -> None:
-        self._root = root.resolve()
+    def __init__(self, root: Path, exclude: Sequence[str]) -> None:
+        self._root = root
         self._exclude = exclude
-        self._secrets = secrets
+        self._secrets = IgnoredSecrets(root)
         #: Paths of files that are probably not meant to be uploaded, each with the reason.
         self.private: dict[str, str] = {}
 
@@ -135,11 +224,10 @@ class _Walk:
             file = self._link_target(path, above) if item.is_symlink() else Path(item.path)
             if is_directory:
                 if not is_environment(file):
-                    if self._secrets is not None:
-                        self._secrets.add(file)
+                    self._secrets.add(file)
                     yield from self._within(file, f"{path}/", (*above, file))
             elif stat.S_ISREG(file.stat().st_mode):
-                if self._secrets is not None and (why := self._why_private(path, file, self._secrets)):
+                if why := self._why_private(path, file):
                     self.private[path] = why
                 yield path, file
             else:
@@ -149,13 +237,13 @@ class _Walk:
                     remedy=_EXCLUDE_IT,
                 )
 
-    def _why_private(self, path: str, file: Path, secrets: IgnoredSecrets) -> str:
+    def _why_private(self, path: str, file: Path) -> str:
         target = file.relative_to(self._root).as_posix()
         parts = target.split("/")
         above = ["/".join(parts[:count]) for count in range(1, len(parts) + 1)]
         if any(each.startswith(".") for each in parts) or any(is_excluded(each, self._exclude) for each in above):
             return f"leads to {ascii_path(target)}, which is not uploaded itself"
-        if secrets.include(file) or secrets.include(self._root / path):
+        if self._secrets.include(file) or self._secrets.include(self._root / path):
             return ".gitignore names it as a secret"
         return ""
 

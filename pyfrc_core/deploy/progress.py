@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from ..terminal_text import visible
+from .errors import RefusedError
 
 if TYPE_CHECKING:
     from ..errors import PyfrcError
@@ -234,6 +235,18 @@ class UserInterface:
 
     progress: DeployProgress
     ask: Questions | None = None
+
+
+def ask_to_continue(failure: str, ask: Questions | None, remedy: str, error: PyfrcError | None = None) -> None:
+    """Ask the user whether to deploy in spite of a failure.
+
+    :param ask: None if the user cannot be asked
+    :raises RefusedError: if the user says no or cannot be asked
+    """
+    if ask is None:
+        raise RefusedError(f"not deployed: {failure}", remedy=remedy) from error
+    if not ask.yes(f"{failure[:1].upper()}{failure[1:]}. Deploy anyway?"):
+        raise RefusedError(f"not deployed: {failure}") from error
 
 
 def progress_for(as_json: bool, quiet: bool = False) -> DeployProgress:

@@ -1,19 +1,32 @@
-"""Checks whether the robot is ready for a Python program, with a remedy for each problem."""
+"""Checks whether the robot is ready for a Python program, with a remedy for each problem.
+
+`pyfrc deploy`, `pyfrc doctor` and docs/deploy.md share the instructions for preparing a robot. The `robotpy` command of
+the package `robotpy` installs Python, WPILib and the project's packages on the robot. It is not a dependency of pyfrc,
+since it is needed only once after imaging.
+"""
 
 from __future__ import annotations
 
+import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from .._version import requirement
-from .errors import RefusedError
+from ..season import CURRENT, SEASONS
+from ..terminal_text import one_line
+from .connection import Connection
+from .errors import ConnectionFailedError, NoPythonError, RefusedError
+from .facts import VIRTUAL_IMAGE
 from .progress import DeployProgress
-from .robot_setup import PREPARE, Obstacle, image_it, image_problem, python_problem, same_version_on_both
 from .targets import AdministratorTask, Controller
 
 if TYPE_CHECKING:
+    from .agent.layout import Layout
     from .connection import Connection
     from .facts import RobotFacts
 
@@ -93,3 +106,149 @@ def _our_wpilib() -> str:
         raise RefusedError(
             "there is no wpilib on this computer", remedy=f'Install it: pip install --force-reinstall "{requirement()}"'
         ) from None
+
+
+#: The commands in order. The second needs the internet, the third the robot.
+COMMANDS = ("python -m pip install robotpy", "python -m robotpy sync", "python -m robotpy deploy")
+
+_SECTION = 'docs/deploy.md, "A freshly imaged robot", has every step.'
+
+PREPARE = (
+    f"Prepare the robot: {COMMANDS[0]}; with internet: {COMMANDS[1]}; then at the robot: {COMMANDS[2]}. {_SECTION}"
+)
+
+_REMOVE_OTHER_LANGUAGES = "To remove it: pyfrc undeploy --java-cpp"
+_MAX_NAMED = 2  # files of other languages
+
+#: How to install the packages in ``[tool.robotpy]`` on the robot.
+INSTALL_PACKAGES = f"with internet: {COMMANDS[1]}; then at the robot: {COMMANDS[2]}"
+
+#: How to install a package for a virtual robot, without the package's name.
+INSTALL_FOR_VIRTUAL_ROBOT = "in the environment in which pyfrc virtual-robot runs: python -m pip install"
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A reason why a robot is not ready for a program.
+
+    :param text:    the problem
+    :param remedy:  how to solve it
+    :param certain: whether programs cannot run at all; otherwise they might run
+    """
+
+    text: str
+    remedy: str
+    certain: bool = True
+
+
+def other_languages_notice(found: Sequence[str]) -> tuple[str, str]:
+    """Return a notice about programs in Java and C++ on a robot, and how to remove them.
+
+    :param found: their files and directories
+    """
+    named = ", ".join(found[:_MAX_NAMED])
+    if len(found) > _MAX_NAMED:
+        named += f" and {len(found) - _MAX_NAMED} more"
+    return f"Java or C++ takes disk space and memory on the robot ({named})", _REMOVE_OTHER_LANGUAGES
+
+
+def same_version_on_both(version: str) -> str:
+    """Return how to install this computer's version of WPILib on the robot.
+
+    :param version: the version of `wpilib` on this computer
+    """
+    return (
+        f'Use the same version on both: robotpy_version = "{version}" under [tool.robotpy] in pyproject.toml; '
+        f"{INSTALL_PACKAGES}."
+    )
+
+
+def image_it(controller: Controller) -> str:
+    """Return how to install the season's image on a robot."""
+    return f"{controller.image_it} (image {CURRENT.controller.images[-1]}). {_SECTION}"
+
+
+def image_problem(image: str | None, wpilib: str, controller: Controller) -> str | None:
+    """Return why the season's tools do not accept a robot's image, or None if they accept it.
+
+    :param image:  the robot's image; None if unknown
+    :param wpilib: the version of `wpilib` on this computer
+    """
+    if image == VIRTUAL_IMAGE:
+        return None
+    return controller.image_problem(image, wpilib, CURRENT.controller.images)
+
+
+def python_problem(python: str, wpilib: str) -> str | None:
+    """Return why a robot's Python is not the season's version, or None if it is.
+
+    This computer's version is accepted as well, for virtual robots.
+
+    :param python: its version, such as ``3.14.0``
+    :param wpilib: the version of `wpilib` on this computer
+    """
+    season = SEASONS.get(int(wpilib.partition(".")[0]))
+    if season is None:
+        return None
+    wanted = season.controller.python
+    if python.split(".")[:2] in [[str(part) for part in each[:2]] for each in (wanted, sys.version_info)]:
+        return None
+    return f"the robot has Python {python}, but wpilib {wpilib} is for Python {'.'.join(map(str, wanted))} there"
+
+
+#: Printed between the contents of files, and before the files of other languages.
+_MARK = "-- pyfrc --"
+
+
+def _look(layout: Layout) -> str:
+    """Return a shell script that prints the layout's texts, and the files of programs in other languages.
+
+    A failing command is ignored: missing files print nothing.
+    """
+    lines = ["exec 2> /dev/null"]
+    for file in layout.texts.values():
+        lines += [f"cat {file}", f"echo; echo '{_MARK}'"]
+    commands = " ".join(f"{layout.home}/{name}" for name in layout.command_files)
+    lines.append(f"grep -lE {quote(layout.other_start)} {commands}")
+    for pattern in layout.other_files:
+        directory = pattern.removesuffix("/")
+        lines.append(f"ls -d {pattern}" if directory == pattern else f'[ -z "$(ls -A {pattern})" ] || echo {directory}')
+    return "\n".join(lines)
+
+
+class RobotWithoutPython:
+    """A robot without Python.
+
+    `image` is its image's version, or None if unknown. `other_languages` has the files and directories of programs in
+    Java and C++.
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self._controller = connection.controller
+        layout, printed = self._controller.layout, ""
+        with suppress(ConnectionFailedError):  # it is still certain that there is no Python
+            printed = connection.run(_look(layout))[1]
+        *texts, files = printed.split(f"\n{_MARK}\n")
+        image = self._controller.image_in(dict(zip(layout.texts, texts, strict=False)))
+        self.image = None if image is None else one_line(image)
+        self.other_languages = tuple(one_line(line) for line in files.splitlines() if line.startswith("/"))
+
+    def obstacles(self) -> Iterator[Obstacle]:
+        """Yield the reasons why the robot is not ready, in the order in which to resolve them."""
+        try:
+            wrong_image = image_problem(self.image, version("wpilib"), self._controller)
+        except PackageNotFoundError:
+            wrong_image = None
+        if wrong_image is not None:
+            yield Obstacle(wrong_image, image_it(self._controller))
+        yield Obstacle(f"there is no Python on the robot ({self._controller.python})", PREPARE)
+
+    def refusal(self, error: NoPythonError) -> RefusedError:
+        """Return the error for a command that needs the agent."""
+        obstacles = list(self.obstacles())
+        what, remedy = [each.text for each in reversed(obstacles)], obstacles[0].remedy
+        if self.other_languages:
+            text, removal = other_languages_notice(self.other_languages)
+            what.append(text)
+            remedy = f"{remedy} {removal}"
+        return RefusedError("; ".join(what), where=error.where, remedy=remedy)

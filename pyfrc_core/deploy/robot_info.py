@@ -8,17 +8,15 @@ from dataclasses import asdict
 from ..project import Project
 from .facts import Release, RobotFacts
 from .progress import UserInterface
-from .target_connection import RobotChoice, choose_target, connected_agent
+from .target_connection import connected_agent
+from .team import RobotChoice, choose_target
 
 _ENDED = "ended after its last start"
 
 
 def show_info(project: Project | None, choice: RobotChoice, talk: UserInterface) -> None:
     """Show the robot's program, who deployed it, and the kept releases."""
-    with connected_agent(project, choose_target(project, choice, talk.ask), choice, talk.progress) as (
-        connection,
-        robot,
-    ):
+    with connected_agent(choose_target(project, choice, talk.ask), choice, talk.progress) as (connection, robot):
         name, key = connection.recognized.name, connection.key.fingerprint
         info = {"host": connection.host, "robot_name": name or None, "host_key": key, **asdict(robot.facts)}
         talk.progress.result(info, info_text(robot.facts, name), requested=True)

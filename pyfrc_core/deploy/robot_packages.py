@@ -22,10 +22,9 @@ from ..config.robotpy import COMPONENTS, RobotPackages, unknown_components
 from ..wording import counted
 from .agent.imports import is_there
 from .facts import VIRTUAL_IMAGE
-from .local_checks import ask_to_continue
 from .program_imports import ProgramImports
-from .robot_checks import NO_CHECK
-from .robot_setup import INSTALL_FOR_VIRTUAL_ROBOT, INSTALL_PACKAGES
+from .progress import UserInterface, ask_to_continue
+from .robot_checks import INSTALL_FOR_VIRTUAL_ROBOT, INSTALL_PACKAGES, NO_CHECK
 from .targets import controller_named
 
 if TYPE_CHECKING:
@@ -33,7 +32,6 @@ if TYPE_CHECKING:
 
     from .facts import RobotFacts
     from .manifest import Manifest
-    from .progress import UserInterface
 
 _MAX_NAMED = 5
 #: A module that the robot's start command needs.

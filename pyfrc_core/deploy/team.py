@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,9 @@ from ..errors import SettingsError, UsageError
 from ..project import Project
 from ..season import CURRENT
 from ..text_files import write_whole
-from .discovery import MAX_TEAM
+from .connection import NONE_OFFERED, Credentials
+from .discovery import MAX_TEAM, parse_address
+from .progress import Questions
 from .targets import Controller, controller_of
 
 PREFERENCES = Path(".wpilib", "wpilib_preferences.json")
@@ -32,6 +34,51 @@ class RobotTarget:
     source: str = "the command"
     #: The kind of computer on it.
     controller: Controller = field(default_factory=lambda: controller_of(CURRENT))
+    #: The project's directory, where its host keys are pinned; None outside of a project.
+    keys_in: Path | None = None
+    #: The project's team, if the robot was specified by its address.
+    project_team: int | None = None
+
+
+@dataclass(frozen=True)
+class RobotChoice:
+    """The robot options of a command.
+
+    :param robot: the robot's address, as ``HOST`` or ``HOST:PORT``
+    :param team: a team number
+    :param resolve: whether host names may be resolved
+    :param accepted_key: the fingerprint of a changed host key that the user accepts
+    :param robot_name: a name to store with the robot's key
+    :param credentials: the user's own keys, for a robot that requires one
+    """
+
+    robot: str | None = None
+    team: int | None = None
+    resolve: bool = True
+    accepted_key: str | None = None
+    robot_name: str | None = None
+    credentials: Credentials = NONE_OFFERED
+
+    @property
+    def names_robot(self) -> bool:
+        """Return whether the options select a robot without a project."""
+        return self.robot is not None or self.team is not None
+
+
+def choose_target(project: Project | None, choice: RobotChoice, ask: Questions | None) -> RobotTarget:
+    """Return the robot to connect to. Ask the user if neither the options nor the project name one.
+
+    :param project: None outside of a project, if the options name a robot
+    :param ask: None if the user cannot be asked
+    :raises UsageError: if no robot is named and the user cannot be asked, or a team number is invalid
+    """
+    target = find_target(project, robot=choice.robot, team=choice.team, ask=ask.text if ask else None)
+    if target.robot is not None and parse_address(target.robot).is_name and not choice.resolve:
+        raise UsageError(
+            f"{target.robot} is a host name, which --no-resolve does not resolve",
+            remedy="Leave out --no-resolve, or give the robot's address with --robot, as in 10.12.34.2",
+        )
+    return target
 
 
 def find_target(
@@ -47,13 +94,25 @@ def find_target(
     :param ask: asks the user a question; the reply is stored in ``.wpilib/wpilib_preferences.json``
     :raises UsageError: if no robot is specified, or a team number is invalid
     """
+    target = _find_target(project, robot, team, ask)
+    if project is None:
+        return target
+    project_team = None
+    if target.team is None:
+        project_team = next((found.team for found in _targets_in_files(project) if found.team is not None), None)
+    return replace(target, keys_in=project.pyproject.parent, project_team=project_team)
+
+
+def _find_target(
+    project: Project | None, robot: str | None, team: int | None, ask: Callable[[str], str] | None
+) -> RobotTarget:
     if robot is not None:
         return RobotTarget(robot=robot)
     if team is not None:
         return RobotTarget(_in_range(team, "--team"))
     if project is None:
         raise UsageError("no robot is specified", remedy="Specify it with --team NUMBER or --robot HOST.")
-    for found in _targets_in_files(project):
+    if (found := next(_targets_in_files(project), None)) is not None:
         return found
     if ask is None:
         raise UsageError(
@@ -65,14 +124,6 @@ def find_target(
     file = _preferences_file(project)
     save_team(file, number)
     return RobotTarget(number, source=PREFERENCES.as_posix())
-
-
-def team_of_project(project: Project) -> int | None:
-    """Return the team number in the project's files, or None. A robot's address there is ignored.
-
-    :raises UsageError: if a team number is invalid
-    """
-    return next((found.team for found in _targets_in_files(project) if found.team is not None), None)
 
 
 def save_team(file: Path, team: int) -> None:

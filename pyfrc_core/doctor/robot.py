@@ -11,13 +11,11 @@ from ..deploy.connection import Connection, connect
 from ..deploy.discovery import RobotNotFoundError, addresses_of, find_robot, parse_address
 from ..deploy.errors import HostKeyError, NoPythonError, OnTheFieldError
 from ..deploy.facts import RobotFacts
-from ..deploy.robot_checks import obstacles
+from ..deploy.robot_checks import RobotWithoutPython, obstacles, other_languages_notice
 from ..deploy.robot_packages import unfit_packages
-from ..deploy.robot_setup import other_languages_notice
 from ..deploy.target_connection import load_robot_keys
 from ..deploy.targets import Controller
-from ..deploy.team import RobotTarget, find_target
-from ..deploy.without_python import RobotWithoutPython
+from ..deploy.team import find_target
 from ..errors import PyfrcError, SettingsError, UsageError
 from ..project import Project
 from .check_result import CheckResult, hint, ok, problem
@@ -87,7 +85,7 @@ class RobotSearch:
             yield hint(_TOPIC, "not searched: no team is known outside of a project", "pyfrc doctor --team NUMBER")
             return
         try:
-            target = RobotTarget(team, robot) if project is None else find_target(project, robot=robot, team=team)
+            target = find_target(project, robot=robot, team=team)
         except SettingsError:
             raise
         except UsageError as unknown:
@@ -105,7 +103,7 @@ class RobotSearch:
         with found.connected:
             self._found = True
             yield ok(_TOPIC, f"{self._whose} found at {found.address} ({found.kind})")
-            keys = load_robot_keys(project, target, found)
+            keys = load_robot_keys(target, found.address)
             with connect(found.address, target.controller, keys, connected=found.connected, pin=False) as connection:
                 yield from _examine(project, connection)
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from types import TracebackType
 
 from pyfrc_core.deploy.agent_client import AgentClient, Deployed, DeployRequest
-from pyfrc_core.deploy.agent_package import agent_command, agent_package
+from pyfrc_core.deploy.agent_stream import agent_command, agent_package
 from pyfrc_core.deploy.manifest import Manifest, build_manifest
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
