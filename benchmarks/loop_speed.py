@@ -36,11 +36,11 @@ def counting(robot_class: Any) -> Any:
 def in_place() -> tuple[float, int]:
     """The seconds that pyfrc's loop takes for `SECONDS` of an enabled robot, and how often its code was called."""
     perf_counter = time.perf_counter  # before it is redirected
-    from pyfrc_core.hal import modes
     from pyfrc_core.project import find_project
     from pyfrc_core.runtime.loading import load_robot
     from pyfrc_core.runtime.patches.install import patches
     from pyfrc_core.runtime.robot import RobotRun
+    from pyfrc_core.wpi import station
 
     project = find_project(Path.cwd())
     patches.install(project.files)
@@ -48,7 +48,7 @@ def in_place() -> tuple[float, int]:
     run.open()
     robot = run.construct(counting(load_robot(project)))
     run.start()
-    modes.set_mode(enabled=True)
+    station.set_mode(enabled=True)
     begin = perf_counter()
     run.run_until(SECONDS * 1_000_000)
     return perf_counter() - begin, robot.turns

@@ -31,12 +31,12 @@ WAYS = ("plain", "profiled", "cProfile")
 def measure(way: str) -> float:
     """The processor seconds that `SECONDS` of the robot in the current directory take, teleoperated."""
     process_time = time.process_time
-    from pyfrc_core.hal import modes
     from pyfrc_core.measure.processes import announced
     from pyfrc_core.project import find_project
     from pyfrc_core.runtime.loading import load_robot
     from pyfrc_core.runtime.patches.install import patches
     from pyfrc_core.runtime.robot import RobotRun
+    from pyfrc_core.wpi import station
 
     project = find_project(Path.cwd())
     with ExitStack() as closing:
@@ -54,7 +54,7 @@ def measure(way: str) -> float:
         run.open()
         run.construct(robot_class)
         run.start()
-        modes.set_mode(enabled=True)
+        station.set_mode(enabled=True)
         begin = process_time()
         run.run_until(SECONDS * 1_000_000)
         seconds = process_time() - begin

@@ -9,10 +9,10 @@ import pytest
 from hal import simulation as hs
 from sim_robots import run, settle
 
-from pyfrc_core.hal import modes
 from pyfrc_core.hal.output_gate import OutputGate
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
+from pyfrc_core.wpi import station
 
 ROBOT = """
     import hal
@@ -312,7 +312,7 @@ def test_a_simulated_robot_stands_still_after_the_emergency_stop(make_project) -
 @pytest.fixture
 def gate() -> Iterator[OutputGate]:
     """Of a robot that is disabled."""
-    modes.reset_driver_station()
+    station.reset_driver_station()
     yield OutputGate()
     hs.resetDriverStationData()
 

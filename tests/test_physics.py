@@ -15,7 +15,8 @@ from wpimath.kinematics import ChassisSpeeds
 from pyfrc.physics import drivetrains
 from pyfrc.physics.core import PhysicsInterface
 from pyfrc.physics.visionsim import VisionSimTarget
-from pyfrc_core.hal import HalData, modes
+from pyfrc_core.hal import HalData
+from pyfrc_core.wpi import station
 
 FOOT = 0.3048
 HEIGHT_FT = 27.0
@@ -28,8 +29,8 @@ distances = st.floats(-50, 50)
 
 @pytest.fixture(autouse=True)
 def _enabled() -> Iterator[None]:
-    modes.reset_driver_station()
-    modes.set_mode(enabled=True)
+    station.reset_driver_station()
+    station.set_mode(enabled=True)
     yield
     hs.resetDriverStationData()
 
@@ -186,7 +187,7 @@ def stop_in_an_emergency() -> None:
 
 @pytest.mark.parametrize(
     "stop",
-    [lambda: modes.set_mode(enabled=False), lambda: hs.setDriverStationDsAttached(False), stop_in_an_emergency],
+    [lambda: station.set_mode(enabled=False), lambda: hs.setDriverStationDsAttached(False), stop_in_an_emergency],
     ids=["disabled", "no driver station", "emergency stop"],
 )
 def test_a_robot_that_is_not_enabled_rolls_on(stop: Callable[[], None]) -> None:
@@ -202,7 +203,7 @@ def test_a_robot_that_is_not_enabled_rolls_on(stop: Callable[[], None]) -> None:
 
 
 def test_an_engine_may_place_a_disabled_robot() -> None:
-    modes.set_mode(enabled=False)
+    station.set_mode(enabled=False)
     robot = controller()
     answer = robot.move_robot(Transform2d(1, 0, Rotation2d()))
     assert answer == robot.get_pose()

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 from types import MappingProxyType
 
-from ..hal.modes import NOT_PRESSED
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.joysticks import CONTROL
 from ..runtime.scripts.network_entries import NETWORK, parse_entry_target
 from ..runtime.scripts.script import InputScript
 from ..runtime.scripts.targets import MATCH_TIME, MODE, PLUGGED, REMAINING, RESTART
+from ..wpi import station
 from .device_names import named
 from .failure import FuzzFailure
 from .values import Value, is_released
@@ -128,7 +128,7 @@ def _described(target: str, value: Value, names: Mapping[str, str] = MappingProx
         if sort == "buttons":
             return f"joystick {stick} button {number} {'pressed' if value else 'let go'}"
         if sort == "povs":
-            return f"joystick {stick} POV {'let go' if value == NOT_PRESSED else value}"
+            return f"joystick {stick} POV {'let go' if value == station.NOT_PRESSED else value}"
         return f"joystick {stick} axis {number} at {_number(value)}"
     plugged = PLUGGED.fullmatch(target)
     if plugged is not None:

@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 from wpilib.simulation import SimDeviceSim
 
-from ..hal import HalData, format_path, modes
+from ..hal import HalData, format_path
 from ..hal.counters import counted_channels
 from ..hal.devices import KINDS
 from ..hal.modules import Modules
 from ..hal.sim_device_list import Signature
+from ..wpi import station
 from .gamepads import TRIGGERS
 from .robot_constants import UNKNOWN, RobotConstants
 from .values import InputKind
@@ -180,9 +181,9 @@ def prepare_search() -> None:
     """Prepare a search for inputs: forks of this process then find it prepared."""
     _channels()
     _modules()
-    for number in range(modes.JOYSTICKS):
+    for number in range(station.JOYSTICKS):
         for triggers in {(), *TRIGGERS.values()}:
-            _controls(number, modes.AXES, modes.BUTTONS, modes.POVS, triggers)
+            _controls(number, station.AXES, station.BUTTONS, station.POVS, triggers)
 
 
 def _used() -> tuple[tuple[str, int], ...]:

@@ -11,8 +11,8 @@ import random
 import sys
 from collections.abc import Container, Iterable, Sequence
 
-from ..hal.modes import JOYSTICKS, NOT_PRESSED
 from ..runtime.clock import PACKET_US
+from ..wpi import station
 from .habits import Habit, draw_habit
 from .inputs import Input
 from .robot_constants import UNKNOWN, RobotConstants
@@ -29,7 +29,7 @@ _KNOWN, _OTHERS = 100, 1
 #: How often a control is used that the robot has asked for, one that every gamepad has, and any other.
 _ASKED, _COMMON, _RARE = 80, 8, 1
 
-_RELEASED: dict[InputKind, float] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": NOT_PRESSED}
+_RELEASED: dict[InputKind, float] = {"axis": 0.0, "trigger": 0.0, "button": False, "pov": station.NOT_PRESSED}
 
 
 class JoystickGenerator:
@@ -46,7 +46,9 @@ class JoystickGenerator:
         self.next_us = 0
         #: Ports without a joystick: writing to them would plug one in.
         self.unplugged: set[int] = set()
-        self._ports: list[tuple[list[Input], list[Input], list[Input]]] = [([], [], []) for _ in range(JOYSTICKS)]
+        self._ports: list[tuple[list[Input], list[Input], list[Input]]] = [
+            ([], [], []) for _ in range(station.JOYSTICKS)
+        ]
         self._weights: tuple[int, ...] = _UNKNOWN
         self._pose_until_us = 0
         self._held: dict[Input, float] = {}
@@ -60,13 +62,15 @@ class JoystickGenerator:
 
     def set_controls(self, controls: Iterable[Input], gamepads: Iterable[int]) -> None:
         """Set the controls, and the ports for which the robot has created joysticks."""
-        self._ports = [([], [], []) for _ in range(JOYSTICKS)]
+        self._ports = [([], [], []) for _ in range(station.JOYSTICKS)]
         for control in controls:
             port = int(control.device[len("joysticks[") : -1])
             sort = {"button": 0, "pov": 2}.get(control.kind, 1)
             self._ports[port][sort].append(control)
         known = set(gamepads)
-        self._weights = tuple(_KNOWN if port in known else _OTHERS for port in range(JOYSTICKS)) if known else _UNKNOWN
+        self._weights = (
+            tuple(_KNOWN if port in known else _OTHERS for port in range(station.JOYSTICKS)) if known else _UNKNOWN
+        )
 
     def unplug(self, port: int) -> None:
         """Unplug the joystick, and release its controls."""
@@ -118,7 +122,7 @@ class JoystickGenerator:
         self._finish(found)
         for control in [control for control in self._held if rng.random() < habit.let_go]:
             self._set(control, _RELEASED[control.kind], found)
-        there = [port for port in range(JOYSTICKS) if port not in self.unplugged and any(self._ports[port])]
+        there = [port for port in range(station.JOYSTICKS) if port not in self.unplugged and any(self._ports[port])]
         self._pose_until_us = now_us + max(PACKET_US, round(habit.duration(rng) * 50) * PACKET_US)
         if not there or rng.random() < 0.1:
             self._hands_off(found)

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..config.settings import MatchSettings
-from ..hal.modes import JOYSTICKS
 from ..runtime.clock import PACKET_US
 from ..runtime.scripts.targets import MATCH_TIME, MODE, REMAINING, RESTART, plugged
+from ..wpi import station
 from .field_data import NOT_COUNTED, FieldData
 from .values import Value
 
@@ -210,7 +210,7 @@ class _Planner:
             self.add(begin, {"control.dsAttached": False})
             self.add(begin + lasts, {"control.dsAttached": True})
         else:
-            (port,) = rng.choices(range(JOYSTICKS), _UNPLUGGED)
+            (port,) = rng.choices(range(station.JOYSTICKS), _UNPLUGGED)
             self.add(begin, {plugged(port): False})
             self.add(begin + max(lasts, 0.1), {plugged(port): True})
 

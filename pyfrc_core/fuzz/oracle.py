@@ -14,14 +14,13 @@ from types import FrameType
 
 from ..compat.cpython_private import current_frames, get_frame
 from ..config.settings import FuzzSettings
-from ..hal import modes
-from ..hal.driver_station import program_state
 from ..project import Project
 from ..project.robot_files import RobotFiles
 from ..runtime.clock import OBSERVE, PACKET_US
 from ..runtime.robot import RobotRun
 from ..runtime.scripts.script import InputScript
 from ..runtime.time.timed_loop import Periodic
+from ..wpi import station
 from .failure import MisbehaviorError, place_of, user_frame
 from .hal_reports import HalReports, hal_reports
 from .inert_motors import InertMotors
@@ -143,8 +142,8 @@ class _Oracle:
 
     def before_packet(self, now: float) -> None:
         """Note the mode, after all inputs of a packet were written."""
-        mode: str = modes.get_mode()
-        if mode != "disabled" and not modes.is_attached():
+        mode: str = station.get_mode()
+        if mode != "disabled" and not station.is_attached():
             mode = "disabled"
         if mode != self._mode:
             self._mode, self._mode_since_us = mode, self._run.clock.now_us
@@ -178,9 +177,9 @@ class _Oracle:
         if run.started and not run.alive:
             self._misbehaved("the robot program has ended by itself", "stuck_modes", ("", ""))
             return
-        now_us, state = run.clock.now_us, program_state()
+        now_us, state = run.clock.now_us, station.program_state()
         self._agrees = state == self._mode
-        if self._agrees or state not in modes.MODES or modes.is_stopped():
+        if self._agrees or state not in station.MODES or station.is_stopped():
             self._agreed_us = now_us
         elif now_us - self._agreed_us > _LEAVES_WITHIN_US:
             place = place_of(frame, self._files) if frame is not None else self._place_of_own_loop()

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
-from ..hal.modes import NOT_PRESSED
 from ..runtime.scripts.targets import PLUGGED
+from ..wpi import station
 from .robot_constants import UNKNOWN, RobotConstants
 
 #: The value of an input.
@@ -206,14 +206,14 @@ def _simpler_entry(value: Value) -> list[Value]:
 
 def is_released(target: str, value: object) -> bool:
     """Return whether this write to a joystick lets a control go."""
-    return PLUGGED.fullmatch(target) is None and (value == NOT_PRESSED if ".povs" in target else not value)
+    return PLUGGED.fullmatch(target) is None and (value == station.NOT_PRESSED if ".povs" in target else not value)
 
 
 def can_be(kind: InputKind, value: object, options: tuple[str, ...] = ()) -> bool:
     """Return whether an input of this kind can have this value."""
     span = SPANS.get(kind)
     if kind == "pov":
-        return value in (NOT_PRESSED, *POV_ANGLES)
+        return value in (station.NOT_PRESSED, *POV_ANGLES)
     if kind in ("option", "choice"):
         return value in options
     if kind == "entry":

@@ -11,8 +11,8 @@ reports (`created_devices`). It reports no SimDevices to Python, so these are li
 This is the only package that names simulated devices. Importing it does not change the HAL, and imports WPILib only
 when the tree is used: the simulator's window needs paths and no tree.
 
-Where the simulated HAL differs from the hardware, this room does what the hardware does: a connection to the driver
-station that can be lost (`ds_connection`), outputs that are off while the robot is disabled (`output_gate`).
+Where the simulated HAL differs from the hardware, this room does what the hardware does: outputs are off while the
+robot is disabled (`output_gate`).
 """
 
 from __future__ import annotations

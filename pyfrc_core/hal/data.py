@@ -9,6 +9,7 @@ from typing import Any
 import hal
 from wpilib import simulation as sim
 
+from ..wpi import station
 from . import devices, driver_station
 from .change_reader import ChangeReader
 from .containers import LiveDict, LiveList, Slot, plain, stored
@@ -54,7 +55,7 @@ class HalData(LiveDict):
         return {
             "alliance_station": driver_station.ALLIANCE_STATION.slot(sim.DriverStationSim),
             "fpga_button": devices.FPGA_BUTTON.slot(sim.RoboRioSim),
-            "user_program_state": Slot(driver_station.program_state, None),
+            "user_program_state": Slot(station.program_state, None),
             "error_data": stored(),
             "pwm_loop_timing": stored(40),
             "d0_pwm_rate": stored(),

@@ -14,15 +14,14 @@ from hal import simulation as hs
 from wpilib import DriverStation
 from wpilib.simulation import DriverStationSim
 
+from ..wpi import station
 from .containers import LiveDict, LiveList, Slot, ValueList, stored
 from .fields import HAS_SOURCE, DeviceField
 from .kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
 from .paths import join
 
-JOYSTICKS = 6
 AXES = POVS = 12  # the maximum of the HAL
 BUTTONS = 12  # the shortest list; a joystick with more buttons shows all
-MAX_BUTTONS = 32
 
 STATION = choice(
     {"unknown": 0, "red1": 1, "red2": 2, "red3": 3, "blue1": 4, "blue2": 5, "blue3": 6}, hal.AllianceStationID
@@ -44,21 +43,6 @@ TIME = (
     DeviceField("program_start", default=0.0),
     HAS_SOURCE,
 )
-
-
-def program_state() -> str | None:
-    """Return the robot program's mode; None until it has started.
-
-    The program reports its mode to the HAL, which does not return it. So this is the mode of the last packet that the
-    program has read.
-    """
-    if not hs.getProgramStarted():
-        return None
-    if DriverStation.isTeleopEnabled():  # the mode of most packets
-        return "teleop"
-    if DriverStation.isDisabled():
-        return "disabled"
-    return "autonomous" if DriverStation.isAutonomous() else "test"
 
 
 class EventData(LiveDict):
@@ -88,7 +72,7 @@ class EventData(LiveDict):
         return info.gameSpecificMessage.tobytes()[: info.gameSpecificMessageSize].decode(errors="replace")
 
     def _all(self) -> dict[str, Slot]:
-        info, station, named = self._info, DriverStationSim, MATCH_TYPE.load or int
+        info, sim, named = self._info, DriverStationSim, MATCH_TYPE.load or int
 
         def get(read: Callable[[], Any]) -> Callable[[], Any]:
             def current() -> Any:
@@ -98,11 +82,11 @@ class EventData(LiveDict):
             return current
 
         return {
-            "name": Slot(get(lambda: _c_text(info.eventName)), station.setEventName, text(63)),
-            "match_type": Slot(get(lambda: named(info.matchType)), station.setMatchType, MATCH_TYPE),
-            "match_number": Slot(get(lambda: info.matchNumber), station.setMatchNumber, whole(0, 65535)),
-            "replay_number": Slot(get(lambda: info.replayNumber), station.setReplayNumber, whole(0, 255)),
-            "game_specific_message": Slot(get(self._message), station.setGameSpecificMessage, text(64)),
+            "name": Slot(get(lambda: _c_text(info.eventName)), sim.setEventName, text(63)),
+            "match_type": Slot(get(lambda: named(info.matchType)), sim.setMatchType, MATCH_TYPE),
+            "match_number": Slot(get(lambda: info.matchNumber), sim.setMatchNumber, whole(0, 65535)),
+            "replay_number": Slot(get(lambda: info.replayNumber), sim.setReplayNumber, whole(0, 255)),
+            "game_specific_message": Slot(get(self._message), sim.setGameSpecificMessage, text(64)),
             "has_source": stored(False),
         }
 
@@ -113,7 +97,7 @@ def _c_text(characters: memoryview) -> str:
 
 def joysticks() -> LiveList:
     """Return the joysticks, by port."""
-    return LiveList("joysticks", [JoystickData(port) for port in range(JOYSTICKS)])
+    return LiveList("joysticks", [JoystickData(port) for port in range(station.JOYSTICKS)])
 
 
 class JoystickData(LiveDict):
@@ -198,7 +182,7 @@ class JoystickData(LiveDict):
             "is_xbox": Slot(lambda: bool(xbox()), partial(hs.setJoystickIsXbox, port), BOOL),
             "type": Slot(descriptor("type"), partial(hs.setJoystickType, port), whole(0, 255)),
             "axis_count": count(0, hs.setJoystickAxisCount, AXES),
-            "button_count": count(1, hs.setJoystickButtonCount, MAX_BUTTONS),
+            "button_count": count(1, hs.setJoystickButtonCount, station.MAX_BUTTONS),
             "pov_count": count(2, hs.setJoystickPOVCount, POVS),
             "outputs": rumble(0),
             "left_rumble": rumble(1),

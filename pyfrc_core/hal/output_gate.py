@@ -15,7 +15,7 @@ from typing import Any
 
 from wpilib import simulation as sim
 
-from . import modes
+from ..wpi import station
 from .can_outputs import CanOutputs
 from .created_devices import CreatedDevices
 from .fields import INITIALIZED, DeviceField
@@ -51,7 +51,7 @@ class OutputGate:
         output that is written in the meantime keeps the new value.
         """
         __tracebackhide__ = True
-        if self._closed or modes.is_enabled():
+        if self._closed or station.is_enabled():
             yield
             return
         self._closed = True

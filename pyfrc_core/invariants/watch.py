@@ -7,13 +7,12 @@ from functools import partial
 from types import TracebackType
 
 from ..errors import text_of
-from ..hal import modes
-from ..hal.driver_station import program_state
 from ..project.robot_files import RobotFiles, innermost_entry
 from ..runtime.checks.failures import NamesItsPlace
 from ..runtime.clock import CHECK, PACKET_US
 from ..runtime.robot import RobotRun
 from ..runtime.time.timed_loop import Periodic
+from ..wpi import station
 from .load import PARAMETERS, Invariant
 from .values import Moment, moment_of_return, values_at
 
@@ -87,7 +86,7 @@ class _Watch:
         run = self._run
         if run.own_loop is None or run.timed_loop.main is not None:
             return
-        if not run.initializes or program_state() is not None:
+        if not run.initializes or station.program_state() is not None:
             self._check()
 
     def _check(self) -> None:
@@ -158,7 +157,7 @@ class _Watch:
         return BrokenInvariantError(f"{what}\n  {self._when()}", type(error).__name__, place, function)
 
     def _when(self) -> str:
-        return f"at {self._run.clock.now:.2f} s of robot time, in {modes.mode_name()} mode"
+        return f"at {self._run.clock.now:.2f} s of robot time, in {station.mode_name()} mode"
 
 
 def _innermost(traceback: TracebackType | None, files: RobotFiles) -> Moment | None:

@@ -19,10 +19,10 @@ from typing import Any, NamedTuple
 from wpilib import TimedRobot
 
 from ..compat.cpython_private import get_frame
-from ..hal import modes
 from ..project.robot_files import RobotFiles
 from ..runtime.patches.install import patches
 from ..runtime.threads.robot_threads import RobotThreads
+from ..wpi import station
 from .figures import WHOLE_LOOP, Figures, Measurand, Overrun
 from .sampler import stack_of
 
@@ -117,7 +117,7 @@ class Stopwatch:
             loop_ms, function_ms, held_up_ms, period_ms = (each / 1e6 for each in nanoseconds)
             self._figures.overruns.append(
                 Overrun(
-                    round(began, 6), modes.get_mode(), name, place, loop_ms, function_ms, held_up_ms, period_ms, test
+                    round(began, 6), station.get_mode(), name, place, loop_ms, function_ms, held_up_ms, period_ms, test
                 )
             )
         return spent

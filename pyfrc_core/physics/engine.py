@@ -12,11 +12,11 @@ import wpilib
 from wpimath.geometry import Pose2d
 
 from ..config.document import document_of
-from ..hal import modes
 from ..project import Project
 from ..runtime.clock import PACKET_US, PHYSICS, to_us
 from ..runtime.loading import import_file
 from ..runtime.robot import RobotRun
+from ..wpi import station
 from .core import PhysicsEngine, PhysicsField, PhysicsInitException, PhysicsInterface
 
 #: The shortest period of `update_sim`, for robots with faster loops (100 Hz).
@@ -168,7 +168,7 @@ class Physics:
         arguments = (run.hal_data, now, tm_diff) if self._module.takes_hal_data else (now, tm_diff)
         self._updating = True
         try:
-            if modes.is_enabled():
+            if station.is_enabled():
                 self.engine.update_sim(*arguments)
             else:
                 with run.output_gate.closed_while_disabled():

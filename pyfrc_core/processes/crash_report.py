@@ -46,7 +46,7 @@ class Moment:
     """When a robot's process ended.
 
     :param seconds: robot time
-    :param mode: one of `pyfrc_core.hal.modes.MODES`
+    :param mode: one of `pyfrc_core.wpi.station.MODES`
     """
 
     seconds: float

@@ -14,8 +14,8 @@ from array import array
 from collections.abc import Callable, MutableSequence
 from heapq import heappop, heappush
 
-from ..hal.timing import deliver_packet, step_us, stop_and_zero
 from ..season import CURRENT
+from ..wpi import station, timing
 from .exceptions import TestEnded, TestRanTooLong
 from .robot_time import PACKET_US as PACKET_US
 from .robot_time import to_us as to_us
@@ -34,6 +34,8 @@ INPUT, PACKET, WAKE_UP, ROBOT_LOOP, CHECK, PHYSICS, OBSERVE = range(7)
 
 Action = Callable[[], None]
 
+_step_us = timing.step_us
+
 
 class Clock:
     """The robot time of one run, and the actions that are due in it.
@@ -45,7 +47,7 @@ class Clock:
         #: Called before each packet with the robot time in seconds: the place to change inputs.
         self.before_packet: list[Callable[[float], None]] = []
         #: Delivers a packet. A run delivers it over its connection, which may be lost.
-        self.deliver_packet: Action = deliver_packet
+        self.deliver_packet: Action = station.deliver_packet
         self._recurring: list[tuple[int, int, Action]] = []
         #: Stands for the innermost call of `run_until` or `run_while` that has not returned; None between two calls.
         self.call: object = None
@@ -58,7 +60,7 @@ class Clock:
 
         :param start_us: the time at which the clock starts, in microseconds
         """
-        stop_and_zero()
+        timing.stop_and_zero()
         self.now_us = 0
         self._move_to(start_us)
         self.limit_us = to_us(DEFAULT_TIME_LIMIT)
@@ -124,7 +126,7 @@ class Clock:
                 # As `_run_next` and `_move_to`, written out: everything in a run is called from here.
                 due_us, _, _, action = heappop(self._queue)
                 if due_us > self.now_us:
-                    step_us(due_us - self.now_us)
+                    _step_us(due_us - self.now_us)
                     self.now_us = self.moment[0] = due_us
                 action()
                 if self.halted:
@@ -171,7 +173,7 @@ class Clock:
 
     def _move_to(self, time_us: int) -> None:
         if time_us > self.now_us:
-            step_us(time_us - self.now_us)
+            _step_us(time_us - self.now_us)
             self.now_us = self.moment[0] = time_us
 
     @property

@@ -12,11 +12,11 @@ from typing import Any
 from ..encoding import find_wrong_encoding
 from ..errors import ProjectError, RobotCodeError, text_of
 from ..explain import Explanation, explain
-from ..hal.timing import standing_at_zero
 from ..processes.crash_report import reported_exit
 from ..processes.lent_streams import lent_streams
 from ..project import Project
 from ..project.hidden_libraries import find_hidden_by_any_name
+from ..wpi import timing
 from .checks.hang_detector import importing, watching_exit
 from .checks.misspelled_methods import refuse_unawaited_methods
 from .exceptions import TestFroze
@@ -37,7 +37,7 @@ def load_robot(project: Project) -> type[Any]:
     :raises ProjectError: when there is not exactly one robot class to choose
     """
     exit_watched = watching_exit(project.files, project.settings.test.hang_seconds)
-    with standing_at_zero(), refused(project.files), exit_watched:
+    with timing.standing_at_zero(), refused(project.files), exit_watched:
         module = import_file(project, project.main_file)
     robot_class = choose_robot_class(project, module)
     refuse_unawaited_methods(project)

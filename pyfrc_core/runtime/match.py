@@ -8,7 +8,7 @@ from ..config.settings import MatchSettings
 from .robot_time import to_us
 
 if TYPE_CHECKING:
-    from ..hal.modes import Mode
+    from ..wpi import station
 
 
 class MatchPeriods:
@@ -21,7 +21,7 @@ class MatchPeriods:
         #: How long it all takes, in microseconds.
         self.length_us = self._teleop_from + to_us(settings.teleop)
 
-    def at(self, since_us: int) -> tuple[Mode, float] | None:
+    def at(self, since_us: int) -> tuple[station.Mode, float] | None:
         """The mode so long after the match began, and the seconds left in it; None when it is over."""
         if since_us >= self.length_us:
             return None

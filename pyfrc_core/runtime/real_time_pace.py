@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..compat.unrepeatable import real_time_libraries
-from ..hal import modes
+from ..wpi import station
 from .patch_table import PatchTable
 from .robot_time import PACKET_US
 from .time.real_time_loops import RealTimeLoops
@@ -66,7 +66,7 @@ class RealTimePace:
                 self._patches.patch(*patch)
 
     def _wait(self, now: float) -> None:
-        if not self._loops.needed or not modes.is_enabled():
+        if not self._loops.needed or not station.is_enabled():
             self._last = self._clock()
             return
         left = self._last + self._seconds - self._clock()

@@ -19,11 +19,13 @@ import wpilib
 from ..compat.object_hashes import restart_numbers
 from ..compat.wpilib_private import MAGIC_SIMULATION_INIT
 from ..compat.wpilib_threads import end_watchdog_thread
-from ..hal import HalData, devices_exist, modes, timing
-from ..hal.ds_connection import DriverStationConnection
+from ..hal import HalData, devices_exist
 from ..hal.output_gate import OutputGate
+from ..hal.reset import forget_inputs
 from ..processes.exit import in_this_process
+from ..wpi import station, timing
 from .clock import OBSERVE, PACKET_US, Clock
+from .connection import DriverStationConnection
 from .exceptions import TestEnded, TestFroze, WrongThread
 from .patches.active_run import ExternalWrites, active_run
 from .patches.construction import missing_super_init, without_first_alarm
@@ -104,10 +106,10 @@ class RobotRun:
         ntcore.NetworkTableInstance.getDefault().startLocal()
         has_devices = devices_exist() if self._has_devices is None else self._has_devices
         if not has_devices:  # of an earlier run in this process, only its inputs are left
-            timing.forget_inputs()
+            forget_inputs()
         self.connection.boot()
         # What the first packet brings: it may still be changed.
-        modes.reset_driver_station()
+        station.reset_driver_station()
         self.clock.before_packet.append(MotorSafetyCheck().on_packet)
         end_watchdog_thread()
         self.data_logs.start_as_at_import()

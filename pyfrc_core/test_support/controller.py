@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeAlias, TypeVar, cast, overload
 
 from ..config.settings import MatchSettings
-from ..hal import modes
 from ..invariants.watch import watch_invariants
 from ..runtime.clock import to_us
 from ..runtime.exceptions import TestEnded
@@ -19,6 +18,7 @@ from ..runtime.scripts.boots import boots_of
 from ..runtime.scripts.inputs_file import load_inputs
 from ..runtime.scripts.player import Player
 from ..runtime.seeds import seed_generators
+from ..wpi import station
 from .fake_time import FakeTime
 
 if TYPE_CHECKING:
@@ -76,25 +76,25 @@ class TestController:
 
     # -- modes ------------------------------------------------------------------------------------------------
 
-    def get_mode(self) -> modes.Mode:
+    def get_mode(self) -> station.Mode:
         """Return the robot's mode: 'autonomous', 'teleop', 'test', or 'disabled'.
 
         Without a driver station it is 'disabled'.
         """
-        return modes.get_mode() if modes.is_attached() else "disabled"
+        return station.get_mode() if station.is_attached() else "disabled"
 
     def set_autonomous(self, enabled: bool = True) -> None:
         """Put the robot in autonomous mode, with the next packet."""
-        modes.set_game_message(self.game_specific_message or "")
-        modes.set_mode(autonomous=True, enabled=enabled)
+        station.set_game_message(self.game_specific_message or "")
+        station.set_mode(autonomous=True, enabled=enabled)
 
     def set_operator_control(self, enabled: bool = True) -> None:
         """Put the robot in operator control mode, with the next packet."""
-        modes.set_mode(enabled=enabled)
+        station.set_mode(enabled=enabled)
 
     def set_test_mode(self, enabled: bool = True) -> None:
         """Put the robot in test mode (the robot mode, not related to unit testing), with the next packet."""
-        modes.set_mode(test=True, enabled=enabled)
+        station.set_mode(test=True, enabled=enabled)
 
     def set_practice_match(self) -> None:
         """Run a practice match. Call it before `run_test`.
@@ -313,7 +313,7 @@ class _PracticeMatch:
 
     def __init__(self, control: TestController, settings: MatchSettings) -> None:
         self._control = control
-        self._mode: modes.Mode | None = None
+        self._mode: station.Mode | None = None
         self._periods = MatchPeriods(settings)
 
     def changes_mode(self, now: float) -> bool:
@@ -333,5 +333,5 @@ class _PracticeMatch:
                 self._control.set_autonomous()
             else:
                 self._control.set_operator_control(enabled=mode == "teleop")
-        modes.set_match_time(left)
+        station.set_match_time(left)
         return True

@@ -18,13 +18,14 @@ from ..fuzz.lines import RobotLines
 from ..fuzz.match_plan import plan_match, seconds_of, without_restarts
 from ..fuzz.network_reads import watch_network_reads
 from ..fuzz.robot_constants import find_constants
-from ..hal import HalData, modes
+from ..hal import HalData
 from ..project import Project, find_project
 from ..runtime.exceptions import TestFroze
 from ..runtime.scripts.script import InputScript
 from ..test_support.controller import TestController
 from ..test_support.fake_time import FakeTime
 from ..text_files import keep_out_of_version_control
+from ..wpi import station
 
 __all__ = ["test_fuzz"]
 
@@ -58,7 +59,9 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
         try:
             control.run_test(fuzz_run.on_packet)
         except (Exception, TestFroze) as error:
-            print(f"The robot failed at {clock.now:.2f} s of a match with random inputs, in {modes.mode_name()} mode.")
+            print(
+                f"The robot failed at {clock.now:.2f} s of a match with random inputs, in {station.mode_name()} mode."
+            )
             _save(project, fuzz_run.script(project.main_file.name, seed), generator, error)
             raise
 

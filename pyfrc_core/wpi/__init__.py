@@ -26,6 +26,8 @@ from ..season import CURRENT
 
 if TYPE_CHECKING:
     from .season_2026 import commands as commands
+    from .season_2026 import station as station
+    from .season_2026 import timing as timing
 else:
 
     def __getattr__(name: str) -> ModuleType:

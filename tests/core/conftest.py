@@ -7,10 +7,10 @@ from collections.abc import Generator
 import hal
 import pytest
 
-from pyfrc_core.hal import modes, timing
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.threads import cooperative
 from pyfrc_core.runtime.time.notifier import Notifier
+from pyfrc_core.wpi import station, timing
 
 from .timeline import Timeline
 
@@ -46,4 +46,4 @@ def run(_unreported_start: None) -> Generator[RobotRun]:
         yield run
     finally:
         run.close()
-        modes.reset_driver_station()
+        station.reset_driver_station()

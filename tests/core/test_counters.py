@@ -11,7 +11,7 @@ from wpilib.simulation import DIOSim
 
 from pyfrc_core.hal import HalData, counters
 from pyfrc_core.hal.counters import counted_channels
-from pyfrc_core.hal.timing import forget_inputs
+from pyfrc_core.hal.reset import forget_inputs
 from pyfrc_core.runtime.patch_table import patched
 from pyfrc_core.runtime.patches.counters import patches
 

@@ -13,9 +13,10 @@ from wpilib import simulation as sim
 from wpilib.interfaces import MotorController
 
 from pyfrc_core.errors import UsageError
-from pyfrc_core.hal import HalData, modes
+from pyfrc_core.hal import HalData
 from pyfrc_core.hal.kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
 from pyfrc_core.hal.output_gate import OutputGate
+from pyfrc_core.wpi import station
 
 OUTPUT, BOTH = hal.SimDevice.Direction.kOutput, hal.SimDevice.Direction.kBidir
 
@@ -23,7 +24,7 @@ OUTPUT, BOTH = hal.SimDevice.Direction.kOutput, hal.SimDevice.Direction.kBidir
 @pytest.fixture
 def gate() -> Generator[OutputGate]:
     """Of a robot that is disabled."""
-    modes.reset_driver_station()
+    station.reset_driver_station()
     yield OutputGate()
     hs.resetDriverStationData()
 
@@ -58,7 +59,7 @@ def test_channels_are_off_within_and_as_set_after(gate: OutputGate) -> None:
         sim.RelaySim(3).setForward(True)
     assert state()[0] == -1.0
     assert relays() == [True, True]
-    modes.set_mode(enabled=True)
+    station.set_mode(enabled=True)
     with gate.closed_while_disabled():
         assert state()[0] == -1.0
     hs.setDriverStationEStop(True)
@@ -139,37 +140,37 @@ def test_motor_controllers_that_remember_what_they_were_given(gate: OutputGate) 
 
 
 def test_modes_by_name() -> None:
-    modes.reset_driver_station()
-    assert modes.mode_name() == modes.get_mode() == "disabled"
-    for name in modes.MODES:
-        modes.set_mode_named(name)
-        assert modes.mode_name() == name
-        assert modes.get_mode() == name.partition(" ")[0]
-        assert modes.is_enabled() is (not name.startswith("disabled"))
+    station.reset_driver_station()
+    assert station.mode_name() == station.get_mode() == "disabled"
+    for name in station.MODES:
+        station.set_mode_named(name)
+        assert station.mode_name() == name
+        assert station.get_mode() == name.partition(" ")[0]
+        assert station.is_enabled() is (not name.startswith("disabled"))
     with pytest.raises(UsageError, match="there is no mode 'Teleop'"):
-        modes.set_mode_named("Teleop")
-    modes.set_mode_named("teleop")
+        station.set_mode_named("Teleop")
+    station.set_mode_named("teleop")
     hs.setDriverStationEStop(True)
-    assert (modes.is_enabled(), modes.is_stopped()) == (False, True)
-    modes.reset_driver_station()
-    assert (modes.is_enabled(), modes.is_stopped(), modes.is_attached()) == (False, False, True)
+    assert (station.is_enabled(), station.is_stopped()) == (False, True)
+    station.reset_driver_station()
+    assert (station.is_enabled(), station.is_stopped(), station.is_attached()) == (False, False, True)
 
 
 def test_the_driver_station_at_first() -> None:
-    modes.set_mode(enabled=True)
-    modes.unplug(2)
-    modes.reset_driver_station()
+    station.set_mode(enabled=True)
+    station.unplug(2)
+    station.reset_driver_station()
     tree = HalData(defaults=False)
     assert (tree["alliance_station"], tree["event"]["name"]) == ("red1", "sim-event")
     assert [stick.counts() for stick in tree["joysticks"]] == [(12, 12, 1)] * 6
     stick = tree["joysticks"][5]
     stick["axes"][11], stick["buttons"][12], stick["povs"][0] = 0.5, True, 90
-    modes.plug_in(5)
+    station.plug_in(5)
     assert (list(stick["axes"]), any(stick["buttons"]), stick["povs"][0]) == ([0.0] * 12, False, -1)
-    modes.set_match_time(12.5)
-    modes.set_game_message("LRL")
+    station.set_match_time(12.5)
+    station.set_game_message("LRL")
     assert (tree["time"]["remaining"], tree["event"]["game_specific_message"]) == (12.5, "LRL")
-    modes.reset_driver_station()
+    station.reset_driver_station()
 
 
 # -- kinds -------------------------------------------------------------------------------------------------------------

@@ -12,11 +12,11 @@ import pytest
 import wpilib
 
 from pyfrc_core.config.settings import Settings
-from pyfrc_core.hal import modes
 from pyfrc_core.project.robot_files import RobotFiles
 from pyfrc_core.runtime.checks.loop_limit import LoopLimit, LoopWaitsError
 from pyfrc_core.runtime.checks.refresh import RefreshCheck
 from pyfrc_core.runtime.robot import RobotRun
+from pyfrc_core.wpi import station
 
 #: The library's loop: `magicbot` is recognized by its module's name.
 MAGIC = """
@@ -106,7 +106,7 @@ def test_a_turn_of_a_librarys_loop_is_limited_and_robot_init_is_not(
 ) -> None:
     run.construct(library.robot(MAGIC_ROBOT))
     run.start()
-    modes.set_mode(enabled=True)
+    station.set_mode(enabled=True)
     library.waits += [0, 0, 100, 0, 101, 0]
     run.run_until(1_000_000)
     # 0.40 .42 .44 (waits until .54) .56 .58: too long at .68
@@ -133,14 +133,14 @@ def test_turns_of_a_librarys_loop_that_take_longer_than_its_period_are_overruns(
 def test_a_turn_is_judged_by_the_mode_in_which_it_began(run: RobotRun, library: Library, exceeded: Exceeded) -> None:
     run.construct(library.robot(MAGIC_ROBOT.replace("wait(400)", "pass")))
     run.start()
-    modes.set_mode_named("autonomous")
+    station.set_mode_named("autonomous")
     run.run_until(20_000)
     library.waits += [0, 300, 0, 0, 301]
     run.run_until(100_000)
-    modes.set_mode_named("teleop")
+    station.set_mode_named("teleop")
     run.run_until(390_000)
     assert exceeded == []
-    modes.set_mode_named("test")
+    station.set_mode_named("test")
     run.run_until(2_000_000)
     assert [error.note.partition(" s of")[0] for _, error in exceeded] == [
         "robot.py:9: teleopPeriodic has not returned after 0.3"

@@ -11,19 +11,18 @@ import wpilib
 from hal.simulation import setDriverStationDsAttached, setDriverStationEnabled
 
 from pyfrc_core.compat.wpilib_threads import motor_safety_event
-from pyfrc_core.hal import modes
-from pyfrc_core.hal.timing import deliver_packet, run_freely, step_us, stop_and_zero
 from pyfrc_core.runtime.time.motor_safety import MotorSafetyCheck
+from pyfrc_core.wpi import station, timing
 
 
 @pytest.fixture(autouse=True)
 def _driver_station() -> Generator[None]:
-    stop_and_zero()
-    modes.reset_driver_station()
+    timing.stop_and_zero()
+    station.reset_driver_station()
     yield
-    modes.reset_driver_station()
-    deliver_packet()
-    run_freely()
+    station.reset_driver_station()
+    station.deliver_packet()
+    timing.run_freely()
 
 
 def checks(monkeypatch: pytest.MonkeyPatch, packets: str) -> list[int]:
@@ -63,17 +62,17 @@ def test_a_motor_that_is_not_fed_stops_in_robot_time_and_not_by_wpilibs_thread()
     motor.setSafetyEnabled(True)
     motor.setExpiration(0.1)
     setDriverStationEnabled(True)
-    deliver_packet()
+    station.deliver_packet()
     hal.refreshDSData()
     check.on_packet(0.0)
     motor.set(0.5)
-    step_us(60_000)
+    timing.step_us(60_000)
     for _ in range(3):
         check.on_packet(0.06)
     assert motor.get() == 0.5
-    step_us(60_000)  # 0.12 s of robot time without a new value
+    timing.step_us(60_000)  # 0.12 s of robot time without a new value
     for _ in range(12):  # which WPILib's own thread would see three times
-        deliver_packet()
+        station.deliver_packet()
         time.sleep(0.002)
     assert motor.get() == 0.5
     for _ in range(4):

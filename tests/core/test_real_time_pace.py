@@ -10,10 +10,10 @@ import pytest
 import wpilib
 
 from pyfrc_core.config.settings import Settings, TestSettings
-from pyfrc_core.hal import modes
 from pyfrc_core.runtime.clock import PACKET
 from pyfrc_core.runtime.real_time_pace import RealTimePace
 from pyfrc_core.runtime.robot import RobotRun
+from pyfrc_core.wpi import station
 
 #: Twice as fast as real time: 10 ms of it for each packet.
 TWICE = Settings(test=TestSettings(real_time_speed=2))
@@ -41,7 +41,7 @@ def slept(run: RobotRun, milliseconds: float, *lasting: float) -> list[float]:
     real = RealTime()
     RealTimePace(run, TWICE, real.clock, real.sleep)
     run.construct(wpilib.TimedRobot)
-    modes.set_mode(enabled=True)
+    station.set_mode(enabled=True)
     if hardware := sys.modules.get("phoenix6.hardware"):
         hardware.TalonFX().set_control(PositionVoltage())
     for number, took in enumerate(lasting, 1):

@@ -11,13 +11,13 @@ import wpilib
 import wpilib.simulation
 from hal import simulation as hs
 
-from pyfrc_core.hal import ds_connection, modes
-from pyfrc_core.hal.ds_connection import DriverStationConnection
 from pyfrc_core.runtime.clock import PACKET_US, PHYSICS
+from pyfrc_core.runtime.connection import DriverStationConnection
 from pyfrc_core.runtime.exceptions import WrongThread
 from pyfrc_core.runtime.patches import driver_station
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.threads import cooperative
+from pyfrc_core.wpi import station
 
 
 class Log(list[str]):
@@ -91,7 +91,7 @@ def test_a_mode_reaches_the_robot_with_the_next_packet(run: RobotRun, log: Log) 
     run.start()
     run.run_until(20_000)
     log.clear()
-    modes.set_mode(enabled=True)
+    station.set_mode(enabled=True)
     run.run_until(39_999)
     assert log == []
     run.run_until(60_000)
@@ -111,7 +111,7 @@ def test_what_the_robot_raises_ends_its_run(run: RobotRun, log: Log) -> None:
 
     run.construct(robot_class(log, fails))
     run.start()
-    modes.set_mode(enabled=True)
+    station.set_mode(enabled=True)
     for _ in range(2):
         with pytest.raises(ValueError, match="from teleopPeriodic"):
             run.run_until(100_000)
@@ -206,7 +206,7 @@ def test_a_connection_begins_with_the_first_packet_and_is_lost_without(connectio
     for _ in range(3):
         connection.packet()
     assert (calls, connection.connected) == ([], False)
-    modes.reset_driver_station()
+    station.reset_driver_station()
     connection.packet()
     connection.packet()
     assert (calls, connection.connected) == (["connected"], True)
@@ -227,8 +227,8 @@ def test_a_connection_begins_with_the_first_packet_and_is_lost_without(connectio
 def test_motors_are_checked_after_a_loss(
     enabled: bool, checks: list[int], connection: DriverStationConnection, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    modes.reset_driver_station()
-    modes.set_mode(enabled=enabled)
+    station.reset_driver_station()
+    station.set_mode(enabled=enabled)
     connection.packet()
     checked: list[int] = []
     sees: list[tuple[bool, bool]] = []
@@ -240,7 +240,7 @@ def test_motors_are_checked_after_a_loss(
         hal.getControlWord(word)
         sees.append((bool(word.enabled), bool(word.dsAttached)))
 
-    monkeypatch.setattr(ds_connection.MotorSafety, "checkMotors", check)
+    monkeypatch.setattr(wpilib.MotorSafety, "checkMotors", check)
     for _ in range(2):
         hs.setDriverStationDsAttached(False)
         missed.clear()

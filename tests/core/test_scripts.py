@@ -12,15 +12,15 @@ import wpilib
 from hal import simulation as hs
 
 from pyfrc_core.errors import PyfrcError, UsageError
-from pyfrc_core.hal import HalData, modes
+from pyfrc_core.hal import HalData
 from pyfrc_core.hal.change_reader import same
-from pyfrc_core.hal.timing import deliver_packet
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.scripts.network_entries import NETWORK
 from pyfrc_core.runtime.scripts.player import Player
 from pyfrc_core.runtime.scripts.recorder import Recorder
 from pyfrc_core.runtime.scripts.script import FORMAT, InputScript, ScriptError, Step, load_script, parse_script
 from pyfrc_core.runtime.scripts.targets import Countdown, Targets
+from pyfrc_core.wpi import station
 
 HEADER = {"format": FORMAT, "end": 1.0}
 
@@ -116,7 +116,7 @@ def test_the_longest_times_and_values(tmp_path: Path) -> None:
 
 @pytest.fixture
 def tree() -> HalData:
-    modes.reset_driver_station()
+    station.reset_driver_station()
     return HalData(defaults=False)
 
 
@@ -124,7 +124,7 @@ def test_targets(tree: HalData) -> None:
     packets: list[int] = []
     targets = Targets(tree, lambda: packets.append(1))
     targets.write("mode", "autonomous", 0)
-    assert modes.mode_name() == "autonomous"
+    assert station.mode_name() == "autonomous"
     targets.write("packet", True, 0)
     assert packets == [1]
     targets.write("joysticks[2].plugged", False, 0)
@@ -220,13 +220,13 @@ def drive(run: RobotRun) -> None:
     """What a test does."""
     stick = run.hal_data["joysticks"][0]
     run.run_until(30_000)
-    modes.set_mode(enabled=True)
+    station.set_mode(enabled=True)
     stick["axes"][0] = 0.1
     run.run_until(70_000)
     stick["buttons"][2] = True
     run.run_until(90_000)
     stick["axes"][0] = -1.0
-    modes.set_mode(enabled=False)
+    station.set_mode(enabled=False)
     run.run_until(130_000)
 
 
@@ -241,7 +241,7 @@ def test_before_packets_with_only_the_match_time_nothing_else_is_recorded(run: R
         published.set(number)
         axes[0] = number / 200
         recorder.begin_outside(stepping=True, only_time=True)
-        modes.set_match_time((15_000_000 - 20_000 * number) / 1_000_000)
+        station.set_match_time((15_000_000 - 20_000 * number) / 1_000_000)
         recorder.end_outside(stepping=True, only_time=True)
     recorder.begin_outside()
     published.set(0.5)
@@ -279,7 +279,7 @@ def test_a_player_writes_when_it_is_due_and_stops_when_it_is_told(run: RobotRun)
     assert [seen[0] for seen in robot.seen] == [True, True, False, False]
     assert run.clock.now_us == 99_999
     assert math.isclose(wpilib.DriverStation.getMatchTime(), 10 - 0.06, abs_tol=1e-6)
-    deliver_packet()
+    station.deliver_packet()
 
 
 def test_a_script_may_say_how_many_buttons_a_joystick_has() -> None:

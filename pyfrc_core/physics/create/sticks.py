@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import TypeVar
 
-from ...hal import HalData, modes
+from ...hal import HalData
 from ...runtime.robot import RobotRun
+from ...wpi import station
 
 #: A joystick's port and the index of one of its axes.
 Axis = tuple[int, int]
@@ -64,12 +65,12 @@ class _Trial:
         self._at_rest: dict[str, float] = {}
 
     def begin(self) -> None:
-        modes.set_mode(enabled=True)
+        station.set_mode(enabled=True)
         self._wait(5 * _STEADY_US)
         self._at_rest = self._read()
 
     def end(self) -> None:
-        modes.set_mode(enabled=False)
+        station.set_mode(enabled=False)
         self._wait(_STEADY_US)
 
     def response(self, axis: Axis, held: Axis | None = None) -> dict[str, float]:
@@ -127,7 +128,7 @@ def while_driving_forward(run: RobotRun, is_driving: Callable[[], bool], look: C
     """
     # Robots that drive relative to the field drive the other way in the red alliance.
     run.hal_data["alliance_station"] = "blue1"
-    modes.set_mode(enabled=True)
+    station.set_mode(enabled=True)
     try:
         for port in range(_PORTS):
             for index in FORWARD_AXES:
@@ -141,5 +142,5 @@ def while_driving_forward(run: RobotRun, is_driving: Callable[[], bool], look: C
                     return seen
         return None
     finally:
-        modes.set_mode(enabled=False)
+        station.set_mode(enabled=False)
         run.run_until(run.clock.now_us + _STEADY_US)

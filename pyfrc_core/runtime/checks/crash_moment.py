@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...hal import modes
+from ...wpi import station
 
 if TYPE_CHECKING:
     from ...processes.crash_report import CrashLog
@@ -24,9 +24,9 @@ class CrashMoment:
         self._note_mode()
         log.time_us[0] = run.clock.now_us
         run.clock.moment = log.time_us
-        self._listening = modes.when_mode_changes(self._note_mode)
+        self._listening = station.when_mode_changes(self._note_mode)
         run.connection.when_connected.append(self._note_mode)
 
     def _note_mode(self, name: str = "", value: object = None) -> None:
         # Before its first packet, a robot is disabled whatever mode is asked for.
-        self._log.set_mode(modes.mode_name() if self._run.connection.connected else "disabled")
+        self._log.set_mode(station.mode_name() if self._run.connection.connected else "disabled")

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from ...compat.cpython_private import current_frames, get_frame
 from ...compat.wpilib_private import LOOP_FUNCTION
 from ...config.settings import Settings
-from ...hal import modes
 from ...project.robot_files import RobotFiles, is_pyfrc
+from ...wpi import station
 from ..clock import OBSERVE, PACKET_US, to_us
 from .failures import NamesItsPlace
 
@@ -92,7 +92,7 @@ class LoopLimit:
         if began_us is None or began_us == self._reported_us:
             return
         if began_us != self._turn_us:
-            self._turn_us, self._mode = began_us, modes.get_mode()
+            self._turn_us, self._mode = began_us, station.get_mode()
         if not self._armed:
             # Even where more is allowed, so that a turn in another mode, which has less, finds an alarm early enough.
             self._arm(began_us + self._loop_us + 1)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import wpilib
 
-from ...hal import modes
+from ...wpi import station
 from .loop_limit import is_magic
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _LOOKS = 125
 
 def explain_missing_refresh(run: RobotRun) -> str | None:
     """Return a sentence about a robot that is enabled and does not see it; None for all others."""
-    if _sees_mode(run) or not modes.is_enabled():
+    if _sees_mode(run) or not station.is_enabled():
         return None
     robot = type(run.robot)
     code = getattr(robot.startCompetition, "__code__", None)
@@ -48,7 +48,7 @@ class RefreshCheck:
             return None
         if _sees_mode(self._run):
             self._looks = _LOOKS + 1
-        elif modes.is_enabled():
+        elif station.is_enabled():
             self._looks += 1
             if self._looks > _LOOKS:
                 return explain_missing_refresh(self._run)

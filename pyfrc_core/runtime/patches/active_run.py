@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from typing import Any, Protocol
 
 from ...hal import HalData
-from ...hal.ds_connection import DriverStationConnection
 from ..clock import Clock
+from ..connection import DriverStationConnection
 from ..threads import cooperative
 from ..threads.robot_threads import RobotThread, RobotThreads
 from ..time.loop_watchdog import LoopOverruns

@@ -25,7 +25,7 @@ import wpilib.simulation
 from ...compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
 from ...compat.object_hashes import hash_by_number, object_base
 from ...compat.wpilib_private import LOOP_FUNCTION
-from ...hal import timing
+from ...wpi import timing
 from ..after_import import after_import
 from ..clock import KICKOFF as KICKOFF
 from ..clock import to_us

@@ -17,7 +17,7 @@ from typing import Any
 
 from wpiutil.log import DataLogReader, DataLogRecord
 
-from ...hal.modes import AXES, BUTTONS, EVENT_NAME, JOYSTICKS, NOT_PRESSED, POVS
+from ...wpi import station
 from ..robot_time import PACKET_US
 from .network_entries import entry_target
 from .script import InputScript, ScriptError, Step
@@ -59,9 +59,9 @@ _MATCH_TYPES = ("none", "practice", "qualification", "elimination")
 
 #: The number of controls of a joystick that is plugged in, and their initial value.
 _CONTROLS: dict[str, tuple[int, Any]] = {
-    "axes": (AXES, 0.0),
-    "buttons": (BUTTONS, False),
-    "povs": (POVS, NOT_PRESSED),
+    "axes": (station.AXES, 0.0),
+    "buttons": (station.BUTTONS, False),
+    "povs": (station.POVS, station.NOT_PRESSED),
 }
 
 
@@ -82,15 +82,15 @@ def script_from_log(file: Path) -> InputScript:
         records = sorted(_records(file), key=lambda record: record.at_us)
     except (RuntimeError, ValueError, TypeError, IndexError, OSError) as malformed:
         raise ScriptError(f"the data log cannot be read: {malformed}", where=file.name) from None
-    station = [record for record in records if record.name.startswith("DS:")]
-    if not any(record.name == "DS:enabled" for record in station):
+    sent = [record for record in records if record.name.startswith("DS:")]
+    if not any(record.name == "DS:enabled" for record in sent):
         raise ScriptError(
             "this data log has no data of a driver station",
             where=file.name,
             remedy="In robotInit, wpilib.DriverStation.startDataLog(wpilib.DataLogManager.getLog()) logs it.",
         )
     # A robot's clock starts before its program; that of a simulation starts with it.
-    first_us = station[0].at_us
+    first_us = sent[0].at_us
     base_us = 0 if first_us <= PACKET_US else first_us // PACKET_US * PACKET_US
     state, steps = _State(), []
     for at_us, together in groupby(records, key=lambda record: _packet(record.at_us - base_us)):
@@ -140,7 +140,7 @@ class _State:
         if attached:
             for target, value, initially in self._station():
                 yield from self._changed(target, value, initially)
-            for stick in range(JOYSTICKS):
+            for stick in range(station.JOYSTICKS):
                 yield from self._joystick(stick)
         for name, value in self.values.items():
             if _FROM_OUTSIDE.fullmatch(name):
@@ -161,14 +161,14 @@ class _State:
         """Return targets with their values now, and at the start of a run."""
         fms = {name.removeprefix(_FMS): value for name, value in self.values.items() if name.startswith(_FMS)}
         ours = {name.removeprefix(_HAL): value for name, value in self.values.items() if name.startswith(_HAL)}
-        station = int(ours.get("alliance_station", 1))
+        place = int(ours.get("alliance_station", 1))
         if "StationNumber" in fms:
-            station = int(fms["StationNumber"]) + (0 if fms.get("IsRedAlliance", True) else 3)
-        yield "alliance_station", _named(_STATIONS, station), "red1"
+            place = int(fms["StationNumber"]) + (0 if fms.get("IsRedAlliance", True) else 3)
+        yield "alliance_station", _named(_STATIONS, place), "red1"
         yield "control.eStop", bool(self.values.get("DS:estop")), False
         fms_attached = bool(fms.get("FMSControlData", 0) & _FMS_ATTACHED) or bool(ours.get("control.fmsAttached"))
         yield "control.fmsAttached", fms_attached, False
-        yield "event.name", fms.get("EventName", ours.get("event.name", EVENT_NAME)), EVENT_NAME
+        yield "event.name", fms.get("EventName", ours.get("event.name", station.EVENT_NAME)), station.EVENT_NAME
         yield "event.match_number", int(fms.get("MatchNumber", ours.get("event.match_number", 0))), 0
         match_type = int(fms.get("MatchType", ours.get("event.match_type", 0)))
         yield "event.match_type", _named(_MATCH_TYPES, match_type), "none"

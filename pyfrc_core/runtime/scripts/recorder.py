@@ -11,8 +11,8 @@ from typing import Any
 import ntcore
 
 from ...compat.unrepeatable import is_real_time
-from ...hal import modes
 from ...hal.change_reader import MISSING, Change, same
+from ...wpi import station
 from ..robot import RobotRun
 from .network_entries import NETWORK, numbers_of, struct_target
 from .script import InputScript, Step
@@ -49,7 +49,7 @@ class Recorder:
         self._steps: list[Step] = []
         self._forgotten = 0
         self._match_time = _MatchTime()
-        self._told_by_name = {MODE, *map(plugged, range(modes.JOYSTICKS))}
+        self._told_by_name = {MODE, *map(plugged, range(station.JOYSTICKS))}
         self._start_us = 0
         #: When the step that is being taken from outside began, if one is.
         self._stepping_since: int | None = None
@@ -65,7 +65,7 @@ class Recorder:
         if stepping:
             self._stepping_since = self._run.clock.now_us
         if only_time:
-            self._left = modes.match_time()
+            self._left = station.match_time()
             self._network.skip_later()
             return
         self._skip()
@@ -86,7 +86,7 @@ class Recorder:
         left_before = self._left
         writes: dict[str, Any] = {}
         if only_time:
-            self._left = modes.match_time()
+            self._left = station.match_time()
         else:
             writes.update(self._writes(self._look()))
         self._match_time.hear(writes, left_before, self._left, at_us, stepping)
@@ -118,16 +118,16 @@ class Recorder:
 
     def _skip(self) -> None:
         """Look at everything, to know what changes from now on."""
-        self._mode = modes.mode_name()
+        self._mode = station.mode_name()
         self._changes.skip()
-        self._left = modes.match_time()
+        self._left = station.match_time()
         list(self._look_at_sticks())
         self._network.skip()
 
     def _look(self) -> list[Change]:
         """Return what has changed since the last look, in the order in which a script has it."""
         found: list[Change] = []
-        mode = modes.mode_name()
+        mode = station.mode_name()
         if mode != self._mode:
             found.append((MODE, self._mode, mode))
             self._mode = mode

@@ -16,12 +16,9 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-import wpilib
-
 from ...errors import UsageError
-from ...hal import HalData, LiveDict, format_path, modes, parse_path
-from ...hal.driver_station import MAX_BUTTONS
-from ...hal.timing import deliver_packet
+from ...hal import HalData, LiveDict, format_path, parse_path
+from ...wpi import station
 from ..clock import to_us
 from .network_entries import NETWORK, NetworkEntries
 
@@ -73,7 +70,7 @@ class Targets:
     :param deliver: delivers a packet
     """
 
-    def __init__(self, hal_data: HalData, deliver: Callable[[], object] = deliver_packet) -> None:
+    def __init__(self, hal_data: HalData, deliver: Callable[[], object] = station.deliver_packet) -> None:
         self._hal_data = hal_data
         self._deliver = deliver
         self._entries = NetworkEntries()
@@ -95,21 +92,21 @@ class Targets:
             place, key = kept
             place[key] = value
         elif target == MODE:
-            modes.set_mode_named(value)
+            station.set_mode_named(value)
         elif target == MATCH_TIME:
             if isinstance(value, bool) or not isinstance(value, int | float):
                 raise UsageError(f"match_time is a number of seconds, not {value!r}")
             self._countdown.start(value, now_us)
-            modes.set_match_time(value)
+            station.set_match_time(value)
         elif target == PACKET:
             self._deliver()
-            wpilib.DriverStation.refreshData()
+            station.refresh()
         elif target == RESTART:
             raise UsageError("only pyfrc replay and control.replay() can start the robot program again")
         elif target.startswith(NETWORK):
             self._entries.write(target, value)
         elif (stick := PLUGGED.fullmatch(target)) is not None:
-            modes.plug_in(int(stick[1])) if value else modes.unplug(int(stick[1]))
+            station.plug_in(int(stick[1])) if value else station.unplug(int(stick[1]))
         else:
             if target == REMAINING:
                 self._countdown.stop()
@@ -126,7 +123,7 @@ class Targets:
         if self._is_path(target):
             root = parse_path(target)[0]
             button = _BUTTON.fullmatch(target)
-            if button is not None and int(button[1]) <= MAX_BUTTONS:
+            if button is not None and int(button[1]) <= station.MAX_BUTTONS:
                 return  # the script may write how many buttons the joystick has
             if root not in _COMES_WITH_THE_ROBOT:
                 self._hal_data.read(target)
@@ -147,7 +144,7 @@ class Targets:
     def count_down(self, now_us: int) -> None:
         """Called at each packet: the match's time goes on."""
         if (ends_us := self._countdown.ends_us) is not None:
-            modes.set_match_time(max(0, ends_us - now_us) / 1_000_000)  # as `Countdown.left`
+            station.set_match_time(max(0, ends_us - now_us) / 1_000_000)  # as `Countdown.left`
 
     @staticmethod
     def _is_path(target: str) -> bool:

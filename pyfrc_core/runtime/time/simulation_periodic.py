@@ -11,8 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ...compat.wpilib_private import SIMULATION_PERIODIC, simulation_periodic_of
-from ...hal import modes
-from ...wpi import commands
+from ...wpi import commands, station
 
 if TYPE_CHECKING:
     from ...hal.output_gate import OutputGate
@@ -43,7 +42,7 @@ def _gated(owner: object, name: str, gate: Callable[[], OutputGate]) -> Callable
     def simulate() -> None:
         __tracebackhide__ = True
         owner = reference()
-        if modes.is_enabled():
+        if station.is_enabled():
             getattr(type(owner), name)(owner)
         else:
             with gate().closed_while_disabled():

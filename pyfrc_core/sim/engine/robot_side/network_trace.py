@@ -11,8 +11,8 @@ from typing import Any
 
 import ntcore
 
-from ....hal import modes
 from ....runtime.scripts.trace_lines import trace_line
+from ....wpi import station
 from ..network_paths import MODE, POSE, TYPE, VALUE
 from ..scene import Pose
 from .structs import StructReader
@@ -39,7 +39,7 @@ class NetworkTrace:
 
     def look(self, now: float) -> None:
         """Note what has changed by `now`, in seconds of robot time."""
-        changed: dict[str, Any] = {MODE: modes.mode_name()}
+        changed: dict[str, Any] = {MODE: station.mode_name()}
         if (pose := self._pose()) is not None:
             changed[POSE] = [pose.x, pose.y, pose.angle]
         gone: dict[str, None] = {}

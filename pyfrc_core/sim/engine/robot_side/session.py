@@ -9,7 +9,6 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from ....errors import PyfrcError
-from ....hal import modes
 from ....physics.core import PhysicsInterface
 from ....physics.pose import walls_of
 from ....runtime.checks.loop_limit import LoopLimit
@@ -20,6 +19,7 @@ from ....runtime.robot import RobotRun
 from ....runtime.scripts.player import Player
 from ....runtime.scripts.recorder import Recorder
 from ....runtime.scripts.targets import Targets
+from ....wpi import station
 from ..commands import ROBOT_ON_FIELD, ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
 from ..messages import Job, Ready, Replayed, Update
 from ..scene import Pose, Target
@@ -66,7 +66,7 @@ class Session:
         self._carried_out = self._recorded = 0
         self._pace = Pace(self._time.speed, self._time.paused)
         if job.extensions:  # which have changed the initial state: that counts as an input, too
-            modes.reset_driver_station()
+            station.reset_driver_station()
         self._recorder = Recorder(run) if job.recording else None
         self._traces = Traces(run.hal_data, NetworkTrace(self._robot_pose) if job.network_values else None)
         self._renderer = UserRenderer(self._robot_pose)
@@ -317,7 +317,7 @@ class Session:
         network_base, network_lines = self._traces.take_network(run.clock.now, base is not None)
         update = Update(
             time_us=run.clock.now_us - self._beyond_us,
-            mode=modes.mode_name(),
+            mode=station.mode_name(),
             station=self._station.state,
             time_state=self._time,
             carried_out=self._carried_out,
@@ -374,7 +374,7 @@ class Session:
         """Note the robot's place and mode. Called for every second packet."""
         if not self._run.alive:
             raise Ended
-        self._mode_packets[modes.mode_name() if modes.is_attached() else "disabled"] += _FOLLOW_PACKETS
+        self._mode_packets[station.mode_name() if station.is_attached() else "disabled"] += _FOLLOW_PACKETS
         if (note := self._refresh.look()) is not None:
             self._notes.append(note)
         self._traces.skip(self._run.clock.now)

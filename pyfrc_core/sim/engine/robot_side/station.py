@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from ....config.settings import MatchSettings
 from ....config.sim import FieldConfig
-from ....hal import modes
 from ....runtime.match import MatchPeriods
 from ....runtime.robot import RobotRun
 from ....runtime.scripts.joysticks import CONTROL, NEUTRAL
+from ....wpi import station
 from ..commands import ChooseMode, EmergencyStop, Enable, Practice
 from ..messages import StationState
 
@@ -57,9 +57,9 @@ class Station:
             self._disable()
         elif self._run.hal_data.read(E_STOP):
             return "The robot has been stopped in an emergency: restart it to enable it again."
-        elif modes.get_mode() == "disabled":
+        elif station.get_mode() == "disabled":
             self._end_practice()
-            chosen = modes.mode_name().removeprefix("disabled").strip()
+            chosen = station.mode_name().removeprefix("disabled").strip()
             self._enter(chosen or "teleop")
         return ""
 
@@ -86,7 +86,7 @@ class Station:
         is_neutral = value == NEUTRAL[control[2]]
         if is_neutral and target in self._pressed:
             taps[target] = 1
-        elif self._delivers(modes.mode_name()):
+        elif self._delivers(station.mode_name()):
             self._write(target, value)
             if not is_neutral and control[2] != "axes":
                 self._pressed.add(target)
@@ -95,12 +95,12 @@ class Station:
 
     def _disable(self) -> None:
         self._end_practice()
-        mode = modes.mode_name()
+        mode = station.mode_name()
         if not mode.startswith("disabled"):
             self._enter("disabled" if mode == "teleop" else f"disabled {mode}")
 
     def _enter(self, mode: str) -> None:
-        before, after = self._delivers(modes.mode_name()), self._delivers(mode)
+        before, after = self._delivers(station.mode_name()), self._delivers(mode)
         self._write("mode", mode)
         if before != after:
             for target, value in self.state.sticks.items():
@@ -135,7 +135,7 @@ class Station:
         """Release the controls that the robot has seen pressed in the last packet."""
         for target, packets in self.state.taps.items():
             control = CONTROL.fullmatch(target)
-            if packets == 0 and control is not None and self._delivers(modes.mode_name()):
+            if packets == 0 and control is not None and self._delivers(station.mode_name()):
                 self._write(target, NEUTRAL[control[2]])
         self.state = replace(self.state, taps={each: 0 for each, packets in self.state.taps.items() if packets})
 
@@ -145,8 +145,8 @@ class Station:
         period = None if since is None else self._periods.at(self._run.clock.now_us - since)
         mode, left = period or ("disabled", 0.0)
         if since is not None:
-            if mode != modes.mode_name():
+            if mode != station.mode_name():
                 self._enter(mode)
-            modes.set_match_time(left)
+            station.set_match_time(left)
         if period is None:
             self._end_practice()

@@ -1,4 +1,4 @@
-"""WPILib's simulated FPGA clock and driver-station packets, which the runtime drives.
+"""HAL time, which the runtime stops and steps.
 
 The functions are bound when this module is imported, before the runtime patches the names that tests and robot code
 call (such as `wpilib.simulation.stepTiming`), so they always reach the HAL itself.
@@ -11,29 +11,14 @@ from contextlib import contextmanager
 
 from hal.simulation import (
     isTimingPaused,
-    notifyDriverStationNewData,
     pauseTiming,
-    resetAllSimData,
     restartTiming,
     resumeTiming,
     stepTiming,
 )
 
-from .counters import forget_written_counts
-from .created_devices import prepare_reset
-
 #: Advance HAL time by this many microseconds; wake the notifiers of C++ code that become due.
 step_us = stepTiming
-
-#: Deliver the driver station's current data to the robot as the next packet.
-deliver_packet = notifyDriverStationNewData
-
-
-def forget_inputs() -> None:
-    """Reset all sensors and outputs to their initial values."""
-    prepare_reset()
-    resetAllSimData()
-    forget_written_counts()
 
 
 def stop_and_zero() -> None:

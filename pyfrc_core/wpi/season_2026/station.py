@@ -1,18 +1,24 @@
-"""The driver station's mode, set by tests, scripts and people."""
+"""The driver station: what it sends, packets, and what the robot program has taken in of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Literal, TypeAlias
 
-from hal import AllianceStationID
+import hal
 from hal.simulation import (
+    getDriverStationAllianceStationId,
     getDriverStationAutonomous,
     getDriverStationDsAttached,
     getDriverStationEnabled,
     getDriverStationEStop,
     getDriverStationMatchTime,
     getDriverStationTest,
+    getJoystickCounts,
+    getMatchInfo,
+    getProgramStarted,
+    notifyDriverStationNewData,
     resetDriverStationData,
     setDriverStationAllianceStationId,
     setDriverStationAutonomous,
@@ -29,9 +35,10 @@ from hal.simulation import (
     setJoystickPOV,
     setJoystickPOVCount,
 )
+from wpilib import DriverStation, MotorSafety
 from wpilib.simulation import DriverStationSim
 
-from ..errors import UsageError
+from ...errors import UsageError
 
 #: The four modes that `TestController.get_mode` returns.
 Mode: TypeAlias = Literal["disabled", "autonomous", "teleop", "test"]
@@ -43,13 +50,24 @@ EVENT_NAME = "sim-event"
 AXES, BUTTONS, POVS = 12, 12, 1
 #: The value of a POV that is not pressed; when pressed, it is an angle in degrees clockwise from up.
 NOT_PRESSED = -1
+#: The most buttons that a joystick can have.
+MAX_BUTTONS = 32
+
+#: The match, as the field sends it. Its members are the season's own.
+MatchInfo: TypeAlias = hal.MatchInfo
+
+#: Deliver the driver station's current data to the robot as the next packet.
+deliver_packet = notifyDriverStationNewData
+
+#: Have the robot program take in the last packet, as its loop does.
+refresh = DriverStation.refreshData
 
 
 def reset_driver_station() -> None:
     """Set the initial data of the driver station: attached, disabled, red 1, six joysticks with nothing pressed."""
     resetDriverStationData()
     setDriverStationDsAttached(True)
-    setDriverStationAllianceStationId(AllianceStationID.kRed1)
+    setDriverStationAllianceStationId(hal.AllianceStationID.kRed1)
     setEventName(EVENT_NAME)
     for stick in range(JOYSTICKS):
         plug_in(stick)
@@ -139,6 +157,16 @@ def when_mode_changes(listener: Callable[[str, object], None]) -> list[object]:
     ]
 
 
+def sends_enabled() -> bool:
+    """Return whether the next packet enables the robot, attached to the driver station or not."""
+    return bool(getDriverStationEnabled())
+
+
+def disable() -> None:
+    """Disable the robot with the next packet; its mode stays."""
+    setDriverStationEnabled(False)
+
+
 def is_enabled() -> bool:
     """Return whether the robot may move: it is enabled, attached to a driver station, and not emergency-stopped."""
     return bool(getDriverStationEnabled()) and bool(getDriverStationDsAttached()) and not getDriverStationEStop()
@@ -167,3 +195,87 @@ def match_time() -> float:
 def set_game_message(message: str) -> None:
     """Set the message that the field sends to all robots: `DriverStation.getGameSpecificMessage`."""
     setGameSpecificMessage(message)
+
+
+# -- the robot's side --------------------------------------------------------------------------------------------------
+
+
+def program_state() -> str | None:
+    """Return the robot program's mode; None until it has started.
+
+    The program reports its mode to the HAL, which does not return it. So this is the mode of the last packet that the
+    program has read.
+    """
+    if not getProgramStarted():
+        return None
+    if DriverStation.isTeleopEnabled():  # the mode of most packets
+        return "teleop"
+    if DriverStation.isDisabled():
+        return "disabled"
+    return "autonomous" if DriverStation.isAutonomous() else "test"
+
+
+def robot_is_enabled() -> bool:
+    """Return whether the robot finds itself enabled, by the last packet that its program has read."""
+    return bool(DriverStation.isEnabled())
+
+
+# -- without a connection ----------------------------------------------------------------------------------------------
+
+
+def detach_at_boot() -> None:
+    """Show the robot what it sees after power-on: no driver station, alliance, match and joysticks."""
+    resetDriverStationData()
+    deliver_packet()
+    setDriverStationDsAttached(False)
+    refresh()
+
+
+def sent_match() -> MatchInfo:
+    """Return the match that packets contain now."""
+    info = MatchInfo()
+    getMatchInfo(info)
+    return info
+
+
+def deliver_loss() -> None:
+    """Show the robot the loss: not attached, disabled, and joysticks without axes, buttons and POVs."""
+    with _nothing_new():
+        deliver_packet()
+
+
+def check_motors_after_loss() -> None:
+    """Stop the motors that were not updated since the loss.
+
+    WPILib's own check does nothing in a robot that is disabled; on a roboRIO the FPGA cuts the outputs. So WPILib
+    sees the robot enabled for as long as the check takes.
+    """
+    enabled = getDriverStationEnabled()
+    with _nothing_new():
+        setDriverStationEnabled(True)
+        deliver_packet()
+        hal.refreshDSData()
+        MotorSafety.checkMotors()
+        setDriverStationEnabled(enabled)
+    hal.refreshDSData()
+
+
+@contextmanager
+def _nothing_new() -> Iterator[None]:
+    """Make packets contain no joysticks, and the alliance and match time that the robot has, until the context ends."""
+    counts = [getJoystickCounts(stick) for stick in range(JOYSTICKS)]
+    alliance, match_time = getDriverStationAllianceStationId(), getDriverStationMatchTime()
+    for stick in range(JOYSTICKS):
+        unplug(stick)
+    setDriverStationAllianceStationId(hal.getAllianceStation()[0])
+    setDriverStationMatchTime(DriverStation.getMatchTime())
+    try:
+        yield
+    finally:
+        for stick, (axes, buttons, povs) in enumerate(counts):
+            setJoystickAxisCount(stick, axes)
+            setJoystickButtonCount(stick, buttons)
+            setJoystickPOVCount(stick, povs)
+        setDriverStationAllianceStationId(alliance)
+        setDriverStationMatchTime(match_time)
+        setDriverStationDsAttached(False)
