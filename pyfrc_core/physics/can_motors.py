@@ -14,8 +14,7 @@ import math
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from wpilib.simulation import RoboRioSim, SimDeviceSim
-from wpimath.system.plant import DCMotor
+from ..wpi import devices, motors
 
 #: REV's control modes that need no sensor: duty cycle and voltage.
 _OPEN_LOOP = (0, 2)
@@ -28,7 +27,7 @@ _ATTEMPTS = 5
 class Controller(Protocol):
     """A motor controller with its motor and gears."""
 
-    motor: DCMotor
+    motor: motors.DCMotor
     gearing: float
 
     def steps(self) -> int:
@@ -57,7 +56,7 @@ class Spark:
     :param zero: what the absolute encoder measures where the simulation begins, in turns
     """
 
-    def __init__(self, spark: Any, motor: DCMotor, gearing: float = 1.0, *, zero: float = 0.0) -> None:
+    def __init__(self, spark: Any, motor: motors.DCMotor, gearing: float = 1.0, *, zero: float = 0.0) -> None:
         import rev
 
         self.motor, self.gearing, self.zero = motor, gearing, zero
@@ -65,7 +64,7 @@ class Spark:
         on_shaft = (rev.FeedbackSensor.kAbsoluteEncoder, rev.FeedbackSensor.kAlternateOrExternalEncoder)
         # REV's simulation takes the speed of the sensor that closes the loop for that of the motor: with a sensor
         # behind the gears, it needs a motor with gears. It refers to the motor without keeping it.
-        self._model = motor.withReduction(gearing) if sensor in on_shaft else motor
+        self._model = motors.with_gears(motor, gearing) if sensor in on_shaft else motor
         is_flex = isinstance(spark, rev.SparkFlex)
         make: Any = rev.SparkFlexSim if is_flex else rev.SparkMaxSim
         self._sim = make(spark, self._model)
@@ -75,13 +74,13 @@ class Spark:
         #: The sensor that `iterate` moves, and the turns of each sensor for one turn of the shaft.
         self._feedback = {on_shaft[0]: self._absolute, on_shaft[1]: self._second}.get(sensor, self._relative)
         self._sensors = ((self._relative, gearing), (self._second, 1.0))
-        device = SimDeviceSim(f"SPARK {'Flex' if is_flex else 'MAX'} [{spark.getDeviceId()}]")
-        self._mode = device.getInt("Control Mode")
+        device = f"SPARK {'Flex' if is_flex else 'MAX'} [{spark.getDeviceId()}]"
+        self._mode = devices.sim_integer(device, "Control Mode")
         self._set_absolute(0.0, 0.0)
 
     def steps(self) -> int:
         """Return how many times in 20 ms it needs its sensors."""
-        return 1 if self._mode.get() in _OPEN_LOOP else _CLOSED_LOOP_STEPS
+        return 1 if self._mode() in _OPEN_LOOP else _CLOSED_LOOP_STEPS
 
     def output(self) -> float:
         """Return the applied output, from -1 to 1."""
@@ -90,7 +89,7 @@ class Spark:
     def measure(self, turns: float, speed: float, tm_diff: float) -> None:
         """Set the sensors, and let REV's simulation compute the next output."""
         sensor_speed = speed * self.gearing if self._feedback is self._relative else speed
-        volts = RoboRioSim.getVInVoltage()
+        volts = devices.battery_voltage()
         # REV's loop has a position of its own, which follows neither what is set below nor the robot's setPosition().
         self._sim.setPosition(self._feedback.getPosition())
         self._sim.iterate(sensor_speed * 60 * self._feedback.getVelocityConversionFactor(), volts, tm_diff)
@@ -118,7 +117,7 @@ class Talon:
     """
 
     def __init__(
-        self, talon: Any, motor: DCMotor, gearing: float = 1.0, cancoder: Any = None, *, zero: float = 0.0
+        self, talon: Any, motor: motors.DCMotor, gearing: float = 1.0, cancoder: Any = None, *, zero: float = 0.0
     ) -> None:
         from phoenix6 import configs
         from phoenix6.signals import InvertedValue, SensorDirectionValue
@@ -147,11 +146,11 @@ class Talon:
 
     def output(self) -> float:
         """Return the applied output, from -1 to 1."""
-        return float(self._state.motor_voltage) / (RoboRioSim.getVInVoltage() or 12.0)
+        return float(self._state.motor_voltage) / (devices.battery_voltage() or 12.0)
 
     def measure(self, turns: float, speed: float, tm_diff: float) -> None:
         """Set the sensors."""
-        volts = RoboRioSim.getVInVoltage()
+        volts = devices.battery_voltage()
         self._state.set_supply_voltage(volts)
         self._state.set_raw_rotor_position(turns * self.gearing)
         self._state.set_rotor_velocity(speed * self.gearing)
@@ -185,10 +184,10 @@ class Mechanism:
         self._controller = controller
         self._low = -math.inf if low is None else low
         self._high = math.inf if high is None else high
-        motor, gearing = controller.motor, controller.gearing
+        motor, gearing = motors.data_of(controller.motor), controller.gearing
         #: The speed for each volt in turns per second, and the time to 63 % of it in seconds.
-        self._speed_per_volt = motor.Kv / gearing / math.tau
-        self._time_constant = inertia * motor.R * motor.Kv / (gearing**2 * motor.Kt)
+        self._speed_per_volt = motor.kv / gearing / math.tau
+        self._time_constant = inertia * motor.resistance * motor.kv / (gearing**2 * motor.kt)
         #: The angle of the shaft behind the gears in turns, and its speed in turns per second.
         self.turns = self.speed = 0.0
 
@@ -206,7 +205,7 @@ class Mechanism:
         if tm_diff <= 0:
             return
         before = self.turns
-        final = self.output() * RoboRioSim.getVInVoltage() * self._speed_per_volt
+        final = self.output() * devices.battery_voltage() * self._speed_per_volt
         # The solution of a motor's differential equation for a constant voltage.
         away = self.speed - final
         decay = -math.expm1(-tm_diff / self._time_constant)

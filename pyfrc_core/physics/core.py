@@ -7,15 +7,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
-import wpilib
-from wpimath.geometry import Pose2d, Rotation2d, Transform2d
-from wpimath.kinematics import ChassisSpeeds
-
 from ..config.document import document_of
 from ..config.resolve import resolve_document
 from ..config.sim import SimConfig
 from ..errors import RobotCodeError
 from ..hal import HalData
+from ..wpi import dashboards, geometry
 from .drivetrains import DriveVector
 from .parameters import ParameterError
 from .pose import METRES_PER_FOOT, Pose, along_arc, walls_of
@@ -25,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PhysicsEngine", "PhysicsInitException", "PhysicsInterface"]
 
-_NO_MOVE = Transform2d()
+_NO_MOVE = geometry.Transform2d()
 #: Poses that differ by less than this are equal to WPILib, in metres and radians.
 _LEAST_MOVE = 1e-9
 
@@ -66,7 +63,7 @@ class PhysicsEngine:
         """
 
 
-class PhysicsField(wpilib.Field2d):
+class PhysicsField(dashboards.Field2d):
     """The field of one run, which is distinguished by its class from those that robot code shows."""
 
 
@@ -93,7 +90,7 @@ class PhysicsInterface:
         self.robot_path = str(robot_path)
         self.fake_time = fake_time
         #: The field as dashboards show it; `setRobotPose` moves the robot.
-        self.field: wpilib.Field2d = PhysicsField()
+        self.field: dashboards.Field2d = PhysicsField()
         #: The targets of a `VisionSim`, and those that it sees now.
         self.vision_targets: tuple[VisionSimTarget, ...] = ()
         self.vision_targets_in_view: tuple[VisionSimTarget, ...] = ()
@@ -103,7 +100,7 @@ class PhysicsInterface:
         self.config_obj = document_of(config) if isinstance(config_obj, SimConfig) else config_obj
         self._hal_data = hal_data
         self._pose: Pose
-        self._shown: Pose2d
+        self._shown: geometry.Pose2d
         self._device_gyros: list[str] = []
         self._analog_rate, self._device_rate = _Rate(), _Rate()
         self._height = config.field.h
@@ -114,20 +111,20 @@ class PhysicsInterface:
     # -- feet, clockwise -----------------------------------------------------------------------------------------
 
     @overload
-    def drive(self, speed: float, rotation_speed: float, tm_diff: float) -> Pose2d: ...
+    def drive(self, speed: float, rotation_speed: float, tm_diff: float) -> geometry.Pose2d: ...
 
     @overload
-    def drive(self, speed: ChassisSpeeds | DriveVector, tm_diff: float, /) -> Pose2d: ...
+    def drive(self, speed: geometry.ChassisSpeeds | DriveVector, tm_diff: float, /) -> geometry.Pose2d: ...
 
     @overload
-    def drive(self, speed: ChassisSpeeds | DriveVector, *, tm_diff: float) -> Pose2d: ...
+    def drive(self, speed: geometry.ChassisSpeeds | DriveVector, *, tm_diff: float) -> geometry.Pose2d: ...
 
     def drive(
         self,
-        speed: float | ChassisSpeeds | DriveVector,
+        speed: float | geometry.ChassisSpeeds | DriveVector,
         rotation_speed: float | None = None,
         tm_diff: float | None = None,
-    ) -> Pose2d:
+    ) -> geometry.Pose2d:
         """Turn the robot, then move it forward. This also works while it is disabled, since a robot keeps rolling.
 
         There are two more forms, which move the robot along the arc of constant velocities: ``drive(vector, tm_diff)``
@@ -139,7 +136,7 @@ class PhysicsInterface:
         :param tm_diff: the duration in seconds, as passed to `update_sim`
         :returns: the robot's new pose
         """
-        if isinstance(speed, (ChassisSpeeds, DriveVector)):
+        if isinstance(speed, (geometry.ChassisSpeeds, DriveVector)):
             time = rotation_speed if tm_diff is None else tm_diff  # the second positional argument
             if time is None or (rotation_speed is not None and tm_diff is not None):
                 raise TypeError(f"drive({type(speed).__name__}, tm_diff) takes a time, in seconds, and nothing else")
@@ -215,7 +212,7 @@ class PhysicsInterface:
 
     # -- metres, counter-clockwise -------------------------------------------------------------------------------
 
-    def move_robot(self, transform: Transform2d) -> Pose2d:
+    def move_robot(self, transform: geometry.Transform2d) -> geometry.Pose2d:
         """Move the robot relative to its pose. This also works while it is disabled, since a robot keeps rolling.
 
         Analog gyros are not turned. Moves of less than a nanometre and a billionth of a radian are ignored.
@@ -225,14 +222,14 @@ class PhysicsInterface:
         """
         if transform == _NO_MOVE:  # WPILib compares to a nanometre; most robots rest most of the time
             return self._move(0.0, 0.0, 0.0)
-        if not isinstance(transform, Transform2d):
+        if not isinstance(transform, geometry.Transform2d):
             raise TypeError(f"move_robot(transform) takes a Transform2d, not a {type(transform).__name__}")
         turn = transform.rotation().radians()
         return self._move(transform.x / METRES_PER_FOOT, -transform.y / METRES_PER_FOOT, -turn)
 
-    def get_pose(self) -> Pose2d:
+    def get_pose(self) -> geometry.Pose2d:
         """Return the robot's pose, in metres."""
-        return self.field.getRobotPose()
+        return dashboards.robot_pose(self.field)
 
     # -- drawing -------------------------------------------------------------------------------------------------
 
@@ -240,28 +237,28 @@ class PhysicsInterface:
         """Show a camera's targets on the field, and those in view as a second object."""
         self.vision_targets, self.vision_targets_in_view = tuple(targets), tuple(in_view)
         for name, shown in (("vision targets", targets), ("vision targets in view", in_view)):
-            self.field.getObject(name).setPoses([self._seen_in_metres(Pose(t.x, t.y, 0.0)) for t in shown])
+            dashboards.show_poses(self.field, name, [self._seen_in_metres(Pose(t.x, t.y, 0.0)) for t in shown])
 
     # -- the pose ------------------------------------------------------------------------------------------------
 
-    def _drive(self, forward: float, right: float, turn: float) -> Pose2d:
+    def _drive(self, forward: float, right: float, turn: float) -> geometry.Pose2d:
         """Turn, then move, as pyfrc did in 2019: forward by the turn once more, and to the side as before the turn."""
         _check(forward, right, turn)
         cos, sin = math.cos(turn), math.sin(turn)
         return self._turn_and_move(forward * cos + right * sin, forward * sin + right * cos, turn)
 
-    def _turn_and_move(self, forward: float, right: float, turn: float) -> Pose2d:
+    def _turn_and_move(self, forward: float, right: float, turn: float) -> geometry.Pose2d:
         cos, sin = math.cos(turn), math.sin(turn)
         pose = self._move(forward * cos - right * sin, forward * sin + right * cos, turn)
         self._turn_analog_gyros(turn)
         return pose
 
-    def _move_along(self, forward: float, right: float, turn: float) -> Pose2d:
+    def _move_along(self, forward: float, right: float, turn: float) -> geometry.Pose2d:
         """Move with constant velocities; without the turn, they would move the robot this far forward and right."""
         _check(forward, right, turn)
         return self._move(*along_arc(forward, right, turn), turn)
 
-    def _move(self, forward: float, right: float, turn: float) -> Pose2d:
+    def _move(self, forward: float, right: float, turn: float) -> geometry.Pose2d:
         _check(forward, right, turn)
         if self._device_gyros and self._hal_data is not None:
             degrees = math.degrees(turn)
@@ -297,23 +294,22 @@ class PhysicsInterface:
 
     def _current(self) -> Pose:
         """Return the pose, with changes that were made on the `field`."""
-        shown = self.field.getRobotPose()
+        shown = dashboards.robot_pose(self.field)
         if shown == self._shown:
             return self._pose
         self._shown = shown
-        self._pose = Pose(
-            shown.X() / METRES_PER_FOOT, self._height - shown.Y() / METRES_PER_FOOT, -shown.rotation().radians()
-        )
+        turned = -shown.rotation().radians()
+        self._pose = Pose(shown.x / METRES_PER_FOOT, self._height - shown.y / METRES_PER_FOOT, turned)
         return self._pose
 
-    def _place(self, pose: Pose) -> Pose2d:
+    def _place(self, pose: Pose) -> geometry.Pose2d:
         shown = self._seen_in_metres(pose)
         self._pose, self._shown = pose, shown
-        self.field.setRobotPose(shown)
+        dashboards.place_robot(self.field, shown)
         return shown
 
-    def _seen_in_metres(self, pose: Pose) -> Pose2d:
-        return Pose2d(pose.x * METRES_PER_FOOT, (self._height - pose.y) * METRES_PER_FOOT, Rotation2d(-pose.angle))
+    def _seen_in_metres(self, pose: Pose) -> geometry.Pose2d:
+        return geometry.pose(pose.x * METRES_PER_FOOT, (self._height - pose.y) * METRES_PER_FOOT, -pose.angle)
 
 
 class _Rate:

@@ -9,15 +9,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from wpimath.geometry import Translation2d
-from wpimath.kinematics import (
-    ChassisSpeeds,
-    DifferentialDriveKinematics,
-    DifferentialDriveWheelSpeeds,
-    MecanumDriveKinematics,
-    MecanumDriveWheelSpeeds,
-)
-
+from ..wpi import geometry
 from .deadzones import DeadzoneCallable, deadzone_function, motor_output
 from .parameters import finite, positive, within_full_power
 from .pose import METRES_PER_FOOT
@@ -28,7 +20,7 @@ if TYPE_CHECKING:
 
 
 # Bound once: `calculate` is called in each step of physics.
-_chassis_speeds = ChassisSpeeds.fromFeet
+_chassis_speeds = geometry.chassis_speeds_in_feet
 
 
 class DriveVector(NamedTuple):
@@ -73,14 +65,14 @@ class _TankDrivetrain:
         self.deadzone = deadzone_function(deadzone)
 
     @property
-    def kinematics(self) -> DifferentialDriveKinematics:
+    def kinematics(self) -> geometry.DifferentialDriveKinematics:
         """WPILib's kinematics for a robot of this width."""
-        return DifferentialDriveKinematics(self.x_wheelbase * METRES_PER_FOOT)
+        return geometry.tank_kinematics(self.x_wheelbase * METRES_PER_FOOT)
 
     @property
-    def wheelSpeeds(self) -> DifferentialDriveWheelSpeeds:
+    def wheelSpeeds(self) -> geometry.DifferentialDriveWheelSpeeds:
         """Speed of each side in m/s after the last calculation, forward positive."""
-        return DifferentialDriveWheelSpeeds.fromFeet(self.l_speed, self.r_speed)
+        return geometry.tank_wheel_speeds_in_feet(self.l_speed, self.r_speed)
 
     def _vector(self, left: float, right: float) -> tuple[float, float]:
         """Return the speed forward in ft/s and clockwise in rad/s.
@@ -92,7 +84,7 @@ class _TankDrivetrain:
         self.r_speed = right = right * self.speed
         return (left + right) * 0.5, (left - right) / self.x_wheelbase
 
-    def _chassis(self, left: float, right: float) -> ChassisSpeeds:
+    def _chassis(self, left: float, right: float) -> geometry.ChassisSpeeds:
         forward, clockwise = self._vector(left, right)
         return _chassis_speeds(forward, 0.0, 0.0 - clockwise)
 
@@ -110,7 +102,7 @@ class TwoMotorDrivetrain(_TankDrivetrain):
         left = motor_output(l_motor, "l_motor", self.deadzone)
         return self._vector(0.0 - left, motor_output(r_motor, "r_motor", self.deadzone))
 
-    def calculate(self, l_motor: float, r_motor: float) -> ChassisSpeeds:
+    def calculate(self, l_motor: float, r_motor: float) -> geometry.ChassisSpeeds:
         """
         :param l_motor: left motor, -1 to 1; 1 is forward
         :param r_motor: right motor, -1 to 1; -1 is forward
@@ -136,7 +128,7 @@ class FourMotorDrivetrain(_TankDrivetrain):
         left, right = self._sides(lf_motor, lr_motor, rf_motor, rr_motor)
         return self._vector(0.0 - left, right)
 
-    def calculate(self, lf_motor: float, lr_motor: float, rf_motor: float, rr_motor: float) -> ChassisSpeeds:
+    def calculate(self, lf_motor: float, lr_motor: float, rf_motor: float, rr_motor: float) -> geometry.ChassisSpeeds:
         """
         :param lf_motor: left front motor, -1 to 1; 1 is forward
         :param lr_motor: left rear motor, -1 to 1; 1 is forward
@@ -210,7 +202,7 @@ class MecanumDrivetrain:
         right, forward = (lf - lr - rf + rr) * linear, (lf + lr + rf + rr) * linear
         return DriveVector(right, forward, (lf + lr - rf - rr) * self._angular())
 
-    def calculate(self, lf_motor: float, lr_motor: float, rf_motor: float, rr_motor: float) -> ChassisSpeeds:
+    def calculate(self, lf_motor: float, lr_motor: float, rf_motor: float, rr_motor: float) -> geometry.ChassisSpeeds:
         """
         :param lf_motor: left front motor, -1 to 1; 1 is forward
         :param lr_motor: left rear motor, -1 to 1; 1 is forward
@@ -282,17 +274,15 @@ class MecanumDrivetrain:
         self._last_outputs = given[0], given[1], given[2], given[3]
 
     @property
-    def wheelSpeeds(self) -> MecanumDriveWheelSpeeds:
+    def wheelSpeeds(self) -> geometry.MecanumDriveWheelSpeeds:
         """Speed of each wheel in m/s after the last calculation, forward positive."""
-        return MecanumDriveWheelSpeeds.fromFeet(self.lf_speed, self.rf_speed, self.lr_speed, self.rr_speed)
+        return geometry.mecanum_wheel_speeds_in_feet(self.lf_speed, self.rf_speed, self.lr_speed, self.rr_speed)
 
     @property
-    def kinematics(self) -> MecanumDriveKinematics:
+    def kinematics(self) -> geometry.MecanumDriveKinematics:
         """WPILib's kinematics for a robot of these dimensions."""
-        x = self.y_wheelbase / 2 * METRES_PER_FOOT
-        y = self.x_wheelbase / 2 * METRES_PER_FOOT
-        return MecanumDriveKinematics(
-            Translation2d(x, y), Translation2d(x, -y), Translation2d(-x, y), Translation2d(-x, -y)
+        return geometry.mecanum_kinematics(
+            self.y_wheelbase / 2 * METRES_PER_FOOT, self.x_wheelbase / 2 * METRES_PER_FOOT
         )
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import wpilib
-from wpilib.simulation import EncoderSim
-
+from ..wpi import encoders
 from .parameters import finite
 
 
@@ -21,8 +19,8 @@ class EncoderShaft:
     :raises ParameterError: when `units` is not a finite number
     """
 
-    def __init__(self, encoder: wpilib.Encoder | EncoderSim, units: float = 1.0) -> None:
-        self._encoder = encoder if isinstance(encoder, EncoderSim) else EncoderSim(encoder)
+    def __init__(self, encoder: encoders.Encoder | encoders.EncoderSim, units: float = 1.0) -> None:
+        self._encoder = encoders.simulation_of(encoder)
         self._units = finite(units, "units")
         self._counts = 0
 
@@ -34,8 +32,8 @@ class EncoderShaft:
         :raises ParameterError: when one of them is not a finite number
         """
         distance = finite(position, "position") * self._units
-        counts = round(distance / self._encoder.getDistancePerPulse())
+        counts = round(distance / encoders.distance_per_count(self._encoder))
         if counts != self._counts:
-            self._encoder.setCount(self._encoder.getCount() + counts - self._counts)
+            encoders.add_counts(self._encoder, counts - self._counts)
             self._counts = counts
-        self._encoder.setRate(finite(velocity, "velocity") * self._units)
+        encoders.set_rate(self._encoder, finite(velocity, "velocity") * self._units)

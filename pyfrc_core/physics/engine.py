@@ -8,15 +8,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import wpilib
-from wpimath.geometry import Pose2d
-
 from ..config.document import document_of
 from ..project import Project
 from ..runtime.clock import PACKET_US, PHYSICS, to_us
 from ..runtime.loading import import_file
 from ..runtime.robot import RobotRun
-from ..wpi import station
+from ..wpi import dashboards, geometry, station
 from .core import PhysicsEngine, PhysicsField, PhysicsInitException, PhysicsInterface
 
 #: The shortest period of `update_sim`, for robots with faster loops (100 Hz).
@@ -64,7 +61,7 @@ class PhysicsModule:
         controller = PhysicsInterface(self._project.root, fake_time, config, run.hal_data)
         controller.config_obj = document_of(config, loaded.text.value if loaded.text is not None else None)
         if not self.takes_hal_data and not config.says_start:
-            controller.field.setRobotPose(Pose2d())  # where robots of the current generation start
+            dashboards.place_robot(controller.field, geometry.pose())  # where robots of the current generation start
         return Physics(self, controller, run)
 
     def _takes_robot(self) -> bool:
@@ -146,8 +143,9 @@ class Physics:
     def _show_field(self, name: str) -> None:
         field, pose = self.controller.field, self.controller.get_pose()
         self.field_name = name
-        wpilib.SmartDashboard.putData(name, field)
-        field.setRobotPose(pose)  # otherwise, without isolation, the dashboard's pose of the last run would be used
+        dashboards.show_field(name, field)
+        # Otherwise, without isolation, the dashboard's pose of the last run would be used.
+        dashboards.place_robot(field, pose)
 
     def _update(self) -> None:
         __tracebackhide__ = True
@@ -229,8 +227,5 @@ def _free_name() -> str:
 
     Two fields of one name share one pose: the robot's odometry would move the simulated robot.
     """
-    try:
-        shown = wpilib.SmartDashboard.getData("Field")
-    except RuntimeError:  # nothing has this name
-        return "Field"
+    shown = dashboards.shown("Field")
     return "Field" if shown is None or isinstance(shown, PhysicsField) else "Field (physics)"

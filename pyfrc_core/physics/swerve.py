@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 
-from wpimath.geometry import Rotation2d, Translation2d
-from wpimath.kinematics import ChassisSpeeds
-
+from ..wpi import geometry
 from .can_motors import Mechanism
 
 
@@ -22,15 +20,14 @@ class SwerveModule:
 
     def __init__(self, drive: Mechanism, steer: Mechanism, x: float, y: float, wheel_diameter: float) -> None:
         self.drive, self.steer = drive, steer
-        self.place = Translation2d(x, y)
+        self.place = geometry.translation(x, y)
         self._circumference = math.pi * wheel_diameter
 
-    def update(self, tm_diff: float) -> Translation2d:
+    def update(self, tm_diff: float) -> geometry.Translation2d:
         """Move both motors for `tm_diff` seconds. Return the wheel's velocity relative to the robot, in m/s."""
         self.drive.update(tm_diff)
         self.steer.update(tm_diff)
-        speed = self.drive.speed * self._circumference
-        return Translation2d(speed, 0).rotateBy(Rotation2d(self.steer.turns * math.tau))
+        return geometry.polar(self.drive.speed * self._circumference, self.steer.turns * math.tau)
 
 
 class SwerveDrive:
@@ -39,14 +36,14 @@ class SwerveDrive:
     def __init__(self, *modules: SwerveModule) -> None:
         self._modules = modules
         places = [module.place for module in modules]
-        self._centre = sum(places, Translation2d()) / len(places)
+        self._centre = sum(places, geometry.translation()) / len(places)
         self._arms = [place - self._centre for place in places]
 
-    def update(self, tm_diff: float) -> ChassisSpeeds:
+    def update(self, tm_diff: float) -> geometry.ChassisSpeeds:
         """Move all motors for `tm_diff` seconds. Return the robot's speeds, relative to the robot."""
         velocities = [module.update(tm_diff) for module in self._modules]
         # The least squares solution: the mean velocity at the mean place, and the turn around it.
-        mean = sum(velocities, Translation2d()) / len(velocities)
-        turn = sum(arm.X() * each.Y() - arm.Y() * each.X() for arm, each in zip(self._arms, velocities, strict=True))
+        mean = sum(velocities, geometry.translation()) / len(velocities)
+        turn = sum(arm.x * each.y - arm.y * each.x for arm, each in zip(self._arms, velocities, strict=True))
         omega = turn / (sum(arm.norm() ** 2 for arm in self._arms) or 1.0)
-        return ChassisSpeeds(mean.X() + omega * self._centre.Y(), mean.Y() - omega * self._centre.X(), omega)
+        return geometry.chassis_speeds(mean.x + omega * self._centre.y, mean.y - omega * self._centre.x, omega)

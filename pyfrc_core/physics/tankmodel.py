@@ -8,8 +8,7 @@ import warnings
 from math import cos, sin
 from typing import TYPE_CHECKING
 
-from wpimath.geometry import Transform2d
-
+from ..wpi import geometry
 from .arc import MOST_BEND, MOST_TIME_CONSTANTS, MOST_TURN, SideMotion, along, bow
 from .motor_cfgs import MotorModelConfig
 from .motor_model import MotorModel, nominal_volts
@@ -24,8 +23,8 @@ __all__ = ["MotorModel", "TankModel"]
 
 logger = logging.getLogger("pyfrc.physics")
 
-#: Converts feet and radians in one call.
-_transform = Transform2d.fromFeet
+# Bound once: `calculate` is called in each step of physics.
+_transform = geometry.transform_in_feet
 
 MOST_TURN_SQUARED, MOST_BEND_SQUARED = MOST_TURN**2, MOST_BEND**2
 
@@ -307,7 +306,7 @@ class TankModel:
             aside += unlike * l_bow * r_bow / turning
         return ahead * cos_half - aside * sin_half, ahead * sin_half + aside * cos_half, angle
 
-    def calculate(self, l_motor: float, r_motor: float, tm_diff: float) -> Transform2d:
+    def calculate(self, l_motor: float, r_motor: float, tm_diff: float) -> geometry.Transform2d:
         """Return how far the robot has moved, for `PhysicsInterface.move_robot`.
 
         With more than one motor on a side, pass the value of one of them.

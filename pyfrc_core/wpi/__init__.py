@@ -26,6 +26,11 @@ from ..season import CURRENT
 
 if TYPE_CHECKING:
     from .season_2026 import commands as commands
+    from .season_2026 import dashboards as dashboards
+    from .season_2026 import devices as devices
+    from .season_2026 import encoders as encoders
+    from .season_2026 import geometry as geometry
+    from .season_2026 import motors as motors
     from .season_2026 import station as station
     from .season_2026 import timing as timing
 else:

@@ -12,10 +12,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from wpimath.system.plant import DCMotor
-
 from ...hal import HalData
 from ...runtime.clock import PACKET_US
+from ...wpi import motors
 from ..can_motors import Controller, Mechanism, Spark, Talon, read_settings
 from .motors import Motor
 from .names import Name, Reached
@@ -25,8 +24,8 @@ _TRIAL_GEARING, _TRIAL_INERTIA = 20.0, 2e-4
 
 _PACKAGES = ("rev", "phoenix6")
 
-#: The classes of motor controllers: the class in `can_motors`, and the usual motor, a name in `DCMotor`.
-_MOTORS = {"SparkMax": ("Spark", "NEO"), "SparkFlex": ("Spark", "neoVortex"), "TalonFX": ("Talon", "krakenX60")}
+#: The classes of motor controllers, and for each the class in `can_motors`.
+_CONTROLLERS = {"SparkMax": "Spark", "SparkFlex": "Spark", "TalonFX": "Talon"}
 
 
 @dataclass(frozen=True)
@@ -92,13 +91,13 @@ def find_can_devices(objects: Iterable[Reached]) -> CanDevices:
     followers = Counter(_place_of_leader(thing) for _, thing, _ in controllers)
     for name, thing, expression in controllers:
         kind, number = _kind(thing), _number(thing)
-        vendor, model = _MOTORS[kind]
+        vendor, (model, make) = _CONTROLLERS[kind], motors.usual_motor(kind)
         found.devices += _parts(kind, number)
         if _place_of_leader(thing) is None:
             value = "Applied Output" if vendor == "Spark" else "motorVoltage"
             count = 1 + followers[vendor, number]
             motor = CanMotor(name, None, _device(kind, number), value, False, vendor, expression, model, count)
-            found.motors.append(_completed(motor, thing, cancoders))
+            found.motors.append(_completed(motor, thing, make(count), cancoders))
     found.devices += [f"CANEncoder:CANcoder (v6)[{_number(thing)}]" for _, thing, _ in cancoders]
     return found
 
@@ -108,7 +107,7 @@ def _kind(thing: object) -> str:
     if isinstance(thing, type):
         return ""
     for base in type(thing).__mro__:
-        if base.__module__.partition(".")[0] in _PACKAGES and (base.__name__ in _MOTORS or base.__name__ == "CANcoder"):
+        if base.__module__.partition(".")[0] in _PACKAGES and base.__name__ in (*_CONTROLLERS, "CANcoder"):
             return base.__name__
     return ""
 
@@ -136,9 +135,8 @@ def _parts(kind: str, number: int) -> list[str]:
     return [own, *(own.replace("CANMotor", other) for other in ("CANEncoder", "CANDIO") if kind == "TalonFX")]
 
 
-def _completed(motor: CanMotor, thing: Any, cancoders: list[tuple[Name, Any, str]]) -> CanMotor:
+def _completed(motor: CanMotor, thing: Any, model: motors.DCMotor, cancoders: list[tuple[Name, Any, str]]) -> CanMotor:
     """Return the motor with what the robot has configured, and with what moves while the joysticks are tested."""
-    model = getattr(DCMotor, motor.model)(motor.count)
     if motor.vendor == "Spark":
         factor = float(thing.configAccessor.encoder.getPositionConversionFactor())
         controller: Controller = Spark(thing, model, _TRIAL_GEARING)

@@ -8,11 +8,9 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
-import wpilib
-from wpimath.kinematics import DifferentialDriveKinematics
-
 from ...hal.devices import encoder_channels
 from ...project.robot_files import RobotFiles
+from ...wpi import devices, geometry
 
 #: In metres.
 _POSSIBLE_WIDTH = 0.3, 1.0
@@ -168,7 +166,8 @@ def find_track_width(objects: Iterable[Reached]) -> float | None:
     A number that is not the width of a robot in metres has another unit, and is ignored.
     """
     for path, thing, _ in objects:
-        width = thing.trackWidth if isinstance(thing, DifferentialDriveKinematics) else thing
+        known = geometry.track_width(thing)
+        width = thing if known is None else known
         if not isinstance(width, float) or not _POSSIBLE_WIDTH[0] < width < _POSSIBLE_WIDTH[1]:
             continue
         if width is not thing or "trackwidth" in "".join(_words(path[-1])):
@@ -226,43 +225,40 @@ def _parts(owner: object, ours: set[str]) -> Iterable[tuple[str, Any, str]]:
 
 def _places(thing: object) -> Iterator[tuple[Place, str]]:
     """Return the keys and channels of a device, each with a suffix for its name."""
-    if isinstance(thing, wpilib.Encoder):
-        index = thing.getFPGAIndex()
-        yield ("encoder", index), ""
-        channels = encoder_channels(index)
-        for letter in "AB":
-            channel = channels[f"{letter}Source_Channel"]
-            if channel is not None:
-                yield ("dio", channel), f" {letter}"
-    elif isinstance(thing, wpilib.AnalogGyro):
-        channel = thing.getAnalogInput().getChannel()
-        yield ("analog_gyro", channel), ""
-        yield ("analog_in", channel), ""
-    elif isinstance(thing, wpilib.DoubleSolenoid):
-        yield ("solenoid", thing.getFwdChannel()), " forward"
-        yield ("solenoid", thing.getRevChannel()), " reverse"
-    elif isinstance(thing, wpilib.DutyCycleEncoder):
-        yield ("dio", thing.getSourceChannel()), ""
-    elif isinstance(thing, wpilib.Servo):
-        yield ("servo", thing.getChannel()), ""
-        yield ("pwm", thing.getChannel()), ""
-    else:
-        for kinds, key in _WITH_CHANNEL:
-            if isinstance(thing, kinds):
-                yield (key, thing.getChannel()), ""
+    kind = devices.wired_kind(thing)
+    if kind is None:
         number = _can_number(thing)
         if number is not None:
             yield ("CAN", number), ""
+    elif kind == "encoder":
+        (index,) = devices.channels_of(thing, kind)
+        yield ("encoder", index), ""
+        wires = encoder_channels(index)
+        for letter in "AB":
+            channel = wires[f"{letter}Source_Channel"]
+            if channel is not None:
+                yield ("dio", channel), f" {letter}"
+    elif kind == "double solenoid":
+        forward, reverse = devices.channels_of(thing, kind)
+        yield ("solenoid", forward), " forward"
+        yield ("solenoid", reverse), " reverse"
+    else:
+        (channel,) = devices.channels_of(thing, kind)
+        for key in _KEYS[kind]:
+            yield (key, channel), ""
 
 
-_WITH_CHANNEL: tuple[tuple[Any, str], ...] = (
-    ((wpilib.PWMMotorController, wpilib.PWM), "pwm"),
-    ((wpilib.DigitalInput, wpilib.DigitalOutput), "dio"),
-    ((wpilib.AnalogInput,), "analog_in"),
-    ((wpilib.Relay,), "relay"),
-    ((wpilib.Solenoid,), "solenoid"),
-)
-
+#: The keys of `hal_data` for each kind of device with one channel.
+_KEYS: dict[str, tuple[str, ...]] = {
+    "analog gyro": ("analog_gyro", "analog_in"),
+    "duty cycle encoder": ("dio",),
+    "servo": ("servo", "pwm"),
+    "pwm": ("pwm",),
+    "digital": ("dio",),
+    "analog input": ("analog_in",),
+    "relay": ("relay",),
+    "solenoid": ("solenoid",),
+}
 
 _CAN_NUMBERS = range(63)
 

@@ -6,11 +6,6 @@ import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any
-
-import hal
-import wpilib
-from wpilib.simulation import SimDeviceSim
 
 from ...errors import PyfrcError, RobotCodeError
 from ...hal import HalData
@@ -22,6 +17,7 @@ from ...runtime.exceptions import TestEnded, TestFroze, TestRanTooLong
 from ...runtime.loading import load_robot
 from ...runtime.patches.install import patches
 from ...runtime.robot import RobotRun
+from ...wpi import devices, motors
 from .can_devices import CanDevices, CanMotor, find_can_devices
 from .motors import Motor
 from .names import Name, NamedDevice, Place, find_devices, find_objects, find_track_width, one_line
@@ -175,8 +171,7 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice], can: Can
         if ("servo", channel) in named:
             found.others.append(f"servo: PWM {channel} ({name_of('servo', channel)})")
             continue
-        thing: Any = named["pwm", channel].thing if ("pwm", channel) in named else None
-        inverted = hasattr(thing, "getInverted") and bool(thing.getInverted())
+        inverted = ("pwm", channel) in named and motors.is_inverted(named["pwm", channel].thing)
         found.motors.append(Motor(name_of("pwm", channel), channel, inverted=inverted))
     for index in _made(hal_data, "encoder"):
         encoder = hal_data["encoder"][index]
@@ -193,11 +188,12 @@ def list_devices(hal_data: HalData, named: Mapping[Place, NamedDevice], can: Can
         _add_sim_device(found, device, named)
     found.labels = _labels(found, named)
     for (key, channel), device in named.items():
-        if isinstance(device.thing, wpilib.DutyCycleEncoder):
+        wired = devices.wired_kind(device.thing)
+        if wired == "duty cycle encoder":
             found.duty_cycle.append((device.name, channel))
             continue
         kind = {"dio": "digital", "analog_in": "analog"}.get(key)
-        if kind is not None and not isinstance(device.thing, (wpilib.Encoder, wpilib.AnalogGyro)):
+        if kind is not None and wired not in ("encoder", "analog gyro"):
             found.others.append(f"{kind} channel {channel} ({device.name})")
     return found
 
@@ -237,16 +233,18 @@ def _add_sim_device(found: Survey, device: str, named: Mapping[Place, NamedDevic
     number = None if elsewhere else re.search(r"\[(\d+)\]$", device)
     known = named.get(("CAN", int(number[1]))) if number else None
     name = known.name if known else Name()
-    values = dict(SimDeviceSim(device).enumerateValues())
+    values = {value.name: value for value in devices.sim_values(device)}
     for kind in _GYROS:
         if kind.device.fullmatch(device) and kind.angle in values:
             rate = kind.rate if kind.rate in values else ""
             found.gyros.append(Gyro(name, None, device, kind.angle, rate, kind.clockwise, kind.wraps))
             return
     # The test of the joysticks shows which value is a motor's output.
-    outputs = [value for value, readonly in values.items() if readonly or _OUTPUT.fullmatch(value)]
-    value_of = SimDeviceSim(device).getValue
-    outputs = [value for value in outputs if value_of(value).type == hal.Type.DOUBLE]
+    outputs = [
+        value.name
+        for value in values.values()
+        if value.kind == "number" and (value.is_output or _OUTPUT.fullmatch(value.name))
+    ]
     found.motors += [Motor(name, None, device, value) for value in outputs]
     if not outputs and not elsewhere:
         found.others.append(f"{device} ({name})" if name else device)

@@ -7,9 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
-from wpimath.kinematics import SwerveDrive4Kinematics
-
 from ...runtime.robot import RobotRun
+from ...wpi import geometry
 from .can_devices import CanMotor
 from .motors import Motor
 from .names import Reached
@@ -92,12 +91,12 @@ def _corner(motor: Motor) -> object:
 
 def _placed(pairs: list[tuple[CanMotor, CanMotor]], objects: Iterable[Reached], assumptions: list[str]) -> list[Module]:
     """Return the modules with their places, from the robot's kinematics if it has one."""
-    known = next((each.thing for each in objects if isinstance(each.thing, SwerveDrive4Kinematics)), None)
+    known = next((found for each in objects if (found := geometry.module_places(each.thing))), None)
     if known is None:
         places = [(x * _HALF, y * _HALF) for x, y in _CORNERS.values()]
         assumptions.append(f"It was assumed that the wheels are {2 * _HALF:g} m apart.")
     else:
-        places = [(place.X(), place.Y()) for place in known.getModules()]
+        places = [(place.x, place.y) for place in known]
     corners = [(drive.name.end, drive.name.side) for drive, _ in pairs]
     by_corner = {(_sign(x), _sign(y)): (x, y) for x, y in places}
     if set(corners) == set(_CORNERS) and len(by_corner) == len(places):
