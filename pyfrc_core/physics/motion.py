@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..runtime.patches.install import patches
+from ..wpi import timing
 from .parameters import ParameterError, finite, not_negative, within_full_power
 
 
@@ -71,9 +72,7 @@ class LinearMotion:
         _show_label(self.name, f"{round(self.position_ft, 2) + 0.0:.2f}")
 
     def _time_since_last_call(self) -> float:
-        import wpilib
-
-        now, last = wpilib.Timer.getFPGATimestamp(), self._last_call
+        now, last = timing.seconds(), self._last_call
         self._last_call = now
         # Negative when the object is used with a second robot, whose time starts at zero again.
         return 0.0 if last is None else max(0.0, now - last)

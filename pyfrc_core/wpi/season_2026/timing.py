@@ -16,9 +16,13 @@ from hal.simulation import (
     resumeTiming,
     stepTiming,
 )
+from wpilib import Timer
 
 #: Advance HAL time by this many microseconds; wake the notifiers of C++ code that become due.
 step_us = stepTiming
+
+#: Return HAL time, in seconds.
+seconds = Timer.getFPGATimestamp
 
 
 def stop_and_zero() -> None:
