@@ -10,10 +10,7 @@ import _thread
 import abc
 import asyncio
 import concurrent.futures
-import contextlib
 import copy
-import dataclasses
-import functools
 import inspect
 import json
 import logging
@@ -21,7 +18,6 @@ import multiprocessing
 import pickle
 import pkgutil
 import queue
-import sched
 import sys
 import threading
 import time
@@ -123,14 +119,6 @@ def check_kinds_of_functions() -> None:
     assert time.sleep.__self__ is time  # type: ignore[attr-defined]
 
 
-def check_signatures() -> None:
-    assert str(inspect.signature(threading.Thread.join)) == "(self, timeout=None)"
-    assert str(inspect.signature(threading.Thread.start)) == "(self)"
-    assert str(inspect.signature(threading.RLock)) == "(*args, **kwargs)"
-    if LOCK_IS_A_CLASS:
-        assert str(inspect.signature(threading.Lock)) == str(inspect.signature(time.time)) == "()"
-
-
 def check_class_attributes_are_not_bound() -> None:
     class Clock:
         now = time.monotonic
@@ -141,29 +129,6 @@ def check_class_attributes_are_not_bound() -> None:
     assert Clock().now is Clock.now is time.monotonic
     Clock().pause(0.001)
     assert not Clock().lock().locked()
-
-
-def check_default_factories() -> None:
-    @dataclasses.dataclass
-    class Reading:
-        at: float = dataclasses.field(default_factory=time.time)
-        lock: Any = dataclasses.field(default_factory=threading.Lock)
-        items: Any = dataclasses.field(default_factory=queue.SimpleQueue)
-
-    before = time.time()
-    reading = Reading()
-    assert before <= reading.at <= time.time()
-    assert type(reading.lock) is type(threading.Lock())
-    assert type(reading.items) is type(queue.SimpleQueue())
-
-
-def check_partials() -> None:
-    before = time.monotonic()
-    functools.partial(time.sleep, 0.001)()
-    list(map(time.sleep, [0.001]))
-    with contextlib.ExitStack() as closing:
-        closing.callback(time.sleep, 0.001)
-    assert time.monotonic() >= before + 0.003 - 1e-9
 
 
 def check_mocks() -> None:
@@ -233,16 +198,6 @@ def check_lock_instances() -> None:
         raises(TypeError, lambda: isinstance(LIBRARY_LOCK, threading.Lock))
 
 
-def check_single_dispatch_on_locks() -> None:
-    @functools.singledispatch
-    def kind(thing: object) -> str:
-        return "object"
-
-    kind.register(type(threading.Lock()))(lambda lock: "lock")
-    assert kind(threading.Lock()) == kind(LIBRARY_LOCK) == "lock"
-    assert kind(threading.RLock()) == "object"
-
-
 def check_lock_methods() -> None:
     lock = threading.Lock()
     assert lock.acquire() is True
@@ -303,21 +258,6 @@ def check_rlocks() -> None:
     raises(TypeError, lambda: copy.copy(lock))
     assert weakref.ref(lock)() is lock
     assert "_thread.RLock object" in repr(lock)
-
-
-def check_derived_from_rlock() -> None:
-    class Counting(type(threading.RLock())):  # type: ignore[misc]
-        entered = 0
-
-        def __enter__(self) -> bool:
-            self.entered += 1
-            return bool(super().__enter__())
-
-    with Counting() as lock, threading.Condition():
-        assert lock is True
-    counting = Counting()
-    with counting, counting:
-        assert (counting.entered, counting.__class__, type(counting)) == (2, Counting, Counting)
 
 
 def check_conditions_of_every_lock() -> None:
@@ -407,15 +347,6 @@ def check_pools() -> None:
         assert quick in done
         assert list(pool.map(abs, [-1, -2])) == [1, 2]
         assert set(concurrent.futures.as_completed([slow, quick])) == {slow, quick}
-
-
-def check_scheduler() -> None:
-    done: list[int] = []
-    scheduler = sched.scheduler()
-    scheduler.enter(0.002, 1, done.append, (2,))
-    scheduler.enter(0.001, 1, done.append, (1,))
-    scheduler.run()
-    assert done == [1, 2]
 
 
 def check_asyncio() -> None:

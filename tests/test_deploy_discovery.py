@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import queue
 import socket
 import struct
 import threading
@@ -98,21 +97,6 @@ def test_the_others_are_closed(servers: Servers) -> None:
             assert servers.ends[robot].wait(PATIENCE)
     assert not servers.ends[found.address].is_set()
     found.connected.close()
-
-
-def test_a_robot_that_responds_while_the_search_ends_is_closed() -> None:
-    race = discovery._Race()
-
-    class Late(queue.Queue[object]):
-        def put(self, item: object, block: bool = True, timeout: float | None = None) -> None:
-            race.winner()  # it ends here, and finds nothing in the queue
-            super().put(item, block, timeout)
-
-    race._results = Late()
-    ours, theirs = socket.socketpair()
-    with ours, theirs:
-        race._finish(discovery.FoundRobot(Address("10.12.34.2"), "a place", ours))
-        assert theirs.recv(1) == b""
 
 
 def test_failed_attempts_are_shown_as_a_table(servers: Servers) -> None:

@@ -23,7 +23,6 @@ from pyfrc_core.doctor import CheckResult
 from pyfrc_core.doctor.imports import check_imports
 from pyfrc_core.doctor.installed import Installed, Package, find_installed
 from pyfrc_core.doctor.packages import NEWEST, OLDEST, check_pyfrc, check_python, check_wpilib
-from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.season import CURRENT
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"
@@ -319,22 +318,6 @@ def server(says: bytes) -> Iterator[str]:
         thread.start()
         yield f"127.0.0.1:{listening.getsockname()[1]}"
         thread.join()
-
-
-@pytest.mark.usefixtures("patient_doctor")
-def test_a_robot_that_does_not_let_us_in() -> None:
-    with server(b"SSH-2.0-robot\r\n") as address:
-        finding, why = RobotSearch(None, robot=address).findings()
-    assert (finding.status, why.status) == ("ok", "problem")
-    assert address in finding.text
-    assert why.text.startswith(f"{address}: could not log in to the robot")
-
-
-@pytest.mark.usefixtures("patient_doctor")
-def test_a_server_that_is_not_a_robot() -> None:
-    with server(b"HTTP/1.1 400\r\n") as address:
-        (finding,) = RobotSearch(None, robot=address).findings()
-    assert finding.status == "problem"
 
 
 def test_a_robot_that_is_off(make_project) -> None:

@@ -268,19 +268,6 @@ def test_ctrl_c_says_where_the_test_stands(make_project: MakeProject) -> None:
     assert f"interrupted: {place}" in rest
 
 
-def test_a_robot_that_is_made_while_the_program_is_imported(make_project: MakeProject) -> None:
-    project = make_project(
-        {
-            "robot.py": "import wpilib\n\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n\n\nrobot = MyRobot()\n",
-            "tests/test_it.py": "def test_it(robot):\n    pass\n",
-        }
-    )
-    for command in ("test", "sim --mode teleop", "fuzz --runs 1"):
-        result = project.run(*command.split())
-        assert result.code == 1, result.output
-        assert "robot.py:8: a robot is made while the program is imported: MyRobot()\n" in result.output
-
-
 def test_a_loop_of_the_robots_own_ends_with_its_notifier(make_project: MakeProject) -> None:
     robot = """
         from pathlib import Path

@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 import pyfrc_cli
 from pyfrc_core.errors import UsageError
 from pyfrc_core.scaffold import DEFAULT, TEMPLATES, Template, create_project
-from pyfrc_core.text_files import write_whole
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -164,22 +163,6 @@ def test_a_file_where_a_directory_has_to_be_is_in_the_way(make_project: MakeProj
     assert result.code == 2
     assert f"nothing was written: {place} exists already" in result.stderr
     assert files_in(project.path) == {place: b"mine\n"}
-
-
-def test_a_directory_that_cannot_be_made_is_told_without_the_systems_numbers(make_project: MakeProject) -> None:
-    project = make_project({"mine": "mine\n"})
-    result = project.run("init", "mine/robot")
-    assert result.code == 1
-    assert re.fullmatch(r"error: mine\W.*: [A-Z][a-z ]+\n", result.stderr), result.stderr
-    assert files_in(project.path) == {"mine": b"mine\n"}
-
-
-def test_a_file_that_cannot_be_written_is_named_as_it_was_asked_for(tmp_path: Path) -> None:
-    file = tmp_path / ("x" * 300)
-    with pytest.raises(OSError, match="name") as raised:
-        write_whole(file, ["text"])
-    assert raised.value.filename == str(file)
-    assert files_in(tmp_path) == {}
 
 
 def test_other_files_in_the_directory_are_left_alone(make_project: MakeProject) -> None:

@@ -352,41 +352,6 @@ def test_dashboards_see_where_the_robot_is(options: list[str], make_project) -> 
     passes(make_project, WATCHED, test.format("one") + test.format("two"), *options)
 
 
-@pytest.mark.parametrize("options", [[], ["--no-isolation"]])
-def test_a_field_that_the_robot_shows_does_not_move_it(options: list[str], make_project) -> None:
-    """Most robots show their odometry as "Field", too."""
-    test = """
-        import ntcore
-
-        def test_{}(control, robot, physics_controller):
-            control.set_operator_control()
-            control.run_test(lambda tm: tm < 1)
-            table = ntcore.NetworkTableInstance.getDefault().getTable("SmartDashboard")
-            pose = physics_controller.get_pose()
-            assert 0.1 < pose.X() < 5
-            assert table.getEntry("Field/Robot").getDoubleArray([])[:2] == [7, 3]
-            assert abs(table.getEntry("Field (physics)/Robot").getDoubleArray([])[0] - pose.X()) < 0.02
-    """
-    robot = """
-        import wpilib
-        from wpimath.geometry import Pose2d, Rotation2d
-
-        class MyRobot(wpilib.TimedRobot):
-            def robotInit(self):
-                self.left, self.right = wpilib.PWMSparkMax(0), wpilib.PWMSparkMax(1)
-                self.field = wpilib.Field2d()
-                wpilib.SmartDashboard.putData("Field", self.field)
-
-            def robotPeriodic(self):
-                self.field.setRobotPose(Pose2d(7, 3, Rotation2d()))
-
-            def teleopPeriodic(self):
-                self.left.set(1)
-                self.right.set(1)
-    """
-    passes(make_project, WATCHED, test.format("one") + test.format("two"), *options, robot=robot)
-
-
 def test_without_isolation_each_robot_starts_where_the_first_did(make_project) -> None:
     """What dashboards have seen of the robot before outlives it."""
     passes(
@@ -437,30 +402,11 @@ WRONG = {
         "physics.py:5",
         "PhysicsEngine.update_sim(self, now) cannot be called",
     ),
-    "only the base class": ("from pyfrc.physics.core import PhysicsEngine\n", "physics.py", "there is no class"),
-    "hal_data without a time": (
-        "class PhysicsEngine:\n    def __init__(self, c):\n        pass\n\n"
-        "    def update_sim(self, hal_data, tm_diff):\n"
-        "        pass\n",
-        "physics.py:5",
-        "PhysicsEngine.update_sim(self, hal_data, tm_diff) cannot be called",
-    ),
-    "the times in the wrong order": (
-        "class PhysicsEngine:\n    def __init__(self, c):\n        pass\n\n    def update_sim(self, tm_diff, now):\n"
-        "        pass\n",
-        "physics.py:5",
-        "PhysicsEngine.update_sim(self, tm_diff, now) cannot be called",
-    ),
     "self forgotten": (
         "class PhysicsEngine:\n    def __init__(self, c):\n        pass\n\n    def update_sim(now, tm_diff):\n"
         "        pass\n",
         "physics.py:5",
         "PhysicsEngine.update_sim(now, tm_diff) cannot be called: self is missing",
-    ),
-    "update_sim is no method": (
-        "class PhysicsEngine:\n    update_sim = 3\n\n    def __init__(self, c):\n        pass\n",
-        "physics.py:1",
-        "PhysicsEngine has no method update_sim",
     ),
     "the robot first": (
         f"class PhysicsEngine:\n    def __init__(self, robot, physics_controller):\n        pass\n\n{UPDATE}",
@@ -471,12 +417,6 @@ WRONG = {
         f"class PhysicsEngine:\n    def _init_(self, physics_controller):\n        pass\n\n{UPDATE}",
         "physics.py:1",
         "PhysicsEngine has no constructor, but a method _init_",
-    ),
-    "initialize without hal_data": (
-        f"class PhysicsEngine:\n    def __init__(self, c):\n        pass\n\n    def initialize(self):\n"
-        f"        pass\n{UPDATE}",
-        "physics.py:5",
-        "PhysicsEngine.initialize(self) cannot be called",
     ),
     "syntax": ("class PhysicsEngine:\n    def\n", "physics.py:2", "SyntaxError"),
     "import": ("import math\nmath.nothing\n", "physics.py:2", "AttributeError"),
@@ -540,49 +480,8 @@ def test_physics_may_say_themselves_that_they_cannot_be(make_project) -> None:
     assert block.startswith("physics.py:5: PhysicsInitException: no arm on this robot")
 
 
-def test_physics_that_never_comes_back_is_named(make_project) -> None:
-    project = make_project(
-        {
-            "robot.py": ROBOT,
-            "tests/test_it.py": RUNS,
-            "pyproject.toml": "[tool.pyfrc.test]\nhang_seconds = 0.2\n",
-            "physics.py": """
-                class PhysicsEngine:
-                    def __init__(self, physics_controller):
-                        pass
-
-                    def update_sim(self, now, tm_diff):
-                        while True:
-                            pass  # here
-                """,
-        }
-    )
-    result = project.run("test")
-    assert result.code == 1
-    assert "physics.py:7" in result.output or "physics.py:6" in result.output
-
-
 def test_asking_for_physics_that_are_not_there(make_project) -> None:
     project = make_project({"robot.py": ROBOT, "tests/test_it.py": RUNS})
     result = project.run("test")
     assert result.code == 1
     assert "there is no physics.py in this project" in result.output
-
-
-def test_what_is_wrong_in_the_config_is_told_once(make_project) -> None:
-    files = {
-        "robot.py": ROBOT,
-        "physics.py": MADE,
-        "sim/config.json": '{"pyfrc": {\n"robot": {"starting_x": 2,\n"startingy": 3}}}\n',
-        "tests/test_it.py": RUNS + RUNS.replace("test_it", "test_again"),
-    }
-    project = make_project(files)
-    result = project.run("test")
-    assert result.code == 0, result.output
-    assert result.output.count("sim/config.json:3: SettingsWarning: unknown key 'pyfrc.robot.startingy'") == 1
-
-    project.write({"sim/config.json": '{"pyfrc": {\n"robot": {"starting_x": "2"}}}\n'})
-    result = project.run("test")
-    assert result.code == 2
-    assert result.output.count("sim/config.json:2: pyfrc.robot.starting_x") <= 2  # where it is, and in the summary
-    assert "Traceback" not in result.output

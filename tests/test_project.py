@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
-import pytest
 from conftest import MakeProject, RobotProject
 
 from pyfrc import __version__
@@ -134,45 +132,6 @@ def contents(directory: Path) -> dict[str, bytes]:
     }
 
 
-def test_init_writes_a_project_once_and_overwrites_nothing(make_project: MakeProject) -> None:
-    project = make_project({})
-    first = project.run("init")
-    assert first.code == 0, first.output
-    written = contents(project.path)
-    assert {"robot.py", "pyproject.toml", ".gitignore"} <= written.keys()
-    assert any(re.match(r"tests/.*test.*\.py", name) for name in written)
-    for name in written:
-        assert name in first.stdout.replace("\\", "/")
-
-    (project.path / "robot.py").write_text("# mine\n")
-    (project.path / "pyproject.toml").unlink()
-    before = contents(project.path)
-    second = project.run("init")
-    assert second.code == 2, second.output
-    assert "nothing was written" in second.stderr
-    assert "robot.py" in second.stderr
-    assert "pyproject.toml" not in second.stderr
-    assert contents(project.path) == before
-
-
-def test_init_makes_a_project_whose_tests_pass(make_project: MakeProject) -> None:
-    project = make_project({})
-    made = project.run("init", "new robot")
-    assert made.code == 0, made.output
-    directory = project.path / "new robot"
-    assert "pyfrc test" in made.stdout
-    result = project.run("test", cwd=directory)
-    assert result.code == 0, result.output
-    assert re.search(r"=+ \d+ passed in ", result.stdout)
-
-
-def test_init_does_not_take_a_file_for_a_directory(make_project: MakeProject) -> None:
-    project = make_project({"taken": "a file\n"})
-    result = project.run("init", "taken")
-    assert result.code == 2
-    assert "taken is a file, not a directory" in result.first_error
-
-
 # -- the command itself ---------------------------------------------------------------------------------------------
 
 
@@ -180,27 +139,3 @@ def test_the_version_is_told(make_project: MakeProject) -> None:
     result = make_project({}).run("--version")
     assert result.code == 0
     assert result.stdout.strip() == f"pyfrc, version {__version__}"
-
-
-@pytest.mark.parametrize("option", ["-h", "--help"])
-def test_the_help_lists_the_commands(make_project: MakeProject, option: str) -> None:
-    result = make_project({}).run(option)
-    assert result.code == 0
-    assert re.search(r"^  test +\S", result.stdout, re.MULTILINE)
-    assert re.search(r"^  init +\S", result.stdout, re.MULTILINE)
-
-
-def test_the_help_of_a_command_tells_its_options(make_project: MakeProject) -> None:
-    result = make_project({}).run("test", "-h")
-    assert result.code == 0
-    for option in (
-        "--project",
-        "--main",
-        "--robot-class",
-        "--builtin",
-        "--jobs",
-        "--seed",
-        "--isolation",
-        "--coverage",
-    ):
-        assert option in result.stdout

@@ -158,17 +158,9 @@ def test_other_tools_keys_and_the_schemas_are_left_alone(load: Load) -> None:
     [
         ('{"pyfrc": {\n"robt": 1}}', "2: unknown key 'pyfrc.robt'\n  did you mean 'robot'?"),
         (
-            '{"pyfrc": {"robot": {\n\n"startingx": 1}}}',
-            "3: unknown key 'pyfrc.robot.startingx'\n  did you mean 'starting_x",
-        ),
-        (
             '{"pyfrc": {"robot": {"start_positions": [{"name": "a", "x": 1, "y": 2},\n'
             '{"name": "b", "x": 1, "y": 2,\n"angel": 3}]}}}',
             "3: unknown key 'pyfrc.robot.start_positions[1].angel'\n  did you mean 'angle'?",
-        ),
-        (
-            '{"pyfrc": {"joysticks": {"3": {\n"axis": {}}}}}',
-            "2: unknown key 'pyfrc.joysticks.3.axis'\n  did you mean 'axes'?",
         ),
         ('{\n"PyFRC": {}}', "2: unknown key 'PyFRC'\n  did you mean 'pyfrc'?"),
         (
@@ -187,10 +179,6 @@ def test_other_tools_keys_and_the_schemas_are_left_alone(load: Load) -> None:
             '{"pyfrc": {"field": {\n"image": "no/such.png"}}}',
             '2: pyfrc.field.image = "no/such.png": there is no such file',
         ),
-        (
-            '{"pyfrc": {"field": {\n"image": "config.json"}}}',
-            '2: pyfrc.field.image = "config.json": it is no picture',
-        ),
         ('{"pyfrc": {"robot": {"l": 3,\n"h": 4}}}', "2: pyfrc.robot.h = 4: ignored: it is the older name of robot.l"),
         (
             '{"pyfrc": {"robot": {"start_positions": [{"name": "a", "x": 1, "y": 2}],\n"starting_y": 3}}}',
@@ -199,10 +187,6 @@ def test_other_tools_keys_and_the_schemas_are_left_alone(load: Load) -> None:
         (
             '{"pyfrc": {"robot": {"w": 1}},\n"pyfrc": {}}',
             "2: pyfrc stands here again, and replaces what line 1 says",
-        ),
-        (
-            '{"pyfrc": {"dio": {"1": "a",\n"1": "b"}}}',
-            "2: pyfrc.dio.1 stands here again, and replaces what line 1 says",
         ),
         (
             '{"pyfrc": {"joysticks": {"0": {"axes": {"x": "a",\n"0": "b"}}}}}',
@@ -282,28 +266,8 @@ def test_a_season_names_those_that_are_known(load: Load) -> None:
     ("text", "expected"),
     [
         ('{"pyfrc": {"robot": {\n"w": "wide"}}}', '2: pyfrc.robot.w = "wide": input should be a valid number'),
-        (
-            '{"pyfrc": {"robot": {"w": 1},\n"robot": {\n"w": 0}}}',
-            "3: pyfrc.robot.w = 0: input should be greater than 0",
-        ),
-        (
-            '{"w": 1, "pyfrc": {"x": {"w": 1}, "field":\n{"w": true}}}',
-            "2: pyfrc.field.w = true: input should be a valid n",
-        ),
-        (
-            '{"pyfrc": {"robot": {\n"starting_x": null}}}',
-            "2: pyfrc.robot.starting_x = null: input should be a valid number",
-        ),
-        (
-            '{"pyfrc": {"robot": {\n"starting_x": 1e999}}}',
-            "2: pyfrc.robot.starting_x = 1e999: input should be a finite",
-        ),
         ('{"pyfrc":\n{"field": []}}', "2: pyfrc.field = []: input should be an object"),
         ('{"pyfrc": {"field": {"season":\n\n"last"}}}', '1: pyfrc.field.season = "last": input should be a year'),
-        (
-            '{"pyfrc": {"game_specific_messages": "A"}}',
-            '1: pyfrc.game_specific_messages = "A": input should be an array',
-        ),
         (
             '{"pyfrc": {"game_specific_messages": ["A",\n5]}}',
             "2: pyfrc.game_specific_messages[1] = 5: input should be a valid string",
@@ -317,18 +281,10 @@ def test_a_season_names_those_that_are_known(load: Load) -> None:
             "3: pyfrc.field.objects[0].rect: item 4 is missing",
         ),
         (
-            '{"pyfrc": {"field": {"objects": [{"color": "red", "points": [[0, 0],\n[0, 0, 0]]}]}}}',
-            "2: pyfrc.field.objects[0].points[1] = [0, 0, 0]: input should have at most 2 items",
-        ),
-        (
             '{"pyfrc": {"field": {"objects": [\n{"color": "red"}]}}}',
             '2: pyfrc.field.objects[0] = {"color": "red"}: input should be an object with either the key \'rect\' or',
         ),
         ('{"pyfrc": {"dio": {\n"26": "a"}}}', '2: pyfrc.dio.26 = "a": the key should be a number from 0 to 25'),
-        (
-            '{"pyfrc": {"pwm": {\n"one two": "a"}}}',
-            "2: pyfrc.pwm['one two'] = \"a\": the key should be a number from 0 to 19",
-        ),
         ('{"pyfrc": {"relay": {\n"3": 4}}}', "2: pyfrc.relay.3 = 4: input should be a valid string"),
         ('{"pyfrc": {"joysticks": {\n"6": {}}}}', "2: pyfrc.joysticks.6 = {}: the key should be a number from 0 to 5"),
         (

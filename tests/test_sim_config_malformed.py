@@ -253,36 +253,6 @@ def test_whatever_the_file_holds_it_is_loaded_or_refused_with_its_place(root: Pa
     outcome(root, raw)
 
 
-TEN_MB = 10_000_000
-
-
-@pytest.mark.parametrize(
-    ("raw", "expected"),
-    [
-        (b"[" * TEN_MB, "1: not valid JSON: objects and arrays are nested more than 100 deep"),
-        (b'{"a": ' * (TEN_MB // 6), "1: not valid JSON: objects and arrays are nested more than 100 deep"),
-        (b'{\n"' + b"x" * TEN_MB, "2: not valid JSON: a string begins here that does not end"),
-        (b'{\n"a": 1,' + b"\n" * TEN_MB, "2: not valid JSON: the file ends too early"),
-        (b"\0" * TEN_MB, "1: this is UTF-16 or UTF-32 text"),
-        (b'{\n"pyfrc": {"robot": {"w":\n"' + b"x" * TEN_MB + b'"}}}', '2: pyfrc.robot.w = "xxx'),
-        (b'{"pyfrc":\n{"robot": {"w": ' + b"9" * TEN_MB + b"}}}", "2: pyfrc.robot.w = 999"),
-        (
-            b'{"pyfrc": {\n"game_specific_messages": [\n' + b"1,\n" * (TEN_MB // 3) + b"1]}}",
-            "2: pyfrc.game_specific_messages = [ 1, 1, 1,",
-        ),
-        (
-            b'{"pyfrc": {"dio": {\n' + b'"x":"%s",' % (b"y" * 493) * (TEN_MB // 500) + b'\n"y":""}}}',
-            '2: pyfrc.dio.x = "yyy',
-        ),
-    ],
-    ids=["arrays", "objects", "string", "blank", "zeros", "long-string", "long-number", "long-array", "repeated-key"],
-)
-def test_ten_megabytes_are_refused_with_their_place(root: Path, raw: bytes, expected: str) -> None:
-    result = outcome(root, raw)
-    assert isinstance(result, SettingsError)
-    assert str(result).startswith(f"sim/config.json:{expected}")
-
-
 @pytest.mark.parametrize(
     "raw",
     [

@@ -18,7 +18,6 @@ from conftest import RobotProject
 from sim_robots import FILES, PATIENCE, wait
 from started_commands import StartedCommand
 
-from pyfrc_core.interruption import ending_like_ctrl_c
 from pyfrc_core.processes.fork import FORK_IS_SAFE
 from pyfrc_core.project import Project
 from pyfrc_core.sim import SimOptions, Simulation
@@ -175,17 +174,6 @@ def test_a_data_log_for_which_there_is_no_room(make_project) -> None:
     assert "Fatal Python error" not in result.stdout + result.stderr
 
 
-@pytest.mark.usefixtures("hangup_ends_programs")
-@pytest.mark.parametrize("name", SIGNALS)
-def test_interrupted_while_the_robot_is_imported(name: str, make_project) -> None:
-    made = make_project({"robot.py": "import time\n\nprint('importing', flush=True)\ntime.sleep(1e6)\n"})
-    with running(made, "--nt-port", "0") as sim:
-        sim.until("importing")
-        assert sim.end(name) == 2, sim.read
-    assert "interrupted while robot.py was still being imported" in sim.read
-    assert list(made.temporary.iterdir()) == []
-
-
 @pytest.mark.skipif(
     not FORK_IS_SAFE or not hasattr(os, "pidfd_open"), reason="only where robots are forked, and others' ends are seen"
 )
@@ -200,13 +188,6 @@ def test_nothing_is_left_by_one_that_is_killed(make_project) -> None:
         finally:
             os.close(host)
     assert list(made.temporary.iterdir()) == []
-
-
-def test_the_signals_are_the_programs_own_again() -> None:
-    before = signal.getsignal(signal.SIGTERM)
-    with pytest.raises(KeyboardInterrupt), ending_like_ctrl_c():
-        signal.raise_signal(signal.SIGTERM)
-    assert signal.getsignal(signal.SIGTERM) is before
 
 
 def save(file: Path, text: str) -> None:

@@ -84,11 +84,6 @@ def test_a_line_in_other_coordinates(keywords: dict, expected: list, renderer: U
     assert points(only_line(renderer)) == expected
 
 
-def test_colors_arrows_and_tkinters_own_options(renderer: UserRenderer) -> None:
-    renderer.draw_line([(0, 0), (1, 1)], color="#00ff00", arrow=False, width=3, dash=(4, 4))
-    assert only_line(renderer) == Line(((0, 0), (1, 1)), "#00ff00", False, LineStyle(width=3, dash=(4, 4)))
-
-
 @pytest.mark.parametrize(
     ("options", "problem"),
     [
@@ -102,14 +97,6 @@ def test_options_that_are_wrong_are_named(renderer: UserRenderer, options: dict[
     """A front end shows it; the robot goes on."""
     renderer.draw_line([(0, 0), (1, 1)], **options)
     assert problem in only_line(renderer).problem
-
-
-def test_a_font_as_tkinter_has_it(renderer: UserRenderer) -> None:
-    renderer.draw_text("one", (1, 2), font=("Arial", 14, "bold"), fill="#00ff00")
-    renderer.draw_text("two", (1, 2), font="Arial 9 italic", tags="mine")
-    first, second = renderer.drawings()
-    assert first == Text("one", 1, 2, "#00ff00", 14, TextStyle(family="Arial", bold=True))
-    assert second == Text("two", 1, 2, "#000000", 9, TextStyle(family="Arial", italic=True))
 
 
 def test_a_text(renderer: UserRenderer) -> None:

@@ -6,20 +6,17 @@ import json
 import os
 import re
 import socket
-from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
 from recorded_pages import run_in
 from sim_robots import FILES
 from web_pages import PATIENCE, Served, served
-from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from pyfrc_core.errors import UsageError
-from pyfrc_core.sim.ui.web.access import Access
 from pyfrc_core.sim.ui.web.forwarding import allowed_origins
-from pyfrc_core.sim.ui.web.server import Server, WebOptions
 
 QUIET = {
     "robot.py": """
@@ -270,15 +267,6 @@ def test_a_layout_that_is_a_link_is_not_handed_out(make_project) -> None:
         assert page.hello["layout"] is None
 
 
-def test_a_message_that_is_too_large_ends_its_page_only(make_project) -> None:
-    with served(make_project(FILES)) as server, server.page() as page:
-        with server.page() as other, pytest.raises(ConnectionClosed):  # noqa: PT012
-            other.socket.send("x" * (2 << 20))
-            while True:
-                other.socket.recv(timeout=PATIENCE)
-        page.run_for(0.1)
-
-
 def test_addresses_differ_from_start_to_start(make_project) -> None:
     made = make_project(QUIET)
     with served(made) as first:
@@ -287,37 +275,3 @@ def test_addresses_differ_from_start_to_start(make_project) -> None:
         two = second.address, second.viewing_address
     tokens = {urlsplit(address).query for address in (*one, *two)}
     assert len(tokens) == 4
-
-
-class _Delays:
-    """An application that notes whether its connection may hold back what is sent."""
-
-    def __init__(self) -> None:
-        self.found: list[bool] = []
-        self.server = Server(WebOptions(), Access())
-
-    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        (connection,) = self.server._server.server_state.connections
-        accepted = connection.transport.get_extra_info("socket")
-        self.found.append(not accepted.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
-        await send({"type": "http.response.start", "status": 204, "headers": []})
-        await send({"type": "http.response.body"})
-
-    async def close_pages(self) -> None:
-        """There are none."""
-
-    def close(self) -> None:
-        """There is nothing to do."""
-
-
-def test_what_is_sent_to_a_page_leaves_at_once() -> None:
-    """Otherwise a second message waits until the page has acknowledged the first one, up to 40 ms."""
-    app = _Delays()
-    app.server.start(app)
-    try:
-        with socket.create_connection(("127.0.0.1", app.server.port), PATIENCE) as page:
-            page.sendall(b"GET / HTTP/1.0\r\n\r\n")
-            assert page.recv(1)
-    finally:
-        app.server.close()
-    assert app.found == [False]

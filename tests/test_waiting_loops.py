@@ -178,22 +178,6 @@ def test_the_limit_can_be_set(make_project: MakeProject) -> None:
     assert "loop_seconds" in project.run("test").output
 
 
-def test_tests_that_step_wpilibs_time_fail_alike(make_project: MakeProject) -> None:
-    """Also where the robot runs inside `stepTiming`, the failure reaches the test."""
-    test = """
-        import wpilib.simulation as sim
-
-
-        def test_steps(control, robot):
-            with control.run_robot():
-                control.set_operator_control(enabled=True)
-                sim.stepTiming(5.0)
-    """
-    project = make_project({"robot.py": TIMED, "tests/test_it.py": test})
-    result = project.run("test")
-    assert result.blocks()["test_steps"].startswith(f"{project.place('robot.py', 'time.sleep(0.02)')}: teleopPeriodic")
-
-
 def test_campaigns_find_it_and_keep_a_script(make_project: MakeProject) -> None:
     """Its script fails in a replay in the same way."""
     robot = TIMED.replace("while not self.gamepad.getAButton():", "while True:")
@@ -303,16 +287,6 @@ def test_back_into_a_wait_and_on_with_new_code(simulation: Simulation, tmp_path:
     simulation.write(PRESSED)
     run(simulation, 0.5)
     assert motor(simulation) == 0.75
-
-
-def test_a_magic_robot_that_waits_is_shown_too(make_project: MakeProject) -> None:
-    """Its loop is not WPILib's, and runs on a thread."""
-    project = make_project({"robot.py": MAGIC})
-    result = project.run("sim", "--ui", "none", "--mode", "teleop", "--seconds", "6")
-    assert result.code == 0, result.output
-    place = project.place("robot.py", "time.sleep(0.02)")
-    assert f"warning: {place}: execute has not returned after 2 s" in result.stdout
-    assert "loop overruns: 1, the longest turn" in result.stdout
 
 
 def test_a_robot_init_that_waits_is_shown_while_it_does(make_project: MakeProject) -> None:

@@ -13,7 +13,7 @@ import pytest
 import wpilib
 
 from pyfrc_core.hal import HalData, devices_exist, existing_devices
-from pyfrc_core.hal.containers import NOT_SET, LiveDict, LiveList, Slot, ValueList, plain, stored
+from pyfrc_core.hal.containers import NOT_SET, LiveDict, Slot, ValueList, plain, stored
 from pyfrc_core.hal.kinds import INT32, UnknownKey, WrongIndex, WrongType, WrongValue, number
 
 
@@ -122,43 +122,6 @@ def test_errors_of_a_list_name_the_place(
         do(store.list)
     assert message in str(caught.value)
     assert store.numbers == [1, 2, 3]
-
-
-def test_a_list_of_devices(store: Store) -> None:
-    other = Store()
-    devices = LiveList("devices", [store.tree, other.tree])
-    assert devices[1] is other.tree
-    assert list(devices) == [store.tree, other.tree]
-    assert devices[0:1] == [store.tree]
-    devices[1] = {"count": 9}
-    assert (store.values["count"], other.values["count"]) == (2, 9)
-    devices[:] = [{"count": 4}, {"count": 5}]
-    assert (store.values["count"], other.values["count"]) == (4, 5)
-    for index, error in ((2, WrongIndex), ("x", WrongType), (None, WrongType)):
-        with pytest.raises(error):
-            devices[index]
-    with pytest.raises(WrongIndex) as caught:
-        LiveList("none", [])[0]
-    assert "use 0" not in str(caught.value)
-
-
-def test_a_write_to_a_list_is_reported(store: Store) -> None:
-    loads: list[int] = []
-
-    def load() -> list[int]:
-        loads.append(1)
-        return list(store.numbers)
-
-    def note() -> None:
-        store.changes += 1
-
-    put = store.numbers.__setitem__
-    numbers = ValueList("l", INT32, lambda: 3, store.numbers.__getitem__, put, load, note)
-    numbers[0] = 5
-    assert store.changes == 1
-    numbers[:] = [1, 1, 1]
-    assert store.changes == 4
-    assert (list(numbers), numbers[0:2], len(loads)) == ([1, 1, 1], [1, 1], 2)
 
 
 # -- plain values ------------------------------------------------------------------------------------------------------

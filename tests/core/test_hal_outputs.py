@@ -14,7 +14,7 @@ from wpilib.interfaces import MotorController
 
 from pyfrc_core.errors import UsageError
 from pyfrc_core.hal import HalData
-from pyfrc_core.hal.kinds import BOOL, FLOAT, INT32, ValueKind, choice, number, text, whole
+from pyfrc_core.hal.kinds import BOOL, FLOAT, ValueKind, choice, number, text, whole
 from pyfrc_core.hal.output_gate import OutputGate
 from pyfrc_core.wpi import station
 
@@ -176,29 +176,6 @@ def test_the_driver_station_at_first() -> None:
 # -- kinds -------------------------------------------------------------------------------------------------------------
 
 STATION = choice({"unknown": 0, "Red": 1})
-
-
-@pytest.mark.parametrize(
-    ("kind", "taken", "stored"),
-    [
-        (FLOAT, 1, 1.0),
-        (FLOAT, -0.5, -0.5),
-        (number(-1, 1), 1, 1.0),
-        (number(-1, 1), -1.0, -1.0),
-        (INT32, 2.0, 2),
-        (INT32, -(2**31), -(2**31)),
-        (whole(0, 5), 5, 5),
-        (whole(0, 5), 0, 0),
-        (BOOL, 1, True),
-        (BOOL, False, False),
-        (text(3), "abc", "abc"),
-        (STATION, "RED", 1),
-        (STATION, 0, 0),
-    ],
-)
-def test_values_that_are_taken(kind: ValueKind, taken: Any, stored: Any) -> None:
-    value = kind.check(taken, "x")
-    assert (value, type(value)) == (stored, type(stored))
 
 
 @pytest.mark.parametrize(

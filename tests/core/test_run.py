@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 
 import hal
@@ -13,10 +12,8 @@ from hal import simulation as hs
 
 from pyfrc_core.runtime.clock import PACKET_US, PHYSICS
 from pyfrc_core.runtime.connection import DriverStationConnection
-from pyfrc_core.runtime.exceptions import WrongThread
 from pyfrc_core.runtime.patches import driver_station
 from pyfrc_core.runtime.robot import RobotRun
-from pyfrc_core.runtime.threads import cooperative
 from pyfrc_core.wpi import station
 
 
@@ -120,36 +117,6 @@ def test_what_the_robot_raises_ends_its_run(run: RobotRun, log: Log) -> None:
     assert not run.in_motion
     run.end()
     run.end()
-
-
-def test_only_who_lives_in_robot_time_lets_it_pass(run: RobotRun, log: Log) -> None:
-    run.construct(robot_class(log))
-    run.start()
-    said: list[str] = []
-
-    def tries(do: Callable[[], object]) -> None:
-        try:
-            do()
-        except WrongThread as wrong:
-            said.append(wrong.message)
-
-    outside = threading.Thread(target=lambda: tries(lambda: run.run_until(10_000)), name="outside")
-    outside.start()
-    outside.join(10)
-    assert said == ["the thread 'outside' cannot let robot time pass: it does not live in robot time"]
-
-    def body() -> None:
-        run.run_until(15_000)
-        log.note("slept")
-        tries(lambda: run.check_drives_clock("stop it"))
-
-    cooperative.start_in_robot_time(threading.Thread(target=body, name="inside", daemon=True))
-    run.run_until(16_000)
-    assert log[1:] == ["15 slept"]
-    assert said[1:] == ["the thread 'inside' cannot stop it: it sleeps in robot time"]
-    run.check_drives_clock("stop it")
-    with pytest.raises(RuntimeError, match="the robot is running: its time can only be set back before"):
-        run.check_can_set_time_back()
 
 
 def test_a_robot_with_a_loop_of_its_own_lives_until_that_ends(run: RobotRun, log: Log) -> None:
