@@ -78,7 +78,7 @@ def main() -> None:
         print(json.dumps(measure(options.one)))
         return
     print(f"{'robot':<10} {'loop':>10} {'profiled':>14} {'with cProfile':>16}")
-    for robot in options.only or ("timed", "command", "magic", "fastloop", "square"):
+    for robot in options.only or ("timed", "command", "magic", "square"):
         samples = sample_in_turn({way: partial(measure_apart, robot, way) for way in WAYS}, options.rounds)
         plain, profiled, calls = (min(samples[way]) for way in WAYS)
         loop = f"{plain / (SECONDS / 0.02) * 1e6:.1f} µs"

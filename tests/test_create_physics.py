@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import shutil
 import sys
@@ -139,37 +138,6 @@ VARIANTS = {
         heading="-robot.gyro.getAngle()",
         left="{(0, 4): -1.0}",
         says="left: PWM 7 (m3), PWM 8 (m4)\n",
-    ),
-    "inverted by what DifferentialDrive is given, curvature": Variant(
-        """
-        left, self.right = wpilib.Talon(0), wpilib.Talon(1)
-        self.motors = [left]
-        self.drive = wpilib.drive.DifferentialDrive(lambda value: left.set(-value), self.right.set)
-        self.stick = wpilib.Joystick(2)
-        self.e1, self.e2 = wpilib.Encoder(0, 1), wpilib.Encoder(2, 3)
-        self.gyro = wpilib.ADIS16448_IMU()
-        """,
-        "self.drive.curvatureDrive(-self.stick.getY(), -self.stick.getX(), False)",
-        # Taken in counts: 360 are a turn of a wheel of 6 inches.
-        "tuple(encoder.get() / 360 * math.pi * 0.1524 for encoder in (robot.e1, robot.e2))",
-        "robot.gyro.getAngle()",
-        forward="{(2, 1): -1.0}",
-        left="{(2, 1): -1.0, (2, 0): -1.0}",
-        says="left: PWM 0 (motors[0]), forward at -1",
-    ),
-    "tank with a gamepad, slowly": Variant(
-        """
-        self.left = wpilib.MotorControllerGroup(wpilib.Talon(2), wpilib.Talon(3))
-        self.right = wpilib.MotorControllerGroup(wpilib.Talon(0), wpilib.Talon(1))
-        self.left.setInverted(True)
-        self.pad = wpilib.XboxController(0)
-        self.limits = SlewRateLimiter(2.0), SlewRateLimiter(2.0)
-        """,
-        "self.left.set(self.limits[0].calculate(-self.pad.getLeftY()));"
-        " self.right.set(self.limits[1].calculate(-self.pad.getRightY()))",
-        forward="{(0, 1): -1.0, (0, 5): -1.0}",
-        left="{(0, 1): 1.0, (0, 5): -1.0}",
-        says="left: PWM 2, PWM 3, forward at -1",
     ),
     "a turn with the wrong sign": Variant(
         """
@@ -455,69 +423,6 @@ def test_names_and_inversion_tell_where_no_stick_does(make_project: MakeProject)
     assert "left: PWM 2 (motors[left]), forward at -1\n  right: PWM 3 (motors[right])\nnote: No stick moved" in printed
     assert "encoder: lift" not in printed
     run_tests(project)
-
-
-def test_what_is_on_the_can_bus_is_named_by_its_number(make_project: MakeProject) -> None:
-    """Where the vendor's object has the number. Motors with an unknown output are listed."""
-    project = make_project(
-        {
-            "vendor.py": """
-            import hal
-
-            class SparkMax:
-                def __init__(self, number, value="Applied Output"):
-                    self.device = hal.SimDevice("SPARK MAX", number)
-                    self.output = self.device.createDouble(value, hal.SimDevice.Direction.kBidir, 0.0)
-                    self.number = number
-
-                def getDeviceId(self):
-                    return self.number
-            """,
-            "robot.py": """
-            import wpilib
-            from vendor import SparkMax
-
-            class Chassis:
-                def __init__(self):
-                    self.right, self.left = SparkMax(1), SparkMax(2)
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotInit(self):
-                    self.chassis = Chassis()
-                    self.arm = SparkMax(3, "Output Current")
-            """,
-        }
-    )
-    assert "left: SPARK MAX[2] (chassis.left)\n  right: SPARK MAX[1] (chassis.right)" in create(project)
-    config = json.loads((project.path / "sim/config.json").read_text())
-    assert config["pyfrc"]["CAN"] == {"1": "chassis.right", "2": "chassis.left", "3": "arm"}
-    assert "purpose is unknown: SPARK MAX[3] (arm)." in (project.path / "physics.py").read_text().replace("\n# ", " ")
-
-
-def test_parts_of_devices_and_led_strips_are_no_motors_of_unknown_purpose(make_project: MakeProject) -> None:
-    """REV's controllers have a SimDevice for each of their sensors. A strip of LEDs is on a PWM channel."""
-    project = make_project(
-        {
-            "robot.py": """
-            import hal
-            import wpilib
-
-            class MyRobot(wpilib.TimedRobot):
-                def robotInit(self):
-                    self.made = []
-                    values = {"": "Applied Output", " RELATIVE ENCODER": "Position Conversion Factor"}
-                    for part, value in values.items():
-                        device = hal.SimDevice(f"SPARK MAX [3]{part}")
-                        self.made += [device, device.createDouble(value, hal.SimDevice.Direction.kOutput, 0.0)]
-                    self.strip = wpilib.AddressableLED(9)
-            """
-        }
-    )
-    create(project)
-    text = (project.path / "physics.py").read_text()
-    assert "purpose is unknown: SPARK MAX [3].\n" in text.replace("\n# ", " ")
-    assert "PWM 9" not in text
-    assert "pwm" not in json.loads((project.path / "sim/config.json").read_text())["pyfrc"]
 
 
 EMPTY = {

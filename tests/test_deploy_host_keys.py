@@ -269,11 +269,6 @@ def test_a_directory_in_place_of_the_file(tmp_path: Path) -> None:
         HostKeys(tmp_path)
 
 
-def test_names_differ_by_more_than_capital_letters(tmp_path: Path) -> None:
-    at(tmp_path, Address("Robot.example.org"), None).check(ONE)
-    refused(at(tmp_path, Address("robot.Example.org"), None), UNKNOWN)
-
-
 def test_ports_are_robots_of_their_own(tmp_path: Path) -> None:
     at(tmp_path, Address("127.0.0.2", 2222), None).check(ONE)
     assert at(tmp_path, Address("127.0.0.2", 2223), None).check(TWO).new_for == "[127.0.0.2]:2223"

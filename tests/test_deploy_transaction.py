@@ -512,35 +512,6 @@ def test_paths_that_lead_elsewhere(robot: LocalRobot, project: Project, agents: 
     assert {each for each in contents(robot.root) if "lock" not in each} == set(before)
 
 
-ODD_NAMES = [
-    "two words.txt",
-    "it's.txt",
-    'a "quote".txt',
-    "new\nline.txt",
-    "Übermaß/Größe.txt",
-    "-rf",
-    "$(touch x)",
-    "`x`",
-    "*",
-    "[a].py",
-    "ロボット.py",
-    "~",
-    "a\\b",
-    "%s",
-]
-
-
-def test_odd_names(robot: LocalRobot, project: Project, agents: Agents) -> None:
-    for name in ODD_NAMES:
-        project.write(name, f"# {name!a}\n")
-    robot.deploy(agents, project.manifest)
-    project.write("robot.py", "# 2\n")
-    robot.deploy(agents, project.manifest)
-    there = robot.startable()
-    assert there is not None
-    assert {name: there[name].decode() for name in ODD_NAMES} == {name: f"# {name!a}\n" for name in ODD_NAMES}
-
-
 NAMES = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="/\0"), min_size=1, max_size=20).filter(
     lambda name: not name.startswith(".") and name not in ("robot.py", "deploy.json", "__pycache__")
 )

@@ -77,48 +77,11 @@ def test_other_documented_keys(tree: HalData) -> None:
     assert (tree["analog_in"][0]["lsb_weight"], tree["analog_in"][0]["offset"]) == (1, 65535)
 
 
-def test_pwm_shows_what_the_robot_set_and_takes_what_a_test_sets(tree: HalData) -> None:
-    pwm = tree["pwm"][10]
-    assert pwm["initialized"] is False
-    motor = wpilib.PWMSparkMax(10)
-    motor.set(0.5)
-    assert pwm["initialized"] is True
-    assert pwm["value"] == 0.5
-    pwm["value"] = -0.25
-    assert motor.get() == -0.25
-
-
 def test_a_tree_made_after_the_devices_shows_them() -> None:
     output = wpilib.DigitalOutput(20)
     output.set(False)
     dio = HalData()["dio"][20]
     assert (dio["initialized"], dio["is_input"], dio["value"]) == (True, False, False)
-
-
-def test_inputs_reach_the_robot(tree: HalData) -> None:
-    switch, analog, gyro = wpilib.DigitalInput(11), wpilib.AnalogInput(4), wpilib.AnalogGyro(1)
-    tree["dio"][11]["value"] = 0
-    tree["analog_gyro"][1]["angle"] = 90
-    tree["fpga_button"] = True
-    tree["power"]["vin_voltage"] = 11.5
-    assert switch.get() is False
-    assert gyro.getAngle() == 90.0
-    assert wpilib.RobotController.getUserButton() is True
-    assert wpilib.RobotController.getBatteryVoltage() == 11.5
-    for value in (0, 1, 819, 2048, 4095):
-        tree["analog_in"][4]["value"] = value
-        assert analog.getValue() == tree["analog_in"][4]["value"] == value
-    tree["analog_in"][4]["avg_voltage"] = 2.5
-    assert analog.getVoltage() == 2.5
-    tree["fpga_button"], tree["power"]["vin_voltage"] = False, 12.0
-
-
-@given(st.integers(-(2**31), 2**31 - 1))
-def test_encoder_count(count: int) -> None:
-    encoder, data = wpilib.Encoder(12, 13, False, wpilib.Encoder.EncodingType.k1X), HalData()
-    entry = next(e for e in data["encoder"] if e["config"]["ASource_Channel"] == 12)
-    entry["count"] = count
-    assert encoder.getRaw() == entry["count"] == entry["value"] == count
 
 
 def test_encoder_fields(tree: HalData) -> None:
@@ -135,89 +98,12 @@ def test_encoder_fields(tree: HalData) -> None:
         entry["config"] = {}
 
 
-def test_other_devices_of_the_roborio(tree: HalData) -> None:
-    relay = wpilib.Relay(2)
-    relay.set(wpilib.Relay.Value.kForward)
-    assert dict(tree["relay"][2]) == {"initialized": True, "fwd": True, "rev": False}
-    out = wpilib.AnalogOutput(1)
-    out.setVoltage(3.5)
-    assert dict(tree["analog_out"][1]) == {"initialized": True, "voltage": 3.5}
-    trigger = wpilib.AnalogTrigger(5)
-    trigger.setLimitsVoltage(1, 2)
-    made = next(t for t in tree["analog_trigger"] if t["initialized"])
-    assert (made["trig_lower"], made["trig_upper"]) == (1.0, 2.0)
-    light = wpilib.DigitalOutput(16)
-    light.enablePWM(0.25)
-    assert {"initialized": True, "duty_cycle": 0.25, "pin": 16} in list(tree["d0_pwm"])
-    strip = wpilib.AddressableLED(9)
-    strip.setLength(2)
-    strip.setData([wpilib.AddressableLED.LEDData(1, 2, 3)] * 2)
-    assert tree["addressable_led"][0]["data"] == [[1, 2, 3], [1, 2, 3]]
-    tree["addressable_led"][0]["data"] = [[9, 8, 7]] * 2
-    assert tree["addressable_led"][0]["data"][1] == [9, 8, 7]
-    with pytest.raises(ValueError, match="each 0 to 255"):
-        tree["addressable_led"][0]["data"] = [[256, 0, 0]]
-    duty = wpilib.DutyCycle(wpilib.DigitalInput(17))
-    entry = next(d for d in tree["duty_cycle"] if d["initialized"])
-    entry["output"] = 0.75
-    assert duty.getOutput() == 0.75
-    accelerometer = wpilib.BuiltInAccelerometer()
-    tree["accelerometer"]["x"] = 1.5
-    assert accelerometer.getX() == 1.5
-    assert tree["accelerometer"]["range"] == "8G"
-    wpilib.RobotController.setRadioLEDState(wpilib.RadioLEDState.kOrange)
-    assert tree["roborio"]["radio_led_state"] == "orange"
-    wpilib.RobotController.setRadioLEDState(wpilib.RadioLEDState.kOff)
-
-
 def test_channels_that_the_roborio_lacks_are_kept_values(tree: HalData) -> None:
     tree["analog_out"][5]["voltage"] = 2.0
     tree["counter"][0]["count"] = 7
     assert tree["analog_out"][5] == {"initialized": False, "voltage": 2.0}
     assert tree["counter"][0]["count"] == 7
     assert tree["counter"][1]["count"] == 0
-
-
-def test_pneumatics_of_both_makers(tree: HalData) -> None:
-    assert not tree["pcm"]
-    with pytest.raises(KeyError, match="appears when the robot creates it"):
-        tree["pcm"][1]
-    ctre = wpilib.Solenoid(0, wpilib.PneumaticsModuleType.CTREPCM, 2)
-    ctre.set(True)
-    assert list(tree["pcm"]) == [0]
-    assert tree["pcm"][0] is tree["solenoid"]
-    assert [s["value"] for s in tree["solenoid"]] == [False, False, True, *[False] * 5]
-    tree["solenoid"][2]["value"] = False
-    assert ctre.get() is False
-    rev = wpilib.Solenoid(1, wpilib.PneumaticsModuleType.REVPH, 15)
-    rev.set(True)
-    assert list(tree["pcm"]) == [0, 1]
-    assert list(tree["ph"]) == [1]
-    assert tree["pcm"][1] is tree["ph"][1]
-    assert len(tree["ph"][1]) == 16
-    assert tree["pcm"][1][15]["value"] is True
-    tree["ph_compressor"][1]["pressure_switch"] = True
-    assert wpilib.Compressor(1, wpilib.PneumaticsModuleType.REVPH).getPressureSwitchValue() is True
-    assert tree["compressor"] is tree["pcm_compressor"][0]
-    tree["compressor"]["current"] = 4.5
-    assert wpilib.Compressor(0, wpilib.PneumaticsModuleType.CTREPCM).getCurrent() == 4.5
-
-
-def test_power_distribution(tree: HalData) -> None:
-    assert 3 not in tree["pdp"]
-    pdh = wpilib.PowerDistribution(3, wpilib.PowerDistribution.ModuleType.kRev)
-    entry = tree["pdp"][3]
-    entry["current"][5] = 3.5
-    entry["voltage"] = 11
-    assert pdh.getCurrent(5) == 3.5
-    assert pdh.getVoltage() == 11.0
-    assert entry["total_current"] == pdh.getTotalCurrent() == 3.5
-    with pytest.raises(ValueError, match="sum of current"):
-        entry["total_current"] = 1
-    heard: list[object] = []
-    entry.register("current", lambda key, value: heard.append((key, value[2])))
-    entry["current"][2] = 1.0
-    assert heard == [("current", 1.0)]
 
 
 @pytest.mark.parametrize("value", ["blue2", "Blue2", 5, hal.AllianceStationID.kBlue2])

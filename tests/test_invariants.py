@@ -258,43 +258,6 @@ def test_rules_are_checked_after_the_loop_and_before_physics(make_shared_project
         assert result.code == 0, result.output
 
 
-def test_robots_with_a_loop_of_their_own(make_shared_project) -> None:
-    robot = """
-        import wpilib
-
-        class MyRobot(wpilib.RobotBase):
-            def startCompetition(self):
-                self.loops = 0
-                while not self.done:
-                    self.loops += 1
-                    wpilib.wait(0.02)
-
-            done = False
-
-            def endCompetition(self):
-                self.done = True
-        """
-    magic = """
-        import magicbot
-        import time
-
-        class MyRobot(magicbot.MagicRobot):
-            def createObjects(self):
-                time.sleep(0.1)
-                self.loops = 0
-
-            def disabledPeriodic(self):
-                self.loops += 1
-        """
-    test = "def test_it(control, robot):\n    control.set_autonomous(False)\n    control.run_test(lambda tm: tm < 1)\n"
-    for text in (robot, magic):
-        project = make_shared_project(
-            {"robot.py": text, "tests/test_it.py": test, RULES: rule("assert robot.loops < 9")}
-        )
-        result = project.run("test")
-        assert f"{RULES}:5: the rule it_holds() is broken: robot.loops is 9" in result.output, result.output
-
-
 def test_rules_in_test_files_and_values_that_are_shown(project) -> None:
     """pytest rewrites the asserts of test files: the explanation is the same."""
     test = """

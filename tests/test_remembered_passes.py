@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 from pathlib import Path
@@ -266,21 +265,6 @@ def test_what_the_tests_write_themselves_prevents_no_deploy(make_project) -> Non
     result = made.run(*NO_ROBOT)
     assert "warning: files have changed since the tests began: log.txt\n" in result.output
     assert result.first_error.startswith("no robot found")
-
-
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes here")
-def test_a_named_pipe_in_the_project_is_not_read(make_project) -> None:
-    made = make_project({"robot.py": SMALL, "tests/test_it.py": "def test_it():\n    pass\n"})
-    os.mkfifo(made.path / "pipe")
-    assert made.run("test").code == 0
-
-
-def test_a_project_that_is_removed_while_its_tests_run(make_project) -> None:
-    removes = "import pathlib, shutil\ndef test_it():\n    shutil.rmtree(pathlib.Path(__file__).parents[1])\n"
-    made = make_project({"it/robot.py": SMALL, "it/tests/test_it.py": removes})
-    result = made.run("deploy", "--project", made.path / "it", *NO_ROBOT[1:])
-    assert result.code == 1
-    assert result.first_error.endswith("robot.py: not deployed: it was removed while the tests ran")
 
 
 def test_part_of_the_tests_or_a_failure_is_not_enough_for_a_deploy(make_project) -> None:

@@ -267,39 +267,6 @@ def test_what_a_sysid_routine_writes_is_in_the_runs_log(make_project) -> None:
     assert list(made.path.rglob("*.wpilog")) == [file]
 
 
-OWN = """
-    import wpilib
-    import wpiutil
-    from wpiutil.log import DoubleLogEntry
-
-    class MyRobot(wpilib.TimedRobot):
-        def robotInit(self):
-            wpilib.DataLogManager.start("my_logs", "match")
-            self.logs = [
-                wpilib.DataLogManager.getLog(),
-                wpiutil.DataLogBackgroundWriter("my_logs", "second.wpilog"),
-                wpiutil.DataLogWriter("my_logs/third.wpilog"),
-            ]
-            assert isinstance(self.logs[1], wpiutil.DataLogBackgroundWriter)
-            assert isinstance(self.logs[2], wpiutil.DataLogWriter)
-            self.logs[1].setFilename("renamed.wpilog")
-            self.entries = [DoubleLogEntry(log, "/turns") for log in self.logs]
-
-        def robotPeriodic(self):
-            for entry in self.entries:
-                entry.append(1)
-"""
-
-
-def test_the_robot_chooses_the_files(make_project) -> None:
-    made = make_project({"robot.py": OWN})
-    result = made.run("sim", "--ui", "none", "--mode", "disabled", "--seconds", "2")
-    assert result.code == 0, result.output
-    found = {file.name: len(turns(file)) for file in (made.path / "my_logs").iterdir()}
-    assert found == {"match.wpilog": 100, "renamed.wpilog": 100, "third.wpilog": 100}
-    assert not (made.path / ".pyfrc").exists()
-
-
 def test_a_directory_that_there_cannot_be(make_project) -> None:
     made = make_project(robot() | {".pyfrc": "a file"})
     result = made.run("sim", "--ui", "none", "--mode", "disabled", "--seconds", "2")

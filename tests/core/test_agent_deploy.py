@@ -7,16 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from pyfrc_core.deploy.agent import disk, releases, serve, system, transaction
+from pyfrc_core.deploy.agent import disk, releases, serve, transaction
 from pyfrc_core.deploy.agent.host import RealRobot
-from pyfrc_core.deploy.agent.releases import Releases, start_commands
+from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 from .agent_disk import AgentDisk, contents, manifest
 
 ONE = {"robot.py": "# one\nimport arm\n", "arm.py": "# arm\n", "data/path.json": "{}"}
 TWO = {**ONE, "robot.py": "# two\nimport arm\n"}
-PYTHON = "env LD_LIBRARY_PATH=/usr/local/frc/lib/ /usr/local/bin/python3 -u"
 
 
 @pytest.fixture
@@ -262,9 +261,6 @@ def test_links_of_another_tools_program_stay_valid(robot: AgentDisk) -> None:
         robot.ask({"op": "rollback", "release": 1})
 
 
-# -- in place --------------------------------------------------------------------------------------------------------
-
-
 # -- after a cut -----------------------------------------------------------------------------------------------------
 
 
@@ -348,48 +344,6 @@ def test_a_deploy_that_was_cut_past_its_moment_is_finished(robot: AgentDisk) -> 
 
 
 # -- parts -----------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("main", ["robot.py", "src/robot.py", "_a-b.py", "9.py"])
-def test_start_commands(main: str) -> None:
-    assert set(start_commands(ROBORIO.layout, main, debug=False)) == {"robotCommand", "robotDebugCommand"}
-    one_file = ROBORIO.layout._replace(debug_command="", debug_flag="")
-    assert start_commands(one_file, main, debug=True) == {
-        "robotCommand": f"{PYTHON} -m robotpy --main /home/lvuser/py/{main} -v run\n"
-    }
-
-
-def test_files_are_written_whole(tmp_path: Path) -> None:
-    file = tmp_path / "file"
-    disk.write_whole(file, "a\udcff", 0o600)
-    assert file.read_bytes() == b"a\xff"
-    assert file.stat().st_mode & 0o777 == 0o600
-    disk.write_whole(file, "b")
-    assert disk.text_of(file) == "b"
-    assert file.stat().st_mode & 0o777 == 0o644
-    assert [each.name for each in tmp_path.iterdir()] == ["file"]
-    assert disk.text_of(tmp_path) is None
-    disk.remove(file)
-    disk.remove(file)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_links_and_exchanges(tmp_path: Path) -> None:
-    for name in "ab":
-        (tmp_path / name).mkdir()
-        (tmp_path / name / name).write_text("")
-    link = tmp_path / "link"
-    system.make_link(link, tmp_path / "a", tmp_path / "link")
-    assert link.readlink() == Path("a")
-    assert system.linked_directory(link) == tmp_path / "a"
-    assert system.linked_directory(tmp_path / "a") is None
-    if system.exchange(link, tmp_path / "b"):
-        assert (tmp_path / "link/b").exists()
-        assert system.linked_directory(tmp_path / "b") == tmp_path / "a"
-        assert system.exchange(link, tmp_path / "none") is False
-    system.flush(tmp_path)
-    with pytest.raises(FileNotFoundError):
-        disk.link_or_copy(str(tmp_path / "none"), str(tmp_path / "new"))
 
 
 def test_a_file_system_without_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

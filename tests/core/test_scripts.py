@@ -15,9 +15,7 @@ from pyfrc_core.errors import PyfrcError, UsageError
 from pyfrc_core.hal import HalData
 from pyfrc_core.hal.change_reader import same
 from pyfrc_core.runtime.robot import RobotRun
-from pyfrc_core.runtime.scripts.network_entries import NETWORK
 from pyfrc_core.runtime.scripts.player import Player
-from pyfrc_core.runtime.scripts.recorder import Recorder
 from pyfrc_core.runtime.scripts.script import FORMAT, InputScript, ScriptError, Step, load_script, parse_script
 from pyfrc_core.runtime.scripts.targets import Countdown, Targets
 from pyfrc_core.wpi import station
