@@ -147,17 +147,6 @@ def test_another_team_s_robot_named_by_robot_in_a_team_s_project(
         refused(keys, UNKNOWN)
 
 
-def test_another_team_s_address_named_by_robot_in_a_team_s_project(tmp_path: Path) -> None:
-    """The address belongs to a team."""
-    (tmp_path / "robot.py").touch()
-    (tmp_path / "pyproject.toml").write_text(f"[tool.pyfrc]\nteam = {TEAM}\n")
-    theirs = Address("10.99.99.2")
-    HostKeys(tmp_path).of_robot(theirs, ROBORIO).check(THEIRS)
-    keys = load_robot_keys(find_target(Project(tmp_path / "robot.py"), robot=str(theirs)), theirs)
-    assert keys.check(THEIRS).new_for is None
-    refused(keys, UNKNOWN)
-
-
 # -- outside of projects -----------------------------------------------------------------------------------------------
 
 

@@ -167,29 +167,6 @@ def connection() -> DriverStationConnection:
     return connection
 
 
-def test_a_connection_begins_with_the_first_packet_and_is_lost_without(connection: DriverStationConnection) -> None:
-    calls: list[str] = []
-    connection.when_connected.append(lambda: calls.append("connected"))
-    for _ in range(3):
-        connection.packet()
-    assert (calls, connection.connected) == ([], False)
-    station.reset_driver_station()
-    connection.packet()
-    connection.packet()
-    assert (calls, connection.connected) == (["connected"], True)
-    hs.setJoystickAxisCount(0, 5)
-    hs.setDriverStationDsAttached(False)
-    connection.packet()
-    wpilib.DriverStation.refreshData()
-    assert not connection.connected
-    assert not wpilib.DriverStation.isDSAttached()
-    assert wpilib.DriverStation.getStickAxisCount(0) == 0
-    assert hs.getJoystickCounts(0) == (5, 12, 1)  # what the next packet will bring
-    hs.setDriverStationDsAttached(True)
-    connection.packet()
-    assert calls == ["connected"] * 2
-
-
 @pytest.mark.parametrize(("enabled", "checks"), [(True, [6, 10, 14]), (False, [])])
 def test_motors_are_checked_after_a_loss(
     enabled: bool, checks: list[int], connection: DriverStationConnection, monkeypatch: pytest.MonkeyPatch

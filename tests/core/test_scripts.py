@@ -228,31 +228,6 @@ def drive(run: RobotRun) -> None:
     run.run_until(130_000)
 
 
-def test_before_packets_with_only_the_match_time_nothing_else_is_recorded(run: RobotRun) -> None:
-    recorder = Recorder(run)
-    published = ntcore.NetworkTableInstance.getDefault().getDoubleTopic("/speed").publish()
-    axes = run.hal_data["joysticks"][0]["axes"]
-    run.construct(Robot)
-    run.start()
-    for number in range(1, 121):  # the robot's values wait to be read, for some packets
-        run.clock.run_until(20_000 * number)
-        published.set(number)
-        axes[0] = number / 200
-        recorder.begin_outside(stepping=True, only_time=True)
-        station.set_match_time((15_000_000 - 20_000 * number) / 1_000_000)
-        recorder.end_outside(stepping=True, only_time=True)
-    recorder.begin_outside()
-    published.set(0.5)
-    axes[1] = 0.25
-    recorder.end_outside()
-    steps = [(step.at_us, dict(step.writes)) for step in recorder.steps_from(0) if step.writes]
-    assert steps == [
-        (20_000, {"match_time": 14.98}),
-        (2_400_001, {"joysticks[0].axes[1]": 0.25, f"{NETWORK}/speed": 0.5}),
-    ]
-    published.close()
-
-
 def test_a_script_that_does_not_fit_the_robot_names_its_line(run: RobotRun) -> None:
     run.construct(Robot)
     with pytest.raises(ScriptError) as caught:
