@@ -10,7 +10,6 @@ from pathlib import Path
 
 import paramiko
 import pytest
-from ports import refusing_port
 
 from pyfrc_core.deploy.connection import connect, load_in_background
 from pyfrc_core.deploy.discovery import Address
@@ -55,20 +54,6 @@ def test_another_server_than_an_ssh_server_is_reported(says: bytes, tmp_path: Pa
     assert str(caught.value).startswith(f"{address}: could not log in to the robot: ")
     assert "Check the link" in str(caught.value)
     assert not (tmp_path / KNOWN_HOSTS).exists()
-
-
-@pytest.mark.parametrize("says", [b"SSH-2.0-robot\r\n", b"SSH-2.0-robot\r\n" + b"\0" * 64])
-def test_an_ssh_server_that_only_sends_its_greeting_is_reported(says: bytes, tmp_path: Path) -> None:
-    with server(says) as address, pytest.raises(ConnectionFailedError, match="violated the SSH protocol") as caught:
-        connect(address, ROBORIO, HostKeys(tmp_path).of_robot(address, ROBORIO))
-    assert "Error" not in str(caught.value)
-
-
-def test_an_address_without_a_robot_is_reported(tmp_path: Path) -> None:
-    with refusing_port() as port:
-        address = Address("127.0.0.1", port)
-        with pytest.raises(ConnectionFailedError, match="refused"):
-            connect(address, ROBORIO, HostKeys(tmp_path).of_robot(address, ROBORIO))
 
 
 # -- when a key is pinned ----------------------------------------------------------------------------------------------

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import json
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from roborio.fixtures import local_robot  # noqa: F401 - `robot`
-from roborio.local import ROBOT_PY, Agents, LocalRobot, directory_in_memory, project_of
+from roborio.local import ROBOT_PY, Agents, LocalRobot, project_of
 
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import DeployRequest
-from pyfrc_core.deploy.errors import DeployError
 from pyfrc_core.deploy.facts import Deployed, RobotFacts
 from pyfrc_core.deploy.robot_info import info_text
 from pyfrc_core.deploy.targets.roborio import ROBORIO
@@ -95,25 +93,6 @@ def test_the_robot_knows_which_program_it_has_seen_run(robot: LocalRobot, agents
         assert not session.watch(1.0).has_run, "its files were not compared"
 
 
-def test_of_releases_that_were_not_watched_the_one_before(
-    robot: LocalRobot, agents: Agents, deploy: DeployAndWatch
-) -> None:
-    for number in range(1, 5):
-        assert deploy(number, None).fallback == (number - 1 or None)
-    facts = facts_of(robot, agents)
-    assert numbers(facts) == [2, 3, 4]
-    assert not any(each.ran or each.ended for each in facts.releases)
-
-
-def test_another_tools_program_was_not_seen_to_run(robot: LocalRobot, agents: Agents, deploy: DeployAndWatch) -> None:
-    (robot.home / "py").mkdir()
-    (robot.home / "py/robot.py").write_text("# another tool's\n")
-    (robot.home / "robotCommand").write_text("python3 -m robotpy --main /home/lvuser/py/robot.py run\n")
-    deployed = deploy(1, False)
-    assert (deployed.taken, deployed.fallback) == (1, 1)
-    assert not facts_of(robot, agents).releases[0].ran
-
-
 def test_a_release_that_ran_stays_known_as_such_and_in_place_it_becomes_another_program(
     robot: LocalRobot, agents: Agents, deploy: DeployAndWatch, tmp_path: Path
 ) -> None:
@@ -132,30 +111,6 @@ def test_it_makes_no_room_on_a_small_disk(robot: LocalRobot, agents: Agents, dep
     releases = Releases(RobotPaths(ROBORIO.layout, str(robot.root)), Activity(lambda **said: None))
     releases.prune(kept=1)
     assert releases.numbers() == [2, 4]
-
-
-def test_a_record_is_written_whole(agents: Agents, tmp_path: Path) -> None:
-    with directory_in_memory() as directory:
-        before = LocalRobot.new(directory / "before")
-        before.deploy(agents, project_of(tmp_path / "project", {"robot.py": ROBOT_PY}))
-        known = json.loads((before.home / ".pyfrc/releases/1.json").read_text())
-        for loses in (False, True):
-            step, ended, outcomes = 0, False, []
-            while not ended:
-                step += 1
-                robot = before.copy(directory / "robot")
-                with contextlib.suppress(DeployError):
-                    session = robot.start(agents, runs=True, last_step=step, loses=loses)
-                    with contextlib.closing(session):
-                        session.restart()
-                        ended = session.watch(1.0).alive
-                record = json.loads((robot.home / ".pyfrc/releases/1.json").read_text())
-                outcomes.append(record.pop("ran", False))
-                for name in ("ended", "lasted", "process"):
-                    record.pop(name, None)
-                assert record == known
-            assert outcomes == sorted(outcomes)
-            assert {True, False} == set(outcomes)
 
 
 # -- pyfrc deploy-info ---------------------------------------------------------------------------------------------

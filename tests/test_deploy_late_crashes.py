@@ -177,16 +177,6 @@ def test_a_withdrawn_mark_returns_only_with_a_program_that_lasts() -> None:
     assert standing(again).good
 
 
-def test_nothing_is_concluded_of_a_program_that_no_watch_has_seen() -> None:
-    for record in (
-        {"commands": {}, "ran": True, "ended": False},
-        after_watch({"commands": {}}, False, True, None, 1.0, THIS),
-        after_watch({"commands": {}}, True, False, 7, 2.0, Boot("")),
-        {**WATCHED, "process": None},
-    ):
-        assert now(record, THIS, {8}, 100.0) == record
-
-
 def test_the_release_that_ran_for_long_is_kept_when_others_ran_for_seconds(
     robot: LocalRobot, agents: Agents, tmp_path: Path
 ) -> None:

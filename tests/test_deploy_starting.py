@@ -5,11 +5,10 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -24,7 +23,6 @@ from pyfrc_core.deploy.errors import (
     ConnectionFailedError,
     DeployError,
     NotSeenToRunError,
-    OtherComputerError,
     ProgramDiedError,
     RefusedError,
     StoppedError,
@@ -209,13 +207,6 @@ def test_a_failure_right_after_the_change(robot: LocalRobot, agents: Agents, pro
         agent.deploy(project, DeployRequest("robot.py", {}, debug=True))
 
 
-def test_a_failure_right_before_the_change(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
-    (robot.home / "robotCommand").mkdir()
-    with contextlib.closing(robot.start(agents)) as agent, failing(agent, 1, "robotCommand"):
-        agent.deploy(project, REQUEST)
-    assert not (robot.home / "py").exists()
-
-
 def test_a_link_that_is_lost_from_the_change_on(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
     def lose(phase: str, done: int, total: int) -> None:
         if phase == "switch":
@@ -267,26 +258,7 @@ def test_in_place_some_files_may_have_been_overwritten(robot: LocalRobot, agents
         agent.deploy(changed(project), DeployRequest("robot.py", {}, in_place=True))
 
 
-def test_what_was_refused_has_changed_nothing(robot: LocalRobot, agents: Agents, project: Manifest) -> None:
-    robot.deploy(agents, project)
-    with contextlib.closing(robot.start(agents)) as agent, failing(agent, 1, "there is no release 77"):
-        agent.rollback(77)
-
-
 # -- the agent ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("change", [AgentClient.undeploy, AgentClient.rollback], ids=["undeploy", "rollback"])
-def test_a_robot_that_another_computer_deploys_to(
-    change: Callable[[AgentClient], object], robot: LocalRobot, agents: Agents, project: Manifest
-) -> None:
-    ours, theirs = robot.start(agents), robot.start(agents)
-    with contextlib.closing(ours), contextlib.closing(theirs):
-        theirs.deploy(project, REQUEST)  # the lock is held until the end of the restart that follows
-        with pytest.raises(OtherComputerError) as caught, explain_interruption(ours):
-            change(ours)
-    assert caught.value.exit_code == 1
-    assert re.fullmatch(r"\S+ is deploying to this robot right now", caught.value.message)
 
 
 def test_going_back_on_a_robot_without_releases(robot: LocalRobot, agents: Agents) -> None:

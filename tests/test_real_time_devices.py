@@ -17,7 +17,7 @@ import pytest
 from conftest import MakeProject, RobotProject
 
 from pyfrc_core.compat import unrepeatable
-from pyfrc_core.runtime.scripts.script import ScriptError, load_script, parse_script
+from pyfrc_core.runtime.scripts.script import load_script
 from pyfrc_core.runtime.scripts.trace_lines import hashed_part
 
 #: The files of a stand-in for phoenix6.
@@ -242,19 +242,6 @@ def test_robot_time_waits_where_a_device_closes_a_loop_or_is_simulated(with_phoe
         assert (min(packets) > 0.05) is USES[use], packets
 
 
-def test_robot_time_does_not_wait_while_the_robot_is_disabled_nor_in_campaigns(with_phoenix: PhoenixProject) -> None:
-    """A disabled device does nothing, and what a campaign has found is played again with its pace."""
-    robot = TIMED.format("self.talons[0].sim_state")
-    settings = "[tool.pyfrc.test]\nreal_time_speed = 0.2\n[tool.pyfrc.fuzz]\nmatch_seconds = 0.2\n"
-    with_phoenix.project.write({"pyproject.toml": settings, "robot.py": robot})
-    noted = with_phoenix.path / "real_time.txt"
-    for command in (("test", "-j", "1", "--", "-k", "disabled"), ("fuzz", "--runs", "1")):
-        noted.unlink(missing_ok=True)
-        with_phoenix.output(*command)
-        times = [float(line) for line in noted.read_text("utf-8").split()]
-        assert min(after - before for before, after in pairwise(times[2:9])) < 0.05
-
-
 MEETING = {
     "tests/test_robot.py": """
         import os
@@ -356,13 +343,6 @@ def test_a_failure_that_does_not_repeat_is_kept(with_phoenix: PhoenixProject) ->
     (with_phoenix.path / "failed").unlink()
     with_phoenix.output("fuzz", "--runs", "8", code=1)
     assert [file] == list((with_phoenix.path / "tests" / "fuzz").rglob("*.jsonl"))
-
-
-def test_the_mark_of_a_script_is_true_or_false() -> None:
-    """As all wrong headers, another value is an error with its line."""
-    header = '{"format": "pyfrc-input 1", "end": 1.0, "repeats": 1}'
-    with pytest.raises(ScriptError, match='"repeats" must be true or false, not 1'):
-        parse_script([header])
 
 
 # -- the real library --------------------------------------------------------------------------------------------------

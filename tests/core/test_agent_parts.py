@@ -27,8 +27,6 @@ from pyfrc_core.deploy.agent.wire import (
     message_frame,
     read_frame,
 )
-from pyfrc_core.deploy.agent_stream import MAX_RESPONSE_BYTES
-from pyfrc_core.deploy.responses import parse_json
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 # -- frames ------------------------------------------------------------------------------------------------------------
@@ -170,44 +168,6 @@ def test_a_watch_ends_when_the_laptop_wants_something_else(tmp_path: Path, monke
     monkeypatch.setattr(ours._console, "receive", lambda seconds: "")
     with pipe_with(message_frame({})) as source:
         assert ours.watch(Wire(source, io.BytesIO()), 60, 60)["verdict"] == "starting"
-
-
-def output_of(*texts: str, before: str = "") -> list[str]:
-    """What the laptop accepts of this output of a program, message by message.
-
-    :param before: printed during the restart
-    """
-    ours, responses = Program(RealRobot(RobotPaths(ROBORIO.layout))), io.BytesIO()
-    waiting = iter([before, *texts])
-    with pytest.MonkeyPatch.context() as patch, pipe_with(message_frame({})) as source:
-        World(patch, [8])
-        patch.setattr(ours._console, "connect", lambda: None)
-        patch.setattr(ours._console, "receive", lambda seconds: next(waiting, ""))
-        patch.setattr(RealRobot, "is_running", lambda robot, process: True)
-        patch.setattr(RealRobot, "stop", lambda robot, start, meanwhile: meanwhile())
-        patch.setattr(RealRobot, "processes", lambda robot: {8} if ours._monitor else set())
-        ours.restart()
-        ours.watch(Wire(source, responses), 60, 60)
-    responses.seek(0)
-    found = []
-    while responses.tell() < len(responses.getvalue()):
-        text = wire.unpack_message(*read_frame(responses.read, MAX_RESPONSE_BYTES), MAX_RESPONSE_BYTES)
-        found.append(parse_json(text).get("output", ""))
-    return [each for each in found if each]
-
-
-@pytest.mark.parametrize("line", ["[],", "\0", "\U0001f916", "x"])
-def test_much_output_is_sent_in_pieces(line: str) -> None:
-    text = line * (300_000 // len(line)) + "\n"
-    assert "".join(output_of("", text)) == text
-
-
-def test_the_last_output_of_a_long_restart_is_kept() -> None:
-    lines = [f"line {number}" for number in range(100_000)]
-    kept = "".join(output_of(before="\n".join([*lines, ""]))).splitlines()
-    assert kept[0] == "[pyfrc has left out earlier output]"
-    assert kept[1:] == lines[1 - len(kept) :]
-    assert len("\n".join(kept)) > 60_000
 
 
 # -- compiling ---------------------------------------------------------------------------------------------------------

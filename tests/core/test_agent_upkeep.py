@@ -16,12 +16,11 @@ from pyfrc_core.deploy.agent import host, releases, transaction
 from pyfrc_core.deploy.agent.activity import Activity
 from pyfrc_core.deploy.agent.content_index import ContentIndex
 from pyfrc_core.deploy.agent.host import RealRobot
-from pyfrc_core.deploy.agent.program import Program
 from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import Refusal, RobotPaths
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
-from .agent_disk import AgentDisk, contents, manifest
+from .agent_disk import AgentDisk, manifest
 
 ONE = {"robot.py": "# one\nimport arm\n", "arm.py": "# arm\n", "data/path.json": "{}"}
 TWO = {**ONE, "robot.py": "# two\nimport arm\n"}
@@ -51,59 +50,8 @@ def quiet(robot: AgentDisk) -> Releases:
 # -- a restart and its watch -------------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def verdicts(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """What the next watches find; each restart is noted in `restarted`."""
-    found: list[str] = []
-    monkeypatch.setattr(Program, "restart", lambda self, main, has_run: restarted.append(main) or len(restarted) > 1)
-    monkeypatch.setattr(
-        Program,
-        "watch",
-        lambda self, wire, seconds, unheard: (
-            watched.append((seconds, unheard)) or {"verdict": found.pop(0), "age": 3.0}
-        ),
-    )
-    restarted.clear()
-    watched.clear()
-    return found
-
-
 restarted: list[Path | None] = []
 watched: list[tuple[float, float]] = []
-
-
-def test_a_restart_starts_the_current_release_and_its_watch_is_recorded(robot: AgentDisk, verdicts: list[str]) -> None:
-    verdicts += ["ended", "running", "ended"]
-    watch = {"op": "watch", "seconds": 9, "unheard": 4}
-    request = {"op": "deploy", "files": manifest(ONE), "main": "robot.py"}
-    *_, restart, seen = robot.ask(request, contents(*ONE.values()), {"op": "restart"}, watch)
-    assert restart == {"done": {"survived": False}}
-    assert seen == {"done": {"verdict": "ended", "age": 3.0}}
-    assert restarted == [robot.places.code / "robot.py"]
-    assert (record(robot, 1)["ran"], record(robot, 1)["ended"]) == (False, True)
-    assert "carried" not in record(robot, 1)
-    assert robot.ask({"op": "restart"}, {"op": "watch", "seconds": 5}) == [
-        {"done": {"survived": True}},
-        {"done": {"verdict": "running", "age": 3.0}},
-    ]
-    assert (record(robot, 1)["ran"], record(robot, 1)["ended"]) == (True, False)
-    robot.ask({"op": "restart"}, watch)
-    assert (record(robot, 1)["ran"], record(robot, 1)["ended"]) == (True, True)
-    assert watched == [(9, 4), (5, 5), (9, 4)]
-
-
-def test_a_watch_without_a_restart_records_nothing(robot: AgentDisk, verdicts: list[str]) -> None:
-    verdicts += ["running", "unheard"]
-    robot.deploy(ONE, *ONE.values())
-    robot.ask({"op": "watch", "seconds": 5})
-    assert record(robot, 1).get("ran") is None
-    robot.ask({"op": "restart"}, {"op": "watch", "seconds": 5})
-    assert record(robot, 1)["ran"] is True
-
-
-def test_a_robot_without_a_release_is_restarted_too(robot: AgentDisk, verdicts: list[str]) -> None:
-    assert robot.ask({"op": "restart"}) == [{"done": {"survived": False}}]
-    assert restarted == [None]
 
 
 # -- which releases stay -----------------------------------------------------------------------------------------------
