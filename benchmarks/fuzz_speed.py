@@ -25,10 +25,10 @@ from competition import SECONDS, bare_loop
 from competition_robots import NAMES, copy_robot
 from test_speed import write_robot
 
-from pyfrc_core.fuzz.goals import Goal
-from pyfrc_core.fuzz.match import FuzzTask
-from pyfrc_core.fuzz.match_executor import open_match_executor
-from pyfrc_core.fuzz.seed_schedule import SeedSchedule
+from pyfrc_core.fuzz.campaign.executors import open_match_executor
+from pyfrc_core.fuzz.guidance.goals import Goal
+from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
+from pyfrc_core.fuzz.match.work import FuzzTask
 from pyfrc_core.project import find_project
 
 CORES = 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,8 +19,9 @@ from .project_options import chosen_project, project_options
 from .verbosity import hint, verbosity
 
 if TYPE_CHECKING:
-    from pyfrc_core.fuzz.campaign_data import Campaign, CampaignOptions, CampaignProgress, FuzzFinding
-    from pyfrc_core.fuzz.failure import FuzzFailure
+    from pyfrc_core.fuzz.campaign.executors import WorkExecutor
+    from pyfrc_core.fuzz.campaign.results import Campaign, CampaignOptions, CampaignProgress, FuzzFinding
+    from pyfrc_core.fuzz.oracle.failure import FuzzFailure
     from pyfrc_core.project import Project
 
 _DEFAULT_SECONDS = 60.0
@@ -136,9 +138,9 @@ def command(
             raise click.BadParameter(f"there is no directory {each}", param_hint="DIRECTORIES")
     with collector_paused():
         from pyfrc_core.compat.unrepeatable import explain_unrepeatable
-        from pyfrc_core.fuzz.campaign import run_campaign
-        from pyfrc_core.fuzz.campaign_data import CampaignOptions
-        from pyfrc_core.fuzz.stream import Shard
+        from pyfrc_core.fuzz.campaign.campaign import run_campaign
+        from pyfrc_core.fuzz.campaign.results import CampaignOptions
+        from pyfrc_core.fuzz.campaign.stream import Shard
         from pyfrc_core.processors import usable_processors
         from pyfrc_core.runtime.scripts.inputs_file import load_inputs
 
@@ -152,14 +154,14 @@ def command(
     printer = _ProgressPrinter(verbosity().quiet, project)
     scripts = tuple(load_inputs(file) for file in recorded)
     jobs = jobs or usable_processors()
-    options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume, scheduler)
+    options = CampaignOptions(seed or 0, runs, seconds, jobs, scripts, Shard(*shard), resume)
     if revision is not None:
         sys.exit(_compare(project, revision, options))
     if pages is not None:
         from pyfrc_core.text_files import check_writable
 
         check_writable("--pages", pages / "any.html")
-    campaign = run_campaign(project, options, printer)
+    campaign = run_campaign(_open_executor(project, jobs, scheduler), options, printer)
     printer.end(campaign.progress)
     if pages is not None:
         _write_pages(project, campaign, pages)
@@ -176,6 +178,16 @@ def command(
     sys.exit(1 if campaign.findings else 2 if campaign.interrupted else 0)
 
 
+def _open_executor(project: Project, jobs: int, scheduler: str | None) -> AbstractContextManager[WorkExecutor]:
+    if scheduler is None:
+        from pyfrc_core.fuzz.campaign.executors import open_match_executor
+
+        return open_match_executor(project, jobs)
+    from pyfrc_core.fuzz.campaign.cluster import open_cluster_executor
+
+    return open_cluster_executor(project, scheduler)
+
+
 def _write_pages(project: Project, campaign: Campaign, pages: Path) -> None:
     from pyfrc_core.sim.page_file import write_finding_page
 
@@ -187,7 +199,7 @@ def _write_pages(project: Project, campaign: Campaign, pages: Path) -> None:
 
 def _compare(project: Project, revision: str, options: CampaignOptions) -> int:
     """Print whether the robot does the same as with another commit; return the exit code."""
-    from pyfrc_core.fuzz.against import compare
+    from pyfrc_core.fuzz.campaign.against import compare
 
     try:
         compared = compare(project, revision, options)
@@ -210,7 +222,7 @@ def _parse_shard(text: str | None) -> tuple[int, int]:
     """Return the number of a shard, from 1, and the number of shards."""
     if text is None:
         return 1, 1
-    from pyfrc_core.fuzz.stream import STREAMS
+    from pyfrc_core.fuzz.campaign.stream import STREAMS
 
     number, slash, count = text.partition("/")
     if not (slash and number.isdecimal() and count.isdecimal() and 1 <= int(number) <= int(count) <= STREAMS):
@@ -219,7 +231,7 @@ def _parse_shard(text: str | None) -> tuple[int, int]:
 
 
 def _merge(project: Project, directories: tuple[Path, ...]) -> None:
-    from pyfrc_core.fuzz.corpus import Corpus
+    from pyfrc_core.fuzz.campaign.corpus import Corpus
 
     entries = Corpus(project).merge(directories)
     for entry in entries:

@@ -79,7 +79,7 @@ def _replay_here(
     project: Project, script: InputScript, file: Path, until: float | None, trace: Path | None
 ) -> ReplayResult:
     """Run the robot in this process."""
-    from .fuzz.oracle import oracle_if_fuzzed
+    from .fuzz.oracle.checks import oracle_if_fuzzed
 
     patches.install(project.files)
     robot_class = load_robot(project)
@@ -119,7 +119,7 @@ def _replay_here(
 
 def _replay_boots(project: Project, script: InputScript, until: float | None, trace: Path | None) -> ReplayResult:
     """Replay a script in which the robot program is started again; its traces are not compared."""
-    from .fuzz.replay_in_subprocess import replay_in_subprocess
+    from .fuzz.match.replay_in_subprocess import replay_in_subprocess
 
     end_us = script.end_us if until is None else min(script.end_us, to_us(until))
     try:
@@ -158,8 +158,8 @@ def _collected(failures: list[PyfrcError], project: Project) -> Iterator[None]:
 
 def _process_failure(project: Project, script: InputScript) -> str | None:
     """Return how the process ends with a script of `pyfrc fuzz` that is known to end it; run in a separate process."""
-    from .fuzz.failure import PROCESS_ENDED
-    from .fuzz.match_executor import open_match_executor
+    from .fuzz.campaign.executors import open_match_executor
+    from .fuzz.oracle.failure import PROCESS_ENDED
 
     with open_match_executor(project, jobs=1) as executor:
         failure = executor.replay(script).failure

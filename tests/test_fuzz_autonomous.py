@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from pyfrc_core.fuzz.describe import story_of
-from pyfrc_core.fuzz.failure import FuzzFailure
+from pyfrc_core.fuzz.campaign.describe import story_of
+from pyfrc_core.fuzz.oracle.failure import FuzzFailure
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
 SHORT = "[tool.pyfrc.fuzz]\nmatch_seconds = 8\n"

@@ -16,13 +16,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyfrc_core.fuzz.describe import story_of
-from pyfrc_core.fuzz.failure import FuzzFailure
-from pyfrc_core.fuzz.match import MatchResult, ReplayTask, Task
-from pyfrc_core.fuzz.seed_schedule import SeedScheduler
-from pyfrc_core.fuzz.shrink import Shrinker
-from pyfrc_core.fuzz.values import SPANS, InputKind, can_be, nearest, simpler
-from pyfrc_core.fuzz.work_executor import MatchExecutor
+from pyfrc_core.fuzz.campaign.describe import story_of
+from pyfrc_core.fuzz.guidance.seed_schedule import SeedScheduler
+from pyfrc_core.fuzz.inputs.values import SPANS, InputKind, can_be, nearest, simpler
+from pyfrc_core.fuzz.match.work import MatchExecutor, MatchResult, ReplayTask, Task
+from pyfrc_core.fuzz.oracle.failure import FuzzFailure
+from pyfrc_core.fuzz.shrink.shrinker import Shrinker
 from pyfrc_core.processes.fork import FORK_IS_SAFE, Fork, wait_for_any
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
@@ -429,9 +428,9 @@ def test_recipes_follow_from_the_seed_and_what_was_learned() -> None:
 
 
 CONTINUED = """
-    from pyfrc_core.fuzz.match import FuzzTask
-    from pyfrc_core.fuzz.seed_schedule import SeedSchedule
-    from pyfrc_core.fuzz.match_executor import open_match_executor
+    from pyfrc_core.fuzz.match.work import FuzzTask
+    from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
+    from pyfrc_core.fuzz.campaign.executors import open_match_executor
     from pyfrc_core.project import find_project
 
     with open_match_executor(find_project(), 1) as executor:
@@ -452,8 +451,8 @@ def test_a_match_that_goes_on_from_another_is_the_same_until_then(make_project) 
 
 
 WITHOUT_WAITS = """
-    from pyfrc_core.fuzz import match_executor
-    from pyfrc_core.fuzz.match import ReplayTask
+    from pyfrc_core.fuzz.campaign import executors
+    from pyfrc_core.fuzz.match.work import ReplayTask
     from pyfrc_core.project import find_project
     from pyfrc_core.runtime.scripts.script import InputScript
 
@@ -461,9 +460,9 @@ WITHOUT_WAITS = """
         assert descriptors, "there is nothing to wait for"
         wait(descriptors)
 
-    wait, match_executor.wait_for_any = match_executor.wait_for_any, wait_for_any
+    wait, executors.wait_for_any = executors.wait_for_any, wait_for_any
     task = ReplayTask(InputScript((), 100_000, robot="robot.py"))
-    with match_executor.open_match_executor(find_project(), 2) as executor:
+    with executors.open_match_executor(find_project(), 2) as executor:
         print([len(list(executor.play([task] * count))) for count in (0, 1, 3)])
     """
 

@@ -19,9 +19,9 @@ from started_commands import StartedCommand
 from warm_cluster import Starts
 
 from pyfrc_core.errors import PyfrcError, UsageError
-from pyfrc_core.fuzz import cluster as cluster_module
-from pyfrc_core.fuzz.cluster import ClusterError, ClusterMatchExecutor, open_cluster_executor
-from pyfrc_core.fuzz.match import ReplayTask
+from pyfrc_core.fuzz.campaign import cluster as cluster_module
+from pyfrc_core.fuzz.campaign.cluster import ClusterError, ClusterMatchExecutor, open_cluster_executor
+from pyfrc_core.fuzz.match.work import ReplayTask
 from pyfrc_core.project.locate import find_project
 from pyfrc_core.runtime.scripts.script import InputScript
 
@@ -297,7 +297,7 @@ class FakeClient:
     status = "running"
 
     def __init__(self, python: str = "") -> None:
-        from pyfrc_core.fuzz.cluster_worker import versions
+        from pyfrc_core.fuzz.campaign.cluster_worker import versions
 
         self._here = {"host": {"python": sys.version.split()[0]}, "packages": versions()}
         self._there = {**self._here, "host": {"python": python}}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from pyfrc_core.fuzz.base_match import BaseMatch
-from pyfrc_core.fuzz.seed_schedule import SeedScheduler
+from pyfrc_core.fuzz.guidance.seed_schedule import SeedScheduler
+from pyfrc_core.fuzz.inputs.match_plan import BaseMatch
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
 #: It fails only after a sequence that no random match has: four buttons in this order, then a stick.

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from pyfrc_core.fuzz.avoidance import without
-from pyfrc_core.fuzz.failure import FuzzFailure
-from pyfrc_core.fuzz.seed_schedule import SeedScheduler
+from pyfrc_core.fuzz.guidance.seed_schedule import SeedScheduler
+from pyfrc_core.fuzz.inputs.left_out import without
+from pyfrc_core.fuzz.oracle.failure import FuzzFailure
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 
 SHORT_MATCHES = "[tool.pyfrc.fuzz]\nmatch_seconds = {}\n"

@@ -11,10 +11,9 @@ import pytest
 import wpilib
 from wpilib.event import EventLoop
 
-from pyfrc_core.fuzz.asked_controls import watch_controls
-from pyfrc_core.fuzz.inputs import Input
-from pyfrc_core.fuzz.joystick_generator import JoystickGenerator
-from pyfrc_core.fuzz.values import Value
+from pyfrc_core.fuzz.inputs.asked_controls import watch_controls
+from pyfrc_core.fuzz.inputs.joystick_generator import JoystickGenerator
+from pyfrc_core.fuzz.inputs.values import Input, Value
 from pyfrc_core.runtime.clock import PACKET_US
 
 ASKED = ("joysticks[0].buttons[3]", "joysticks[0].buttons[9]", "joysticks[1].buttons[2]", "joysticks[0].axes[5]")

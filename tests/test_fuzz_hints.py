@@ -8,9 +8,8 @@ from typing import Any
 
 import pytest
 
-from pyfrc_core.fuzz.campaign_hints import CampaignHints
-from pyfrc_core.fuzz.growth import Growth, Growths
-from pyfrc_core.fuzz.match_hints import LoopTimes, MatchHints
+from pyfrc_core.fuzz.oracle.growth import Growth, Growths
+from pyfrc_core.fuzz.oracle.hints import CampaignHints, LoopTimes, MatchHints
 from pyfrc_core.runtime.time.timed_loop import Periodic
 
 ROBOT = """

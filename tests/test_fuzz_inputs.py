@@ -12,11 +12,10 @@ import ntcore
 import pytest
 
 from pyfrc_core.errors import UsageError
-from pyfrc_core.fuzz.field_data import FieldData
-from pyfrc_core.fuzz.network_reads import NetworkRead
-from pyfrc_core.fuzz.network_values import NetworkValues
-from pyfrc_core.fuzz.robot_constants import UNKNOWN, RobotConstants, find_constants
-from pyfrc_core.fuzz.values import can_be, simpler
+from pyfrc_core.fuzz.inputs.match_plan import FieldData
+from pyfrc_core.fuzz.inputs.network_values import NetworkRead, NetworkValues
+from pyfrc_core.fuzz.inputs.robot_constants import find_constants
+from pyfrc_core.fuzz.inputs.values import UNKNOWN, RobotConstants, can_be, simpler
 from pyfrc_core.hal import HalData
 from pyfrc_core.runtime.scripts.network_entries import entry_target, parse_entry_target
 from pyfrc_core.runtime.scripts.script import load_script

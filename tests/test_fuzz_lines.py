@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
-from pyfrc_core.fuzz.goals import BRANCH, LINE, Goal, kind_of
-from pyfrc_core.fuzz.lines import RobotLines
+from pyfrc_core.fuzz.guidance.goals import BRANCH, LINE, Goal, kind_of
+from pyfrc_core.fuzz.guidance.lines import RobotLines
 from pyfrc_core.project.robot_files import RobotFiles
 
 MONITORS = sys.version_info >= (3, 12)

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from pyfrc_core.config.settings import MatchSettings
-from pyfrc_core.fuzz.match_plan import SHORT, MatchEvent, length_of, plan_match
+from pyfrc_core.fuzz.inputs.match_plan import SHORT, MatchEvent, length_of, plan_match
 
 SETTINGS = MatchSettings()
 SECONDS = 30.0

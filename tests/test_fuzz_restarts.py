@@ -6,7 +6,7 @@ import random
 from typing import Any
 
 from pyfrc_core.config.settings import MatchSettings
-from pyfrc_core.fuzz.match_plan import plan_match
+from pyfrc_core.fuzz.inputs.match_plan import plan_match
 from pyfrc_core.runtime.scripts.boots import boots_of
 from pyfrc_core.runtime.scripts.script import InputScript, Step, load_script
 from pyfrc_core.runtime.scripts.targets import RESTART

@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from pyfrc_cli.fuzz import command
-from pyfrc_core.fuzz.kept_guidance import DIRECTORY
+from pyfrc_core.fuzz.campaign.kept_guidance import DIRECTORY
 
 SETTINGS = "[tool.pyfrc.fuzz]\nmatch_seconds = 1.5\n"
 

@@ -6,11 +6,10 @@ from collections.abc import Callable, Generator, Iterable
 from dataclasses import replace
 from pathlib import Path
 
-from pyfrc_core.fuzz.describe import late_failure, story_of
-from pyfrc_core.fuzz.failure import HANGS, FuzzFailure
-from pyfrc_core.fuzz.match import MatchResult, ReplayTask, Task
-from pyfrc_core.fuzz.shrink import Shrinker
-from pyfrc_core.fuzz.work_executor import MatchExecutor
+from pyfrc_core.fuzz.campaign.describe import late_failure, story_of
+from pyfrc_core.fuzz.match.work import MatchExecutor, MatchResult, ReplayTask, Task
+from pyfrc_core.fuzz.oracle.failure import HANGS, FuzzFailure
+from pyfrc_core.fuzz.shrink.shrinker import Shrinker
 from pyfrc_core.project import Project
 from pyfrc_core.runtime.scripts.script import InputScript, Step
 

@@ -8,8 +8,8 @@ import sys
 import textwrap
 from typing import Any
 
-from pyfrc_core.fuzz.goals import BRANCH, LINE, STATE, kind_of
-from pyfrc_core.fuzz.seed_schedule import SeedSchedule, SeedScheduler
+from pyfrc_core.fuzz.guidance.goals import BRANCH, LINE, STATE, kind_of
+from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule, SeedScheduler
 
 ROBOT = """
     import enum
@@ -68,9 +68,9 @@ ROBOT = """
 
 GOALS = """
     import json
-    from pyfrc_core.fuzz.match import FuzzTask
-    from pyfrc_core.fuzz.match_executor import open_match_executor
-    from pyfrc_core.fuzz.seed_schedule import SeedSchedule
+    from pyfrc_core.fuzz.match.work import FuzzTask
+    from pyfrc_core.fuzz.campaign.executors import open_match_executor
+    from pyfrc_core.fuzz.guidance.seed_schedule import SeedSchedule
     from pyfrc_core.project import find_project
 
     found, known = [], frozenset()

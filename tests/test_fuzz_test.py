@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pyfrc_core.fuzz.values import SPANS, InputKind, can_be, draw, nearest
+from pyfrc_core.fuzz.inputs.values import SPANS, InputKind, can_be, draw, nearest
 from pyfrc_core.runtime.scripts.script import load_script
 
 ROBOTS = Path(__file__).parent / "robots"
@@ -47,12 +47,12 @@ FUZZ_TEST = """
     import json, random
     from pathlib import Path
     import pytest
-    from pyfrc_core.fuzz.gamepads import find_gamepads
-    from pyfrc_core.fuzz.inputs import find_controls, find_sensors
+    from pyfrc_core.fuzz.inputs.gamepads import find_gamepads
+    from pyfrc_core.fuzz.inputs.finders import find_controls, find_sensors
     from pyfrc_core.config.settings import MatchSettings
-    from pyfrc_core.fuzz.input_generator import InputGenerator
-    from pyfrc_core.fuzz.match_plan import plan_match, without_restarts
-    from pyfrc_core.fuzz.values import can_be
+    from pyfrc_core.fuzz.inputs.input_generator import InputGenerator
+    from pyfrc_core.fuzz.inputs.match_plan import plan_match, without_restarts
+    from pyfrc_core.fuzz.inputs.values import can_be
     from pyfrc_core.runtime.scripts.script import InputScript, Step
     from pyfrc_core.runtime.scripts.targets import Targets
 
@@ -417,7 +417,7 @@ def test_sensors_of_vendors_have_plausible_ranges(make_project) -> None:
                 ]
     """
     test = """
-        from pyfrc_core.fuzz.inputs import find_sensors
+        from pyfrc_core.fuzz.inputs.finders import find_sensors
 
         def test_it(control, hal_data, robot):
             with control.run_robot():

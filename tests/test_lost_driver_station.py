@@ -9,7 +9,7 @@ from conftest import MakeProject
 from sim_robots import FILES, run, settle
 
 from pyfrc_core.config.settings import MatchSettings
-from pyfrc_core.fuzz.match_plan import plan_match
+from pyfrc_core.fuzz.inputs.match_plan import plan_match
 from pyfrc_core.project import find_project
 from pyfrc_core.sim import SimOptions, Simulation
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from pyfrc_core.errors import PyfrcError
-from pyfrc_core.fuzz.packed_project import PackedProject, pack
+from pyfrc_core.fuzz.campaign.packed_project import PackedProject, pack
 from pyfrc_core.project.locate import find_project
 
 

@@ -24,9 +24,9 @@ _IMPORTED = (
     "dask.cli",
     "distributed.cli.dask_scheduler",
     "distributed.cli.dask_worker",
-    "pyfrc_core.fuzz.cluster_worker",
-    "pyfrc_core.fuzz.campaign",
-    "pyfrc_core.fuzz.match_executor",
+    "pyfrc_core.fuzz.campaign.cluster_worker",
+    "pyfrc_core.fuzz.campaign.campaign",
+    "pyfrc_core.fuzz.campaign.executors",
     "pyfrc_cli.main",
     "pyfrc_cli.fuzz",
     "numpy.random",  # each match seeds it, since Dask has imported numpy

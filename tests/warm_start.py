@@ -67,7 +67,7 @@ _IMPORTED = (
     "pyfrc_core.measure.coverage",
     "pyfrc_core.tests",
     "pyfrc_core.test_support.run_tests",
-    "pyfrc_core.fuzz.campaign",
+    "pyfrc_core.fuzz.campaign.campaign",
     "pyfrc_core.config.sim_file",
     "pyfrc_core.config.sim_schema",
     "pyfrc_core.physics.engine",

@@ -99,7 +99,7 @@ class DeploySettings:
 class FuzzSettings:
     """``[tool.pyfrc.fuzz]``: how long fuzzing's matches are, and which checks run.
 
-    Each ``bool`` switches a check of `fuzz.oracle` on or off, which reports its failures under this name.
+    Each ``bool`` switches a check of `fuzz.oracle.checks` on or off, which reports its failures under this name.
     """
 
     __pydantic_config__ = STRICT

@@ -16,7 +16,7 @@ from .engine.snapshot import Failure
 from .ui.headless import Headless
 
 if TYPE_CHECKING:
-    from ..fuzz.campaign_data import FuzzFinding
+    from ..fuzz.campaign.results import FuzzFinding
     from ..replay import ReplayResult
     from ..runtime.scripts.script import InputScript
     from .ui import FrontEnd

@@ -197,7 +197,7 @@ class TestController:
         self._begin("replay")
         script = load_inputs(Path(path))
         if self.project is not None and len(boots_of(script)) > 1:
-            from ..fuzz.replay_in_subprocess import replay_in_subprocess
+            from ..fuzz.match.replay_in_subprocess import replay_in_subprocess
 
             _, failure = replay_in_subprocess(self.project, script)
             if failure is not None:
@@ -207,7 +207,7 @@ class TestController:
             seed_generators(script.seed)
         with ExitStack() as closing:
             if self.project is not None:
-                from ..fuzz.oracle import oracle_if_fuzzed  # few tests replay a script
+                from ..fuzz.oracle.checks import oracle_if_fuzzed  # few tests replay a script
 
                 closing.enter_context(oracle_if_fuzzed(self._run, self.project, script))
             closing.callback(self._run.end)

@@ -11,7 +11,7 @@ from typing import Any
 import wpilib
 
 from ..compat.cpython_private import get_frame
-from ..fuzz.motor_calls import watch_motor_calls
+from ..fuzz.oracle.motor_calls import watch_motor_calls
 from ..project.robot_files import RobotFiles
 from ..runtime.patch_table import Patch, patched
 

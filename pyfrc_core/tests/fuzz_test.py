@@ -11,13 +11,13 @@ import random
 from pathlib import Path
 from typing import Any
 
-from ..fuzz.asked_controls import watch_controls
-from ..fuzz.fuzz_run import FuzzRun
-from ..fuzz.input_generator import InputGenerator
-from ..fuzz.lines import RobotLines
-from ..fuzz.match_plan import plan_match, seconds_of, without_restarts
-from ..fuzz.network_reads import watch_network_reads
-from ..fuzz.robot_constants import find_constants
+from ..fuzz.guidance.lines import RobotLines
+from ..fuzz.inputs.asked_controls import watch_controls
+from ..fuzz.inputs.input_generator import InputGenerator
+from ..fuzz.inputs.match_plan import plan_match, seconds_of, without_restarts
+from ..fuzz.inputs.network_reads import watch_network_reads
+from ..fuzz.inputs.robot_constants import find_constants
+from ..fuzz.match.play import FuzzRun
 from ..hal import HalData
 from ..project import Project, find_project
 from ..runtime.exceptions import TestFroze
@@ -68,10 +68,10 @@ def test_fuzz(hal_data: HalData, control: TestController, fake_time: FakeTime, r
 
 def _save(project: Project, script: InputScript, generator: InputGenerator, error: BaseException) -> None:
     """Shrink the script, and save it where a run with the same seed finds it, outside version control."""
-    from ..fuzz.describe import story_of
-    from ..fuzz.failure import failure_of
-    from ..fuzz.shrink_in_subprocess import shrink_in_subprocess
-    from ..fuzz.shrink_task import ShrinkTask
+    from ..fuzz.campaign.describe import story_of
+    from ..fuzz.campaign.executors import shrink_in_subprocess
+    from ..fuzz.match.work import ShrinkTask
+    from ..fuzz.oracle.failure import failure_of
 
     failure = failure_of(error, project.files)
     task = ShrinkTask(script, failure, dict(generator.inputs), _MOST_RUNS, use_oracle=False)

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from pyfrc_core.fuzz.hal_reports import hal_reports
+from pyfrc_core.fuzz.oracle.hal_reports import hal_reports
 
 
 def report(text: str) -> None:

@@ -1,0 +1,306 @@
+"""Run matches in worker processes: forks of a process that has imported everything, or new interpreters.
+
+Each match has its own process, so it may crash, hang and print without harm.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from abc import abstractmethod
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import AbstractContextManager, closing, contextmanager
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ...errors import PyfrcError, RobotCodeError
+from ...interruption import calling_when_ended
+from ...processes.call import ForkedCall, can_fork, run_in_subprocess
+from ...processes.crash_report import CrashLog
+from ...processes.fork import wait_for_any
+from ...project import Project
+from ...runtime.checks.hang_detector import not_watched
+from ...runtime.clock import to_us
+from ...runtime.scripts.script import InputScript
+from ...runtime.threads.fork_obstacles import reasons_not_to_fork
+from ...runtime.turns import taking_turns
+from ..guidance.goals import RobotLine
+from ..guidance.seed_schedule import match_seconds
+from ..match.imported_robot import robot_lines
+from ..match.journal import read_journal
+from ..match.play import play
+from ..match.preparation import Preparation
+from ..match.restarts import MEANWHILE
+from ..match.work import (
+    ROBOT_SEED,
+    FuzzTask,
+    MatchExecutor,
+    MatchResult,
+    NextWork,
+    NoMoreWork,
+    ReplayTask,
+    Result,
+    ShrinkTask,
+    Shrunk,
+    Task,
+    Work,
+)
+from ..oracle.failure import HANGS, PROCESS_ENDED, FuzzFailure
+from ..shrink.shrinker import Shrinker
+
+# Interval of the checks for an interrupt and for the end of the campaign's time, in seconds.
+_INTERRUPT_CHECK_SECONDS = 0.1
+
+
+class WorkExecutor(MatchExecutor):
+    """Runs matches of one project, and shrinks scripts beside them.
+
+    :param directory: a directory for temporary files
+    """
+
+    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
+        super().__init__(project, jobs, directory)
+        self._journals = 0
+
+    @abstractmethod
+    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
+        """Begin what `next_work` returns until it returns None, and yield each result as soon as it is known.
+
+        It is called again after each result, and several times a second. The generator ends when nothing is begun and
+        nothing is running; closing it ends what is running.
+        """
+
+    def play(self, tasks: Iterable[Task]) -> Generator[MatchResult, None, None]:
+        left, running, found = enumerate(tasks), dict[int, Task](), dict[int, MatchResult]()
+
+        def next_work() -> Task | None:
+            begun = next(left, None) if len(running) < self.jobs else None
+            if begun is None:
+                return None
+            running[begun[0]] = begun[1]
+            return begun[1]
+
+        next_index = 0
+        with closing(self.run(next_work)) as results:
+            for task, result in results:
+                assert isinstance(result, MatchResult)
+                index = next(index for index, each in running.items() if each is task)
+                del running[index]
+                found[index] = result
+                # At once, since the caller may close the generator then: a shorter script has failed.
+                while next_index in found:
+                    yield found.pop(next_index)
+                    next_index += 1
+
+    def interruptible(self) -> AbstractContextManager[None]:
+        """Interrupt the matches on Ctrl-C, and when the terminal is closed, until the context ends."""
+
+        def interrupt() -> None:
+            self.interrupted = True
+
+        return calling_when_ended(interrupt)
+
+    def _check_interrupt(self) -> None:
+        if self.interrupted:
+            raise KeyboardInterrupt
+
+    @contextmanager
+    def _journal(self, task: Work) -> Iterator[None]:
+        """Delete the task's journal when the context ends."""
+        try:
+            yield
+        finally:
+            if isinstance(task, FuzzTask) and task.journal is not None:
+                task.journal.unlink(missing_ok=True)
+
+    def _with_journal(self, task: Work) -> Work:
+        if not isinstance(task, FuzzTask):
+            return task
+        self._journals += 1
+        return replace(task, journal=self._directory / str(self._journals))
+
+    def _died(self, task: Work, text: str) -> Result:
+        """Return the result of a match whose process ended without returning one."""
+        if isinstance(task, ShrinkTask):
+            return Shrunk(task.script, task.failure)
+        headline = text.partition("\n")[0]
+        place, _, what = headline.partition(": ")
+        if not what:
+            place = ""
+        failure = FuzzFailure(HANGS if " hangs here" in headline else PROCESS_ENDED, place, "", headline)
+        if isinstance(task, ReplayTask):
+            return MatchResult(failure, task.script)
+        steps = tuple(read_journal(task.journal)) if task.journal is not None else ()
+        end_us = to_us(match_seconds(self.project, task.schedule))
+        return MatchResult(failure, InputScript(steps, end_us, robot=self.project.main_file.name, seed=ROBOT_SEED))
+
+
+@contextmanager
+def open_match_executor(project: Project, jobs: int) -> Iterator[WorkExecutor]:
+    """Open the executor that fits this project and platform.
+
+    :raises RobotCodeError: when the robot's code cannot be imported
+    """
+    with tempfile.TemporaryDirectory(prefix="pyfrc-fuzz-") as temporary, taking_turns():
+        if not can_fork(project):
+            yield SpawnedMatchExecutor(project, jobs, Path(temporary))
+            return
+        with closing(ForkedMatchExecutor(project, jobs, Path(temporary))) as executor:
+            yield executor
+
+
+class PooledMatchExecutor(WorkExecutor):
+    """Runs matches in an executor of `concurrent.futures`."""
+
+    @property
+    def lines(self) -> frozenset[RobotLine]:
+        return run_in_subprocess(_all_lines, self.project, "while it was imported")
+
+    @abstractmethod
+    def _pool(self) -> AbstractContextManager[Executor]:
+        """Return the executor, which is used until the context ends."""
+
+    @abstractmethod
+    def _call(self, task: Work) -> Callable[[], Any]:
+        """Return the function that does a task there."""
+
+    @abstractmethod
+    def _result_of(self, task: Work, future: Future[Any]) -> Result:
+        """Return the result of the task whose future is done."""
+
+    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
+        running: dict[Future[Any], tuple[Work, Work]] = {}
+        with self._pool() as pool:
+            try:
+                while True:
+                    while (task := next_work()) is not None:
+                        noted = self._with_journal(task)
+                        running[pool.submit(self._call(noted))] = task, noted
+                    if not running:
+                        return
+                    done, _ = wait(running, _INTERRUPT_CHECK_SECONDS, FIRST_COMPLETED)
+                    self._check_interrupt()  # the signal may have ended that process, too
+                    for future in done:
+                        task, noted = running.pop(future)
+                        with self._journal(noted):
+                            result = self._result_of(noted, future)
+                        yield task, result
+            except NoMoreWork:
+                return
+            finally:
+                for future in running:
+                    future.cancel()
+
+
+class SpawnedMatchExecutor(PooledMatchExecutor):
+    """Runs each match in a new interpreter."""
+
+    def _pool(self) -> AbstractContextManager[Executor]:
+        return ThreadPoolExecutor(self.jobs + 1)  # one more shrinks
+
+    def _call(self, task: Work) -> Callable[[], Result]:
+        return partial(run_in_subprocess, partial(_work, work=task), self.project, MEANWHILE)
+
+    def _result_of(self, task: Work, future: Future[Result]) -> Result:
+        try:
+            return future.result()
+        except RobotCodeError as ended:
+            return self._died(task, str(ended))
+
+
+def _work(project: Project, log: CrashLog, work: Work) -> Result:
+    """Do one task in this process, which must end afterwards."""
+    return _shrink(project, log, work) if isinstance(work, ShrinkTask) else play(project, log, work)
+
+
+def _all_lines(project: Project, log: CrashLog) -> frozenset[RobotLine]:
+    return robot_lines(project).all()
+
+
+def _survey(project: Project) -> tuple[bool, frozenset[RobotLine]]:
+    """Import the robot; return whether its processes cannot be forked after that, and its lines."""
+    lines = robot_lines(project).all()
+    return bool(reasons_not_to_fork()), lines
+
+
+class ForkedMatchExecutor(WorkExecutor):
+    """Runs each match in a fork of this process, which has imported the robot, unless importing it starts threads."""
+
+    def __init__(self, project: Project, jobs: int, directory: Path) -> None:
+        super().__init__(project, jobs, directory)
+
+        # In a separate process first: an import cannot be undone.
+        survey = ForkedCall(lambda log: _survey(project), files=project.files)
+        with closing(survey):
+            survey.wait()
+            imports_late, self._lines = survey.result(project.files, "while it was imported")
+        self._preparation = Preparation(project, is_imported=not imports_late)
+
+    @property
+    def lines(self) -> frozenset[RobotLine]:
+        return self._lines
+
+    def run(self, next_work: NextWork) -> Generator[tuple[Work, Result], None, None]:
+        running: dict[ForkedCall[Result], tuple[Work, Work]] = {}
+        try:
+            while True:
+                self._check_interrupt()
+                while (task := next_work()) is not None:
+                    noted = self._with_journal(task)
+                    running[self._begin(noted)] = task, noted
+                if not running:
+                    return
+                wait_for_any([call.fileno() for call in running])
+                for call in list(running):
+                    call.poll()
+                    if call.finished:
+                        task, noted = running.pop(call)
+                        yield task, self._result(noted, call)
+        except NoMoreWork:
+            return
+        finally:
+            for call in running:
+                call.close()
+
+    def close(self) -> None:
+        """Undo what is prepared in this process."""
+        self._preparation.close()
+
+    def _begin(self, task: Work) -> ForkedCall[Result]:
+        self._preparation.prepare_for(task)
+        return ForkedCall(lambda log: _work(self.project, log, task), files=self.project.files)
+
+    def _result(self, task: Work, call: ForkedCall[Result]) -> Result:
+        with self._journal(task), closing(call):
+            try:
+                return call.result(self.project.files, MEANWHILE)
+            except RobotCodeError as ended:
+                return self._died(task, str(ended))
+
+
+def _shrink(project: Project, log: CrashLog, task: ShrinkTask) -> Shrunk:
+    """Make a script short in this process, which has run no robot, one run at a time."""
+    options = task.most_runs, task.use_oracle, task.seconds
+    with open_match_executor(project, jobs=1) as executor:
+        shrinker = Shrinker(executor, task.script, task.failure, task.inputs, *options)
+        shrinker.shrink()
+        if shrinker.repeats and shrinker.play_again():
+            return Shrunk(shrinker.script, shrinker.failure, True, shrinker.runs)
+        return Shrunk(task.script, task.failure, runs=shrinker.runs)
+
+
+def shrink_in_subprocess(project: Project, task: ShrinkTask) -> Shrunk | str:
+    """Make a script short, which has made a robot raise something in this process.
+
+    :returns: what came of it, or the end of a sentence that says why there is no shorter script
+    """
+    if not can_fork(project):
+        return "making it short takes hundreds of processes, and they cannot be forked here"
+    try:
+        with not_watched():
+            shrunk: Shrunk = run_in_subprocess(partial(_shrink, task=task), project, "while a script was made shorter")
+    except PyfrcError as wrong:
+        return f"it could not be made short ({wrong})"
+    return shrunk if shrunk.repeats else "the robot did not fail in the same way again"

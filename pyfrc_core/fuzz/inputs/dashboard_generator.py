@@ -1,0 +1,220 @@
+"""Generate a network's inputs: what drivers select, type and click in a dashboard, and what cameras send."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import ntcore
+
+from ...runtime.clock import PACKET_US
+from ...runtime.scripts.network_entries import NETWORK, entry_target, parse_entry_target
+from .network_values import SEES_TARGET, NetworkRead, NetworkValues, is_setting
+from .values import UNKNOWN, Input, RobotConstants, Value, draw
+
+_DASHBOARD_TABLES = ("/SmartDashboard/", "/Shuffleboard/")
+
+#: Tables that WPILib itself writes.
+_NOT_INPUTS = ("/FMSInfo/", "/LiveWindow/")
+
+#: Seconds from one choice to the next, on average and at least; each entry that the robot reads makes them more.
+_PAUSE, _SHORTEST_PAUSE = 3.0, 0.3
+
+#: The share of the entries that nothing is known to read, such as the telemetry of a dashboard.
+_UNREAD = 0.15
+
+#: How often an entry has a value when the robot starts.
+_BEFORE_START = 0.5
+
+#: How often a dashboard publishes an entry of another type than the robot reads.
+_OTHER_TYPE = 0.06
+
+#: After so many searches at most, all entries are looked at again: a chooser may have another option.
+_UNCHANGED = 5
+
+#: Types whose values show them, so that a target does not name them.
+_PLAIN = ("boolean", "double", "string")
+_NUMBERS = ("int", "float", "double")
+
+
+class DashboardFinder:
+    """Finds the inputs of dashboards; looks at the entries again only after there are others, and now and then."""
+
+    def __init__(self) -> None:
+        self._network = ntcore.NetworkTableInstance.getDefault()
+        self._names: list[str] = []
+        self._found: list[Input] = []
+        self._searches = 0
+
+    def find(self) -> list[Input]:
+        """Return the choosers' options, the commands' buttons, and what else belongs to an object, in order.
+
+        A plain entry that the robot writes and does not read is no input.
+        """
+        topics = self._network.getTopics()
+        names = [topic.getName() for topic in topics]
+        if names != self._names or self._searches % _UNCHANGED == 0:
+            self._names, self._found = names, sorted(self._inputs(topics, names))
+        self._searches += 1
+        return self._found
+
+    def _inputs(self, topics: Sequence[ntcore.Topic], names: Sequence[str]) -> Iterator[Input]:
+        network = self._network
+        for topic, name in zip(topics, names, strict=True):
+            table, _, entry = name.rpartition("/")
+            if not name.startswith(_DASHBOARD_TABLES) or entry.startswith("."):
+                continue
+            sort, made_by = topic.getType(), network.getEntry(f"{table}/.type").getString("")
+            if made_by == "String Chooser":
+                if entry == "options" and (options := network.getEntry(name).getStringArray([])):
+                    yield Input(f"{NETWORK}{table}/selected", "choice", table, tuple(options))
+            elif made_by == "Command":
+                if entry == "running":
+                    yield Input(NETWORK + name, "command", table)
+            elif made_by and sort == ntcore.NetworkTableType.kBoolean:
+                yield Input(NETWORK + name, "flag", name)
+            elif made_by and sort == ntcore.NetworkTableType.kDouble:
+                yield Input(NETWORK + name, "number", name)
+
+
+class DashboardGenerator:
+    """Generates one match's inputs from the network.
+
+    :param reads: the entries that the robot reads, by name; they may become more; None if they are not watched
+    :param published: entries that the program is known to write all the time
+    """
+
+    def __init__(
+        self,
+        rng: random.Random,
+        reads: Mapping[str, NetworkRead] | None = None,
+        constants: RobotConstants = UNKNOWN,
+        published: frozenset[str] = frozenset(),
+    ) -> None:
+        self._rng = rng
+        self._reads = reads
+        self._values = NetworkValues(rng, constants)
+        self.next_us = 0
+        self._inputs: list[Input] = []
+        self._unread: list[Input] = []
+        #: The value of each number and entry before it was first written.
+        self._originals: dict[str, Any] = {}
+        self._settings: set[str] = set()
+        self._written: dict[str, Value] = {}
+        self._chosen: set[str] = set()
+        #: Entries that the program writes itself, and the last values of the others.
+        self._published = set(published)
+        self._seen: dict[str, object] = {}
+
+    def set_inputs(self, inputs: list[Input]) -> list[Input]:
+        """Set the inputs to generate values for; return them with the entries that the robot reads."""
+        reads = self._reads or {}
+        for read in reads.values():
+            self._find_published(read)
+        entries = [each for read in reads.values() if (each := self._entry(read)) is not None]
+        others = [each for each in inputs if each.target.removeprefix(NETWORK) not in reads]
+        plain = [each for each in others if each.kind in ("flag", "number")] if self._reads is not None else []
+        self._inputs = [*(each for each in others if each not in plain), *entries]
+        self._unread = plain
+        for each in inputs:
+            if each.kind == "number" and each.target not in self._originals:
+                entry = ntcore.NetworkTableInstance.getDefault().getEntry(each.target.removeprefix(NETWORK))
+                self._originals[each.target] = entry.getDouble(0.0)
+        return [*inputs, *entries]
+
+    def before_first_read(self, read: NetworkRead) -> dict[str, Value]:
+        """Return what to write before the robot, which is starting, reads an entry for the first time."""
+        exists = ntcore.NetworkTableInstance.getDefault().getTopic(read.name).exists()
+        if exists or self._rng.random() >= _BEFORE_START:
+            return {}
+        found: dict[str, Value] = {}
+        entry = self._entry(read)
+        if entry is None:
+            return found
+        if read.type_name in _PLAIN and self._rng.random() < _OTHER_TYPE:  # a dashboard publishes it first
+            text = self._rng.choice(("", "0", "true")) if read.type_name != "string" else 0.0
+            return {entry_target(read.name): text}
+        self._change_entry(entry.target, read, found)
+        return found
+
+    def _find_published(self, read: NetworkRead) -> None:
+        """Notice an entry whose value changes without a write: the program writes it."""
+        if read.name in self._published or read.type_name not in _PLAIN:
+            return
+        entry = ntcore.NetworkTableInstance.getDefault().getEntry(read.name)
+        now = entry.getValue().value() if entry.exists() else None
+        known = self._written.get(read.name, self._seen.get(read.name, now))
+        if known is not None and now != known:
+            self._published.add(read.name)
+        self._seen[read.name] = now
+
+    def write(self, now_us: int, found: dict[str, Value]) -> None:
+        """Add the writes of this time: a choice for each new chooser, and a random change now and then."""
+        rng = self._rng
+        for each in self._inputs:
+            if each.kind == "choice" and each.target not in self._chosen:
+                self._chosen.add(each.target)
+                self._choose(each, found)
+        if self.next_us:
+            if self._unread and (not self._inputs or rng.random() < _UNREAD):
+                self._choose(rng.choice(self._unread), found)
+            elif self._inputs:
+                self._choose(rng.choice(self._inputs), found)
+        read = sum(each.kind == "entry" for each in self._inputs)
+        pause = max(_SHORTEST_PAUSE, _PAUSE / (1 + read))
+        self.next_us = now_us + PACKET_US + round(rng.expovariate(1 / pause) * 50) * PACKET_US
+
+    def _choose(self, each: Input, found: dict[str, Value]) -> None:
+        if each.kind != "entry" or self._reads is None:
+            found[each.target] = draw(each.kind, self._rng, each.options, self._originals.get(each.target, 0.0))
+            return
+        camera = [other for other in self._inputs if other.kind == "entry" and other.device == each.device]
+        sees = next((other for other in camera if SEES_TARGET.search(_name(other).rpartition("/")[2])), None)
+        if sees is None or is_setting(each.device):
+            self._change_entry(each.target, self._reads[_name(each)], found)
+            return
+        # All that a camera measures changes together: without a target, there is nothing to measure.
+        target = self._rng.random() < 0.7
+        for other in camera:
+            read = self._reads[_name(other)]
+            if target:
+                self._change_entry(other.target, read, found)
+            else:
+                found[other.target] = self._values.without_target(read)
+        if target:
+            found[sees.target] = True if self._reads[_name(sees)].type_name == "boolean" else 1
+
+    def _entry(self, read: NetworkRead) -> Input | None:
+        """Return the input that an entry is; None if it is none, or not of the type that the robot reads."""
+        table, _, last = read.name.rpartition("/")
+        if read.name.startswith(_NOT_INPUTS) or last.startswith(".") or read.name in self._published:
+            return None
+        topic = ntcore.NetworkTableInstance.getDefault().getTopic(read.name)
+        type_name = read.type_name
+        if topic.exists() and topic.getTypeString() != type_name:
+            if not {topic.getTypeString(), type_name} <= set(_NUMBERS):
+                return None
+            type_name = topic.getTypeString()
+        return Input(entry_target(read.name, "" if type_name in _PLAIN else type_name), "entry", table)
+
+    def _change_entry(self, target: str, read: NetworkRead, found: dict[str, Value]) -> None:
+        if read.name not in self._originals:
+            entry = ntcore.NetworkTableInstance.getDefault().getEntry(read.name)
+            own = entry.exists()
+            self._originals[read.name] = entry.getValue().value() if own else read.default
+            if own or is_setting(read.name):
+                self._settings.add(read.name)
+        now = self._entry(read)
+        if now is None or now.target != target:  # the robot has just published it with another type
+            return
+        setting = read.name in self._settings
+        read = replace(read, type_name=parse_entry_target(target)[1] or read.type_name)
+        before = self._originals[read.name] if setting else self._written.get(read.name, read.default)
+        found[target] = self._written[read.name] = self._values.draw(read, before, setting)
+
+
+def _name(entry: Input) -> str:
+    """Return the full name of an entry."""
+    return parse_entry_target(entry.target)[0]

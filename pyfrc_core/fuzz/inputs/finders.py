@@ -1,0 +1,239 @@
+"""Find a robot's inputs: the controls of its joysticks, and the sensors that it has created.
+
+Inputs from the dashboard are in `dashboard_generator`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
+from typing import NamedTuple
+
+from wpilib.simulation import SimDeviceSim
+
+from ...hal import HalData, format_path
+from ...hal.counters import counted_channels
+from ...hal.devices import KINDS
+from ...hal.modules import Modules
+from ...hal.sim_device_list import Signature
+from ...wpi import station
+from .gamepads import TRIGGERS
+from .values import UNKNOWN, Input, InputKind, RobotConstants
+
+# -- joysticks -------------------------------------------------------------------------------------------------------
+
+
+def find_controls(hal_data: HalData, gamepads: Mapping[int, str]) -> Iterator[Input]:
+    """Return the axes, buttons and POVs of the joysticks that are plugged in."""
+    for number, stick in enumerate(hal_data["joysticks"]):
+        yield from _controls(number, *stick.counts(), TRIGGERS.get(gamepads.get(number, ""), ()))
+
+
+@cache
+def _controls(number: int, axes: int, buttons: int, povs: int, triggers: tuple[int, ...]) -> tuple[Input, ...]:
+    name = f"joysticks[{number}]"
+    return (
+        *(Input(f"{name}.axes[{axis}]", "trigger" if axis in triggers else "axis", name) for axis in range(axes)),
+        *(Input(f"{name}.buttons[{button}]", "button", name) for button in range(1, buttons + 1)),
+        *(Input(f"{name}.povs[{pov}]", "pov", name) for pov in range(povs)),
+    )
+
+
+# -- sensors ---------------------------------------------------------------------------------------------------------
+
+#: The values that devices measure, by their key in `hal_data`.
+_DEVICES: dict[str, tuple[tuple[str, InputKind], ...]] = {
+    "dio": (("value", "switch"),),
+    "analog_in": (("voltage", "volts"),),
+    "encoder": (("count", "count"), ("rate", "rate")),
+    "analog_gyro": (("angle", "angle"), ("rate", "turning")),
+    "duty_cycle": (("output", "turns"), ("frequency", "hertz")),
+}
+#: What a digital input measures that a `Counter` counts.
+_COUNTED: tuple[tuple[str, InputKind], ...] = (("value", "pulses"),)
+_MODULES: dict[str, tuple[tuple[str, InputKind], ...]] = {
+    "pcm_compressor": (("pressure_switch", "switch"),),
+    "ph_compressor": (("pressure_switch", "switch"),),
+    "pdp": (("voltage", "battery"), *((f"current[{channel}]", "amperes") for channel in range(24))),
+}
+
+_RAILS: tuple[tuple[str, str, InputKind], ...] = (
+    ("getVoltage", "voltage", "rail"),
+    ("getCurrent", "current", "amperes"),
+    ("getEnabled", "active", "switch"),
+    ("getFaultCount", "faults", "whole"),
+)
+#: What the robot's controller measures, by the function with which code asks for it: only then it is varied.
+_ASKED: dict[str, tuple[str, InputKind]] = {
+    "getCPUTemp": ("roborio.cpu_temp", "celsius"),
+    "getInputCurrent": ("power.vin_current", "amperes"),
+    **{
+        function + rail: (f"power.user_{value}_{rail.lower()}", kind)
+        for rail in ("3V3", "5V", "6V")
+        for function, value, kind in _RAILS
+    },
+}
+
+#: Patterns for a SimDevice and its numeric value, as ``device/value``; the first match counts.
+_OF_DEVICES: tuple[tuple[str, InputKind], ...] = (
+    (r"^SPARK.*(?<!ABSOLUTE ENCODER)(?<!ANALOG SENSOR)/Position$", "rotations"),
+    (r"^SPARK.*/Velocity$", "rpm"),
+    (r"(CANcoder|Talon FX).*/rawPosition", "rotations"),
+    (r"Pigeon.*/rawYaw", "angle"),
+    (r"Pigeon.*/angularVel", "turning"),
+)
+#: Patterns for the names of other numeric values; the first match counts.
+_NAMED: tuple[tuple[str, InputKind], ...] = (
+    (r"rate|velocity", "turning"),
+    (r"yaw|pitch|roll", "half turns"),
+    (r"heading", "heading"),
+    (r"angle", "angle"),
+    (r"accel|^[xyz]$", "acceleration"),
+    (r"range|distance", "range"),
+    (r"voltage", "battery"),
+    (r"current", "amperes"),
+)
+
+
+#: Modules on the CAN bus are looked for in the first searches, and in every fourth later: there are 189 possible ones.
+_FIRST_SEARCHES, _SEARCHES_FOR_MODULES = 4, 4
+
+
+class SensorFinder:
+    """Finds what the robot's sensors measure; searches again only after a device was created or removed."""
+
+    def __init__(self, hal_data: HalData, constants: RobotConstants = UNKNOWN) -> None:
+        self._hal_data = hal_data
+        self._constants = constants
+        self._seen: object = None
+        self._found: list[Input] = []
+        self._searches = 0
+        self._there: tuple[bool, ...] = ()
+
+    def find(self) -> list[Input]:
+        """Return the sensors' values in order: the same list until the robot's devices change."""
+        there = self._devices()
+        if there != self._seen:
+            self._seen = there
+            self._found = sorted(find_sensors(self._hal_data, self._constants, any(self._there)))
+        return self._found
+
+    def _devices(self) -> _Devices:
+        hal_data = self._hal_data
+        if self._searches < _FIRST_SEARCHES or self._searches % _SEARCHES_FOR_MODULES == 0:
+            self._there = tuple([exists() for exists in _modules()])
+        self._searches += 1
+        accelerometer, sim_devices = hal_data["accelerometer"]["active"], hal_data["CAN"].signature()
+        return _Devices(_used(), self._there, accelerometer, sim_devices, counted_channels())
+
+
+class _Devices(NamedTuple):
+    """The devices that exist: those of the roboRIO that have a sensor, and all others.
+
+    :param counted: the digital inputs that counters count
+    """
+
+    channels: tuple[tuple[str, int], ...]
+    modules: tuple[bool, ...]
+    accelerometer: bool
+    sim_devices: Signature
+    counted: frozenset[int]
+
+
+@cache
+def _channels() -> list[tuple[tuple[str, int], Callable[[], bool]]]:
+    """Return the roboRIO's channels for sensors, each with a function that returns whether the robot uses it."""
+    return [
+        ((kind.name, number), slot.get)
+        for kind in KINDS
+        if kind.name in _DEVICES
+        for number, slot in enumerate(kind.initialized())
+    ]
+
+
+@cache
+def _modules() -> list[Callable[[], bool]]:
+    """Return a function for each possible module on the CAN bus that returns whether the robot has created it."""
+    return [slot.get for slot in Modules().initialized()]
+
+
+def prepare_search() -> None:
+    """Prepare a search for inputs: forks of this process then find it prepared."""
+    _channels()
+    _modules()
+    for number in range(station.JOYSTICKS):
+        for triggers in {(), *TRIGGERS.values()}:
+            _controls(number, station.AXES, station.BUTTONS, station.POVS, triggers)
+
+
+def _used() -> tuple[tuple[str, int], ...]:
+    """Return the roboRIO's channels for sensors that the robot uses."""
+    return tuple([channel for channel, exists in _channels() if exists()])
+
+
+def find_sensors(hal_data: HalData, constants: RobotConstants = UNKNOWN, has_modules: bool = True) -> Iterator[Input]:
+    """Return what the robot's sensors measure; outputs of SimDevices are left out.
+
+    :param constants: tells what the robot's code asks its controller for
+    :param has_modules: whether there may be modules on the CAN bus; if not, they are not searched
+    """
+    for function, (target, kind) in _ASKED.items():
+        if constants.asks(function):
+            yield Input(target, kind, target)
+    channels = _used()
+    yield Input("power.vin_voltage", "battery", "power")
+    yield Input("fpga_button", "switch", "fpga_button")
+    if hal_data["accelerometer"]["active"]:
+        for axis in "xyz":
+            yield Input(f"accelerometer.{axis}", "acceleration", "accelerometer")
+    wired, counted = _wired(hal_data, channels), counted_channels()
+    for key, number in channels:
+        if hal_data[key][number].get("is_input", True) and (key, number) not in wired:
+            for value, kind in _DEVICES[key] if key != "dio" or number not in counted else _COUNTED:
+                yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
+    for key, values in _MODULES.items() if has_modules else ():
+        for number in hal_data[key]:
+            if key == "pdp" and constants.asks("getTemperature"):
+                yield Input(f"pdp[{number}].temperature", "celsius", f"pdp[{number}]")
+            for value, kind in values:
+                yield Input(f"{key}[{number}].{value}", kind, f"{key}[{number}]")
+    for name in hal_data["CAN"]:
+        yield from _of_sim_device(name)
+
+
+def _wired(hal_data: HalData, channels: Iterable[tuple[str, int]]) -> set[tuple[str, int | None]]:
+    """Return the channels that encoders and gyros use; they are not sensors of their own."""
+    encoders = [hal_data[key][number]["config"] for key, number in channels if key == "encoder"]
+    return {("dio", wire) for config in encoders for wire in config.values()} | {
+        ("analog_in", number) for key, number in channels if key == "analog_gyro"
+    }
+
+
+def _kind_of_number(device: str, value: str) -> InputKind:
+    for pattern, kind in _OF_DEVICES:
+        if re.search(pattern, f"{device}/{value}"):
+            return kind
+    return next((kind for pattern, kind in _NAMED if re.search(pattern, value, re.IGNORECASE)), "turns")
+
+
+def _of_sim_device(name: str) -> Iterator[Input]:
+    device = SimDeviceSim(name)
+    for value, is_output in device.enumerateValues():
+        if is_output:
+            continue
+        options: tuple[str, ...] = ()
+        kind: InputKind
+        sort = device.getValue(value).type.name
+        if sort == "BOOLEAN":
+            kind = "connected" if re.search("connected|valid", value, re.IGNORECASE) else "switch"
+        elif sort == "ENUM":
+            kind, options = "option", tuple(SimDeviceSim.getEnumOptions(device.getEnum(value)))
+        elif sort == "DOUBLE":
+            kind = _kind_of_number(name, value)
+        else:
+            kind = "celsius" if re.search("temperature", value, re.IGNORECASE) else "whole"
+        if kind == "battery" and name.endswith("ANALOG SENSOR"):
+            kind = "volts"
+        if kind != "option" or options:
+            yield Input(format_path(("CAN", name, value)), kind, format_path(("CAN", name)), options)

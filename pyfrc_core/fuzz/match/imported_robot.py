@@ -1,0 +1,79 @@
+"""The robot's code in this process: imported once, and what fuzz learns from it."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+from ...hal import HalData, devices_exist
+from ...invariants.load import Invariant, load_invariants
+from ...project import Project
+from ...runtime.loading import load_robot
+from ...runtime.patches.install import patches
+from ..guidance.lines import RobotLines
+from ..inputs.robot_constants import find_constants
+from ..inputs.values import RobotConstants
+
+
+@lru_cache(maxsize=1)
+def robot_lines(project: Project) -> RobotLines:
+    """Return the lines of the robot, which the first call imports."""
+    load(project)
+    return RobotLines(project.files)
+
+
+@lru_cache(maxsize=1)
+def robot_constants(project: Project) -> RobotConstants:
+    """Return the constants of the robot's code."""
+    return find_constants(robot_lines(project).functions)
+
+
+@lru_cache(maxsize=1)
+def load(project: Project) -> type[Any]:
+    """Import the robot program, its physics and its rules, with the first call; return the robot class.
+
+    :raises RobotCodeError: when its code fails
+    :raises InvariantError: when a rule cannot be called
+    """
+    patches.install(project.files)
+    robot_class = load_robot(project)
+    if project.physics_file.is_file():
+        from ...physics.engine import load_physics
+
+        load_physics(project)
+    invariants_of(project)
+    return robot_class
+
+
+@lru_cache(maxsize=1)
+def invariants_of(project: Project) -> tuple[Invariant, ...]:
+    """Return the project's rules, which the first call imports."""
+    return load_invariants(project)
+
+
+@lru_cache(maxsize=1)
+def imported_devices(project: Project) -> bool:
+    """Return whether importing the robot has created devices in the HAL.
+
+    The first call must come before a robot runs in this process.
+    """
+    load(project)
+    return devices_exist()
+
+
+@lru_cache(maxsize=1)
+def game_messages(project: Project) -> tuple[str, ...]:
+    """Return the messages that the field may send, if the project says which."""
+    return project.game_specific_messages
+
+
+@lru_cache(maxsize=1)
+def auto_joysticks(project: Project) -> bool:
+    """Return whether the driver station sends joystick data in autonomous."""
+    return project.auto_joysticks
+
+
+@lru_cache(maxsize=1)
+def next_tree() -> HalData:
+    """Return the tree for the `hal_data` of the next run, in this process or in each of its forks."""
+    return HalData(defaults=False)

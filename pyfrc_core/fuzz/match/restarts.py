@@ -1,0 +1,81 @@
+"""Play a match in which the robot program is started again: each part in its own process.
+
+A program cannot be started twice in one process: its modules, and WPILib's, keep what the first part has set. What a
+part leaves to the next one is sent between the processes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Protocol, TypeVar
+
+from ...processes.call import ForkedCall, can_fork, run_in_subprocess
+from ...processes.crash_report import CrashLog
+from ...project import Project
+from ...runtime.scripts.boots import PersistentEntry, persistent_entries
+
+#: When robot code ends its process.
+MEANWHILE = "in the middle of the match"
+
+
+@dataclass(frozen=True)
+class Restart:
+    """What the robot program, which starts again, needs of the parts of the match before.
+
+    :param number: that of the next part; the first part of a match is 0
+    :param at_us: when the program starts again
+    :param entries: the persistent entries of NetworkTables
+    :param rng_state: the state of the generator of the match's random numbers
+    """
+
+    number: int
+    at_us: int
+    entries: tuple[PersistentEntry, ...]
+    rng_state: Any = None
+
+    @staticmethod
+    def after(number: int, at_us: int, rng_state: Any = None) -> Restart:
+        """Return what the part with this number, which has just ended in this process, leaves to the next one."""
+        return Restart(number + 1, at_us, persistent_entries(), rng_state)
+
+
+class PartResult(Protocol):
+    """The result of a part."""
+
+    @property
+    def restart(self) -> Restart | None:
+        """What the next part needs; None if the match is over."""
+
+
+Part = TypeVar("Part", bound=PartResult)
+
+
+class PlayPart(Protocol[Part]):
+    """Plays one part in this process, which must end afterwards; can be pickled."""
+
+    def __call__(self, project: Project, log: CrashLog, before: Part | None) -> Part:
+        """Return the result, which contains those of the parts before."""
+
+
+def play_parts(project: Project, play_part: PlayPart[Part], quietly: bool = True) -> Part:
+    """Play one part after the other, each in another process, and return the result of the last one.
+
+    :param quietly: whether nothing that they print is shown
+    :raises RobotCodeError: when a process ends without a result
+    """
+    played: Part | None = None
+    while played is None or played.restart is not None:
+        played = _call(project, partial(play_part, before=played), quietly)
+    return played
+
+
+def _call(project: Project, work: Callable[[Project, CrashLog], Part], quietly: bool) -> Part:
+    if not can_fork(project):
+        return run_in_subprocess(work, project, MEANWHILE, quietly)
+    call: ForkedCall[Part] = ForkedCall(partial(work, project), quietly)
+    with closing(call):
+        call.wait()
+        return call.result(project.files, MEANWHILE)

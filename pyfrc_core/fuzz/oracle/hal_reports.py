@@ -1,0 +1,90 @@
+"""Errors that the HAL writes to standard error."""
+
+from __future__ import annotations
+
+import mmap
+import os
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import IO
+
+from ...processes.memory_file import memory_file
+
+_ERROR = re.compile(rb"^Error at ([^\n]*)\n", re.MULTILINE)
+#: Reports that are no fault of the robot's code: joysticks that are not plugged in; slow loops, which are detected in a
+#: better way; drives without a command for a tenth of a second, which every robot has while it stands still.
+_NO_FAULT = re.compile(rb"Joystick .*not (?:available|attached|plugged)|Loop time of|Output not updated", re.IGNORECASE)
+
+
+#: The part of the file that is mapped to memory, on POSIX systems; and what is there until something is written.
+_MAPPED = 64 * 1024
+_NOTHING = bytes(32)
+
+
+class HalReports:
+    """The reports of one run.
+
+    :param file: the empty file to which standard error is redirected
+    """
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._descriptor = file.fileno()
+        self._read = 0
+        #: Its content as memory, which is looked at in each packet without a call of the system.
+        self._map: mmap.mmap | None = None
+        if hasattr(os, "pread"):
+            file.truncate(_MAPPED)
+            self._map = mmap.mmap(self._descriptor, _MAPPED, access=mmap.ACCESS_READ)
+
+    def error(self) -> str | None:
+        """Return the first error since the last call, from complete lines only; None if there was none."""
+        begin = self._read
+        if self._map is not None and self._map[begin : begin + len(_NOTHING)] == _NOTHING:
+            return None
+        descriptor = self._descriptor
+        # All writers share the position of this file with standard error.
+        size = os.lseek(descriptor, 0, os.SEEK_CUR)
+        if size == begin:
+            return None
+        new = os.pread(descriptor, size - begin, begin) if hasattr(os, "pread") else self._read_again(size)
+        whole = new[: new.rfind(b"\n") + 1]
+        self._read += len(whole)
+        for found in _ERROR.finditer(whole):
+            if not _NO_FAULT.search(found[1]):
+                return found[1].decode(errors="replace").strip()
+        return None
+
+    def _read_again(self, size: int) -> bytes:
+        """Read from a file with a single position for reading and writing, as on Windows."""
+        descriptor = self._descriptor
+        os.lseek(descriptor, self._read, os.SEEK_SET)
+        new = os.read(descriptor, size - self._read)
+        os.lseek(descriptor, 0, os.SEEK_END)
+        return new
+
+
+@contextmanager
+def hal_reports() -> Iterator[HalReports]:
+    """Collect the reports until the context ends, then copy them to standard error.
+
+    Some come from C, others through Python's own standard error; under pytest these are two streams.
+    """
+    stderr = sys.stderr
+    stderr.flush()
+    with memory_file() as file:
+        real = os.dup(2)
+        os.dup2(file.fileno(), 2)
+        sys.stderr = captured = open(file.fileno(), "w", encoding="utf-8", errors="replace", buffering=1, closefd=False)  # noqa: SIM115
+        try:
+            yield HalReports(file)
+        finally:
+            with suppress(ValueError):  # robot code has closed it
+                captured.flush()
+            sys.stderr = stderr
+            os.dup2(real, 2)
+            os.close(real)
+            written = file.tell()
+            file.seek(0)
+            stderr.write(file.read(written).decode(errors="replace"))
