@@ -43,7 +43,6 @@ def times(events: list[RunBegan | Change]) -> list[float]:
 
 
 def test_a_slow_and_a_quick_consumer_see_every_line_of_output(make_project) -> None:
-    """A megabyte is printed: more than was ever kept in memory."""
     made = make_project(TALKATIVE)
     with Simulation(find_project(made.path), SimOptions(speed=0, paused=True)) as simulation:
         quick, slow = simulation.output_cursor(), simulation.output_cursor()
@@ -77,9 +76,9 @@ def test_each_consumer_of_output_has_a_place_of_its_own() -> None:
 
 
 def test_a_flood_of_output_says_what_it_has_lost(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The disk does not fill up; a consumer that is still at what is gone learns of the gap."""
-    monkeypatch.setattr(output_log, "_SEGMENT", 1000)
-    monkeypatch.setattr(output_log, "_MOST_SEGMENTS", 3)
+    """The memory does not fill up; a consumer that is still at what is gone learns of the gap."""
+    monkeypatch.setattr(output_log, "_PIECE", 1000)
+    monkeypatch.setattr(output_log, "_MOST", 3000)
     log = OutputLog()
     slow, quick = log.cursor(), log.cursor()
     seen = ""
@@ -90,8 +89,8 @@ def test_a_flood_of_output_says_what_it_has_lost(monkeypatch: pytest.MonkeyPatch
     left = slow.read()
     gap, _, rest = left.partition("\n")
     assert gap.startswith("[pyfrc: ")
-    assert gap.endswith(" bytes of output were dropped here]")
-    assert 2000 <= len(rest) <= 4000
+    assert gap.endswith(" characters of output were dropped here]")
+    assert 1900 <= len(rest) <= 4100
     assert seen.endswith(rest)
 
 

@@ -1,47 +1,15 @@
 """What robots have printed, for several readers: each reads all of it, at its own pace.
 
-The text is kept in temporary files, so that it is still there for a reader that is late, and memory does not grow. A
-robot that prints without end must not fill the disk: beyond `_MOST_SEGMENTS` files, the oldest text is dropped.
+A robot that prints without end must not fill the memory: beyond `_MOST` characters, the oldest text is dropped.
 """
 
 from __future__ import annotations
 
 import threading
-from codecs import getincrementaldecoder
 from collections import deque
-from tempfile import SpooledTemporaryFile
 
-#: The size of one file, in bytes, and how many of them are kept.
-_SEGMENT, _MOST_SEGMENTS = 8 << 20, 16
-#: What stays in memory of a file: most robots print less.
-_IN_MEMORY = 1 << 16
-#: How much a reader takes from a file at once, in bytes.
-_PIECE = 1 << 16
-
-
-class _Segment:
-    """Consecutive text in one file.
-
-    :param start: the number of bytes before it
-    """
-
-    def __init__(self, start: int) -> None:
-        self.start = self.end = start
-        self._file = SpooledTemporaryFile(max_size=_IN_MEMORY, prefix="pyfrc-sim-")  # noqa: SIM115
-
-    def append(self, data: bytes) -> None:
-        self._file.seek(self.end - self.start)
-        self._file.write(data)
-        self._file.flush()
-        self.end += len(data)
-
-    def read(self, at: int) -> bytes:
-        self._file.seek(at - self.start)
-        return self._file.read(min(_PIECE, self.end - at))
-
-    def __del__(self) -> None:
-        if hasattr(self, "_file"):  # else there was no room for it
-            self._file.close()
+#: How many characters are kept, and about how many of them in one piece.
+_MOST, _PIECE = 1 << 24, 1 << 16
 
 
 class OutputLog:
@@ -49,22 +17,21 @@ class OutputLog:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._segments: deque[_Segment] = deque()
-        self._end = 0
+        self._pieces: deque[str] = deque([""])
+        #: The number of characters before the first piece, and at the end of the last.
+        self._begin = self._end = 0
 
     def append(self, text: str) -> None:
         """Add a text at the end."""
-        data = text.encode("utf-8", "surrogatepass")
         with self._lock:
-            try:
-                if not self._segments or self._segments[-1].end != self._end or self._is_full(self._segments[-1]):
-                    self._segments.append(_Segment(self._end))
-                self._segments[-1].append(data)
-            except OSError:  # the disk is full: readers are shown a gap
-                pass
-            self._end += len(data)
-            while len(self._segments) > _MOST_SEGMENTS:
-                self._segments.popleft()
+            if len(self._pieces[-1]) < _PIECE:
+                text_before = self._pieces.pop()
+                self._pieces.append(text_before + text)
+            else:
+                self._pieces.append(text)
+            self._end += len(text)
+            while self._end - self._begin > _MOST and len(self._pieces) > 1:
+                self._begin += len(self._pieces.popleft())
 
     def cursor(self, from_start: bool = True) -> OutputCursor:
         """Return a reader of its own.
@@ -73,18 +40,17 @@ class OutputLog:
         """
         return OutputCursor(self, 0 if from_start else self._end)
 
-    def read(self, at: int) -> tuple[int, bytes]:
-        """Return the next text from a position, with the position where it begins: later, where text was dropped."""
+    def read(self, at: int, most: int | None) -> tuple[int, str]:
+        """Return the text from a position, with the position where it begins: later, where text was dropped."""
         with self._lock:
-            for segment in self._segments:
-                if at < segment.end:
-                    begin = max(at, segment.start)
-                    return begin, segment.read(begin)
-            return self._end, b""
-
-    @staticmethod
-    def _is_full(segment: _Segment) -> bool:
-        return segment.end - segment.start >= _SEGMENT
+            begin, before, found = max(at, self._begin), self._begin, ""
+            if begin < self._end:
+                for piece in self._pieces:
+                    found += piece[max(begin - before, 0) :]
+                    before += len(piece)
+                    if most is not None and len(found) >= most:
+                        break
+            return begin, found[:most]
 
 
 class OutputCursor:
@@ -92,21 +58,15 @@ class OutputCursor:
 
     def __init__(self, log: OutputLog, at: int) -> None:
         self._log, self._at = log, at
-        self._decoder = getincrementaldecoder("utf-8")(errors="surrogatepass")
-        self._rest = ""
 
     def read(self, most: int | None = None) -> str:
         """Return what was printed since the last call, empty when there is nothing new.
 
         :param most: return at most this many characters, and the rest with the next calls
         """
-        pieces, length = [self._rest], len(self._rest)
-        while (most is None or length < most) and (piece := self._next()):
-            pieces.append(piece)
-            length += len(piece)
-        text = "".join(pieces)
-        self._rest = "" if most is None else text[most:]
-        return text if most is None else text[:most]
+        begin, text = self._log.read(self._at, most)
+        dropped, self._at = begin - self._at, begin + len(text)
+        return f"[pyfrc: {dropped} characters of output were dropped here]\n{text}" if dropped else text
 
     def read_last(self, most: int) -> str:
         """Return the end of what was printed since the last call, and skip the text before it.
@@ -114,16 +74,3 @@ class OutputCursor:
         :param most: the length of that end, in characters
         """
         return self.read()[-most:]
-
-    def _next(self) -> str:
-        text = ""
-        while not text:  # a piece may end within a character
-            begin, data = self._log.read(self._at)
-            dropped, self._at = begin - self._at, begin + len(data)
-            if dropped:
-                self._decoder.reset()
-                text = f"[pyfrc: {dropped} bytes of output were dropped here]\n"
-            elif not data:
-                break
-            text += self._decoder.decode(data)
-        return text
