@@ -20,7 +20,7 @@ PROGRAM = """
     code = simulate(find_project(Path.cwd()), request, print)
     print("of the server:", [name for name in ("starlette", "uvicorn", "websockets") if name in sys.modules])
     import pyfrc_core.sim.ui.web.front_end
-    import pyfrc_core.sim.ui.wpilib
+    import pyfrc_core.sim.ui.choose
     if importlib.util.find_spec("tkinter") is not None:
         import pyfrc_core.sim.ui.tk
     print("imported:", [name for name in ("hal", "ntcore", "wpilib", "wpimath", "wpiutil") if name in sys.modules])

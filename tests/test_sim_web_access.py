@@ -16,7 +16,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from pyfrc_core.errors import UsageError
-from pyfrc_core.sim.ui.web.forwarding import allowed_origins
+from pyfrc_core.sim.ui.web.access import allowed_origins
 
 QUIET = {
     "robot.py": """

@@ -10,8 +10,8 @@ import pytest
 from pyfrc_core.sim.engine.changes import Change, RunBegan
 from pyfrc_core.sim.ui.web.console import MOST_IMPORTANT, MOST_LINES, Console
 from pyfrc_core.sim.ui.web.history import MISSING, History
-from pyfrc_core.sim.ui.web.json_text import json_text, read_value
 from pyfrc_core.sim.ui.web.marks import Marks
+from pyfrc_core.sim.ui.web.messages import json_text, read_value
 from pyfrc_core.sim.ui.web.plots import series
 from pyfrc_core.sim.ui.web.runs import Runs
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from pyfrc_core.sim.engine.report_signal import ReportSignal
+from pyfrc_core.sim.engine.changes import ReportSignal
 
 #: A time limit that is never reached, in seconds.
 PATIENCE = 60.0

@@ -1,6 +1,6 @@
-"""Every change of `hal_data` in a session, for several readers: each reads all of them, at its own pace.
+"""Every change of `hal_data` and of NetworkTables in a session, at each reader's own pace.
 
-The changes themselves are the lines of the recording's trace, which is on disk. A session has one run after the other:
+The changes themselves are the lines of the recording's trace. A session has one run after the other:
 going back in time and new code each begin another. Each run knows the next one, and a reader the run that it is at: so
 runs are kept as long as a reader has not finished them, and no longer.
 """
@@ -16,8 +16,34 @@ from itertools import islice
 from types import MappingProxyType
 from typing import Any
 
+from ...errors import UsageError
 from ...runtime.scripts.trace_lines import UNREPEATABLE
 from .history import History
+from .messages import Update
+from .recording import Recording
+
+
+class ReportSignal(threading.Condition):
+    """A condition that counts its notifications: a thread that was busy during one does not wait for the next one."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        #: The number of notifications so far.
+        self.count = 0
+
+    def notify_all(self) -> None:
+        """Wake all threads that wait."""
+        self.count += 1
+        super().notify_all()
+
+    def wait_after(self, count: int, timeout: float) -> None:
+        """Wait until there were more notifications than `count`.
+
+        :param timeout: in wall seconds
+        """
+        with self:
+            self.wait_for(lambda: self.count > count, timeout)
+
 
 #: The types of values that cannot change, and have no parts.
 _PLAIN = frozenset({float, int, bool, str})
@@ -136,3 +162,56 @@ class ChangeCursor:
             for _, line in islice(self._run.lines.since(self._line), end - self._line):
                 self._line += 1
                 yield change_of(line)
+
+
+class ChangeStreams:
+    """Both streams of changes, which begin their runs together.
+
+    :param recording: the recording of the first run
+    :param lock: held while anything is added
+    :param network: whether changes of NetworkTables are reported
+    """
+
+    def __init__(self, recording: Recording, lock: threading.Condition, network: bool) -> None:
+        self._lock = lock
+        self._hal = RunChanges(0, recording.lines)
+        self._network = RunChanges(0, recording.network_lines) if network else None
+
+    def begin_run(self, number: int, recording: Recording) -> None:
+        """Note that another process of the robot was launched."""
+        hal = RunChanges(number, recording.lines)
+        self._hal.next = hal
+        self._hal = hal
+        if self._network is not None:
+            network = RunChanges(number, recording.network_lines)
+            self._network.next = network
+            self._network = network
+
+    def begin_anew(self) -> None:
+        """Note that the run begins at its start, with other code: its changes have everything."""
+        self._hal.begin(0.0, {}, new_code=True)
+        if self._network is not None:
+            self._network.begin(0.0, {}, new_code=True)
+
+    def begin(self, update: Update) -> None:
+        """Note what the run begins with, if this update is its first."""
+        if update.base is None:
+            return
+        now = update.time_us / 1_000_000
+        # Where changes came before the base, they begin with a change that holds all values.
+        self._hal.begin(*((0.0, {}) if update.lines else (now, update.base)))
+        if self._network is not None:
+            self._network.begin(*((0.0, {}) if update.network_lines else (now, update.network_base)))
+
+    def cursor(self) -> ChangeCursor:
+        """Return a reader of the changes of `hal_data`."""
+        return ChangeCursor(self._hal, self._lock)
+
+    def network_cursor(self) -> ChangeCursor:
+        """Return a reader of the changes of NetworkTables.
+
+        :raises UsageError: when they are not reported
+        """
+        if self._network is None:
+            raise UsageError("this simulation does not report NetworkTables", remedy="Set SimOptions.network_values.")
+        return ChangeCursor(self._network, self._lock)

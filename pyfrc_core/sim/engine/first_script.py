@@ -1,14 +1,23 @@
-"""The script that a simulated robot starts with: the user's, or where it stands and whose robot it is."""
+"""The inputs that a robot's process begins with.
+
+At first, these are the script of the user, or where the robot stands and whose it is. Another process gets what was
+chosen before, and what was held is released.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any, cast
 
+from ...runtime.scripts.joysticks import releases
 from ...runtime.scripts.script import InputScript, Step
+from .commands import ChooseMode, ChosenMode, Command, Write
 from .field import robot_at, start_named
-from .left_behind import ending_released
 from .options import SimOptions
+from .recording import Recording
 from .scene import Field
+from .snapshot import Snapshot
 
 
 def first_script(options: SimOptions, robot: str, field: Field) -> InputScript:
@@ -27,3 +36,54 @@ def first_script(options: SimOptions, robot: str, field: Field) -> InputScript:
     if options.start_position is None:
         return script
     return replace(script, steps=(Step(0, robot_at(field, start)), *script.steps))
+
+
+def releases_after(recording: Recording) -> tuple[Command, ...]:
+    """Return the commands that release the joysticks at a recording's end: they are not held in another run."""
+    held = releases({**_values_after(recording.past.steps), **recording.station.sticks})
+    return (Write(held),) if held else ()
+
+
+def ending_released(script: InputScript) -> InputScript:
+    """Return a script after whose end the joysticks are released."""
+    held = releases(_values_after(script.steps))
+    return replace(script, steps=(*script.steps, Step(script.end_us + 1, held))) if held else script
+
+
+def choices_of(
+    recording: Recording, pending: Iterable[Command], first: InputScript, snapshot: Snapshot | None
+) -> tuple[Command, ...]:
+    """Return the commands that choose again what a user has chosen at the driver station and on dashboards.
+
+    :param pending: commands that are not recorded yet
+    :param first: the script that the robot starts with, which chooses for itself
+    """
+    pending = tuple(pending)
+    writes = [command for command in pending if isinstance(command, Write)]
+    modes = [command for command in pending if isinstance(command, ChooseMode)]
+    by_itself = _values_after(first.steps)
+    chosen = {
+        target: value
+        for target, value in _values_after([*recording.script().steps, *writes]).items()
+        if _is_choice(target) and not (target in by_itself and by_itself[target] == value)
+    }
+    commands: list[Command] = [Write(chosen)] if chosen else []
+    # A match chooses modes by itself, as a script does.
+    if modes:
+        commands.append(modes[-1])
+    elif snapshot is not None and snapshot.practice_since is None and "mode" not in by_itself:
+        commands.append(ChooseMode(cast(ChosenMode, snapshot.chosen_mode)))
+    return tuple(commands)
+
+
+def _is_choice(target: str) -> bool:
+    chooser = target.startswith("nt:") and target.endswith("/selected")
+    return chooser or target in ("alliance_station", "event.game_specific_message")
+
+
+def _values_after(steps: Iterable[Step | Write]) -> dict[str, Any]:
+    """Return the last value of each target."""
+    values: dict[str, Any] = {}
+    for step in steps:
+        values.update(step.writes)
+    return values

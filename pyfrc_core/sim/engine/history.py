@@ -20,12 +20,12 @@ class _Block(NamedTuple):
     """Compressed entries; several histories may share them.
 
     :param last_us: the time of its last entry
-    :param count: the number of its entries
+    :param length: the number of its entries
     """
 
     data: bytes
     last_us: int
-    count: int
+    length: int
 
 
 class History(Generic[Item]):
@@ -57,9 +57,9 @@ class History(Generic[Item]):
         before = 0
         if number < self._compressed:  # not for readers that follow: they take no longer in a long run
             for block in self._blocks:
-                if number < before + block.count:
+                if number < before + block.length:
                     yield from _entries_of(block)[max(number - before, 0) :]
-                before += block.count
+                before += block.length
         yield from self._recent[max(number - self._compressed, 0) :]
 
     @property
@@ -76,7 +76,7 @@ class History(Generic[Item]):
         part._recent = list(takewhile(lambda entry: entry[0] <= time_us, after))
         if not part._recent and part._blocks:
             part._recent = _entries_of(part._blocks.pop())
-        part._compressed = sum(block.count for block in part._blocks)
+        part._compressed = sum(block.length for block in part._blocks)
         return part
 
 

@@ -1,4 +1,7 @@
-"""The messages between a simulation and its robot's process, besides commands: pickled dataclasses."""
+"""The messages between a simulation and its robot's process, besides commands: pickled dataclasses.
+
+The paths of NetworkTables, of the pose and of the mode are those that `hal_data` does not have.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,14 @@ from typing import Any
 
 from ...project import Project
 from ...runtime.scripts.script import InputScript, Step
-from .commands import Command
+from .commands import Command, TimeState
 from .scene import Line, Point, Pose, Tag, Target, Text
 from .snapshot import Chooser, Failure
-from .time_state import TimeState
+
+#: What the path of a value of NetworkTables begins with, as in input scripts; and that of a topic's type.
+VALUE, TYPE = "nt:", "type:"
+#: The mode that the driver station asks for, as in `Snapshot.mode`; the robot's place: x, y and angle as in `Pose`.
+MODE, POSE = "sim.mode", "sim.pose"
 
 
 @dataclass(frozen=True)

@@ -16,25 +16,19 @@ from ...processes.crash_report import describe_exit, moment_of
 from ...project import Project
 from ...runtime.robot_time import PACKET_US, to_us
 from ...runtime.scripts.script import InputScript
-from .change_streams import ChangeStreams
-from .changes import ChangeCursor
-from .commands import Command
-from .controls import Controls
-from .driver import Driver
+from .changes import ChangeCursor, ChangeStreams, ReportSignal
+from .commands import Command, PendingCommands, TimeState
+from .controls import Controls, Driver
 from .field import field_of, robot_at, start_named
-from .first_script import first_script
-from .left_behind import choices_of, releases_after
+from .first_script import choices_of, first_script, releases_after
 from .messages import Failed, Job, Message, Ready, Replayed, Update
 from .options import SimOptions
 from .output_log import OutputCursor, OutputLog
-from .pending import PendingCommands
 from .processes import RobotProcesses
 from .recording import Recording
-from .report_signal import ReportSignal
 from .scene import Pose, Tag
 from .snapshot import Failure, Snapshot, Status
 from .snapshot_builder import SnapshotBuilder, status_after, status_at_start
-from .time_state import TimeState
 
 #: A running robot does not respond when it has sent nothing for this time, in wall seconds.
 _SILENCE = 1.0

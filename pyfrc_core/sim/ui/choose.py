@@ -5,6 +5,7 @@ A front end's module is imported when it is chosen, since most of them need libr
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
@@ -13,6 +14,8 @@ from ...browser import is_ci, why_no_browser
 from ...display import GET_TKINTER, WITHOUT_DISPLAY, has_display, has_terminal
 from ...errors import UsageError
 from ..engine.extensions import WINDOW
+from ..engine.output_log import OutputCursor
+from ..engine.simulation import Simulation
 from . import FrontEnd
 from .headless import Headless, HeadlessMode
 
@@ -84,8 +87,6 @@ def _make_web(wishes: Wishes) -> FrontEnd:
 
 
 def _make_wpilib(wishes: Wishes) -> FrontEnd:
-    from .wpilib import WpilibWindow
-
     return WpilibWindow()
 
 
@@ -126,3 +127,28 @@ def make_front_end(name: str, wishes: Wishes) -> FrontEnd:
             remedy=WITHOUT_DISPLAY,
         )
     return kind.make(wishes)
+
+
+class WpilibWindow(FrontEnd):
+    """Waits for the user to close WPILib's own simulator window (`robotpy-halsim-gui`).
+
+    It runs in the robot's process, which has opened it, and draws the HAL itself.
+    """
+
+    def run(self, simulation: Simulation) -> int:
+        """Run the simulation, and return the exit code: 1 when the robot has failed."""
+        output = simulation.output_cursor()
+        with simulation:
+            while not simulation.wait_for(lambda: simulation.status.state in ("failed", "closed"), timeout=0.25):
+                self._print(output)
+            failure = simulation.status.failure
+        self._print(output)
+        if failure is None:
+            return 0
+        sys.stdout.write(f"failed at {failure.time:.2f} s: {failure.headline}\n")
+        return failure.exit_code
+
+    @staticmethod
+    def _print(output: OutputCursor) -> None:
+        sys.stdout.write(output.read())
+        sys.stdout.flush()

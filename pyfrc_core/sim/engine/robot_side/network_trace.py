@@ -13,7 +13,7 @@ import ntcore
 
 from ....runtime.scripts.trace_lines import trace_line
 from ....wpi import station
-from ..network_paths import MODE, POSE, TYPE, VALUE
+from ..messages import MODE, POSE, TYPE, VALUE
 from ..scene import Pose
 from .structs import StructReader
 

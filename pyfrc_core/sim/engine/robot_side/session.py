@@ -20,10 +20,21 @@ from ....runtime.scripts.player import Player
 from ....runtime.scripts.recorder import Recorder
 from ....runtime.scripts.targets import Targets
 from ....wpi import station
-from ..commands import ROBOT_ON_FIELD, ChooseMode, EmergencyStop, Enable, Pause, Practice, Quit, Run, Speed, Write
+from ..commands import (
+    ROBOT_ON_FIELD,
+    ChooseMode,
+    EmergencyStop,
+    Enable,
+    Pause,
+    Practice,
+    Quit,
+    Run,
+    Speed,
+    TimeState,
+    Write,
+)
 from ..messages import Job, Ready, Replayed, Update
 from ..scene import Pose, Target
-from ..time_state import TimeState
 from .driven_path import DrivenPath
 from .network import Choosers, Served
 from .network_trace import NetworkTrace

@@ -9,8 +9,7 @@ from ....errors import SettingsError
 from ....physics.pose import Pose
 from ...engine.scene import Field, Scene, Shape, Target
 from ...engine.snapshot import Snapshot, Status
-from ..models.field_geometry import RobotDrag, grid_lines, is_on_robot, robot_polygons, tag_marks
-from ..models.viewport import Viewport
+from ..models.viewport import RobotDrag, Viewport, grid_lines, is_on_robot, robot_polygons, tag_marks
 from ..models.wording import station_name
 from . import theme as colors
 from .drawings import Drawings

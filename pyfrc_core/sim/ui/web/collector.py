@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...engine.changes import Change, RunBegan
-from ...engine.network_paths import MODE
+from ...engine.messages import MODE
 from ..models.devices import DeviceRows, Panel
 from ..models.wording import clock
 from .console import Console

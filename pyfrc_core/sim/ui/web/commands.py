@@ -11,11 +11,10 @@ from ....runtime.scripts.script import trace_beside
 from ...engine.commands import ChosenMode
 from ..models.time_controls import rewind, toggle
 from ..models.wording import STATIONS
-from .json_text import read_value
-from .messages import CommandError, Message
+from .messages import CommandError, Message, read_value
 
 if TYPE_CHECKING:
-    from ...engine.driver import Driver
+    from ...engine.controls import Driver
     from ...engine.simulation import Simulation
     from .collector import Collector
 

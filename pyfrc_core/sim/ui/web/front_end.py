@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 from ....browser import open_in_browser, why_no_browser, write_redirection
 from ....text_files import keep_out_of_version_control
 from .. import FrontEnd
-from .access import Access
+from .access import Access, allowed_origins, codespace_origins
 from .app import WebApp
 from .collector import Collector
-from .forwarding import allowed_origins, codespace_origins
 from .server import Server, WebOptions
 
 if TYPE_CHECKING:

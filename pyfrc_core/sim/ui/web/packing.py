@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
 from typing import Any
 
-from ...engine.network_paths import TYPE
+from ...engine.messages import TYPE
 from .history import MISSING, History
 
 #: The digits of a number that are kept: more than a plot or a panel shows.

@@ -7,11 +7,10 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any
 
-from ...engine.network_paths import TYPE
+from ...engine.messages import TYPE
 from .commands import Commands
-from .json_text import json_text
-from .layouts import save_layout
-from .messages import CommandError, Message, read_message
+from .greeting import save_layout
+from .messages import CommandError, Message, json_text, read_message
 from .updates import UpdateBuilder
 
 if TYPE_CHECKING:

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any
 from ....config.pictures import field_picture
 from ...engine.snapshot import Failure
 from .collector import Collector
-from .greeting import greeting
-from .json_text import json_text
-from .layouts import load_layout
+from .greeting import greeting, load_layout
+from .messages import json_text
 from .single_file import data_url, single_file
 from .updates import UpdateBuilder
 

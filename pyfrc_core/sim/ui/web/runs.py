@@ -8,12 +8,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from ...engine.changes import Change, RunBegan
-from ...engine.network_paths import MODE, POSE, TYPE, VALUE
+from ...engine.messages import MODE, POSE, TYPE, VALUE
 from ..models.wording import clock
-from .comparison import FirstDifference
 from .history import MISSING, History
 from .packing import packed
-from .plots import MOST_POINTS, picked, resolve, series
+from .plots import MOST_POINTS, FirstDifference, picked, resolve, series
 
 Source = Literal["hal", "network"]
 

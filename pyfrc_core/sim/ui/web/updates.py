@@ -5,20 +5,20 @@ Each page has a builder of its own. A page that reads slowly gets fewer and larg
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from ...engine.network_paths import TYPE, VALUE
-from ...engine.scene import Line, Point, Text
+from ...engine.messages import TYPE, VALUE
+from ...engine.scene import Field, Line, Point, Text
 from ...engine.snapshot import Snapshot, Status
 from ..models.devices import SETTABLE, Panel
 from ..models.wording import STATIONS, mode_text, station_name
 from .collector import Collector, State
 from .console import plain_lines
 from .history import MISSING
-from .plain_field import plain_field
 from .runs import Position
 
 _PLACE = re.compile(r"(?P<file>[^\s:]+\.py):(?P<line>\d+)")
@@ -241,3 +241,30 @@ def _drawing(drawing: Line | Text) -> dict[str, Any]:
         return {"kind": "line", "points": drawing.points, "color": drawing.color, "arrow": drawing.arrow, **style}
     texts = {"text": drawing.text, "x": drawing.x, "y": drawing.y, "color": drawing.color, "size": drawing.size}
     return {"kind": "text", **texts, **style}
+
+
+def plain_field(field: Field, image: str) -> dict[str, Any]:
+    """Return a field for a page.
+
+    :param image: the address of its picture, if it has one
+    """
+    return {
+        "width": field.width,
+        "height": field.height,
+        "image": None if field.image is None else f"{image}&v={_stamp(field)}",
+        "robot_width": field.robot_width,
+        "robot_length": field.robot_length,
+        "starts": {name: [pose.x, pose.y, pose.angle] for name, pose in field.starts.items()},
+        "objects": [{"color": shape.color, "points": shape.points} for shape in field.objects],
+        "tags": [{"number": tag.number, "x": tag.x, "y": tag.y, "angle": tag.angle} for tag in field.tags],
+    }
+
+
+def _stamp(field: Field) -> str:
+    """Return a text that changes with the picture."""
+    try:
+        status = field.image.stat() if field.image is not None else None
+    except OSError:
+        status = None
+    text = f"{field.image} {status and (status.st_mtime_ns, status.st_size)}"
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
