@@ -75,7 +75,7 @@ def schema() -> None:
     \b
     Exit codes: 0 printed, 2 wrong usage.
     """
-    from pyfrc_core.config.sim_schema import sim_config_schema
+    from pyfrc_core.config.sim import sim_config_schema
 
     click.echo(sim_config_schema())
 

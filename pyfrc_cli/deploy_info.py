@@ -27,6 +27,6 @@ def command(
     Exit codes: 0 shown, 1 the robot cannot be reached, 2 wrong usage or no project.
     """
     with errors_shown(choice, as_json):
-        from pyfrc_core.deploy.robot_info import show_info
+        from pyfrc_core.deploy.session import show_info
 
         show_info(project_if_any(directory, main, robot_class, choice), choice, user_interface(choice, as_json))

@@ -52,7 +52,7 @@ def command(
         raise click.UsageError("--robot, --team and --no-robot are mutually exclusive.")
     # With `python -m pyfrc`, the current directory is first on the path, where the project may hide libraries.
     sys.path[:] = [place for place in sys.path if place and Path(place) != Path.cwd()]
-    from pyfrc_core.deploy.robot_commands import with_robot_option
+    from pyfrc_core.deploy.progress import with_robot_option
     from pyfrc_core.doctor import DoctorOptions, examine
     from pyfrc_core.wording import counted
 

@@ -137,8 +137,7 @@ def project_if_any(
 
 def user_interface(choice: RobotChoice, as_json: bool = False) -> UserInterface:
     """Return the output and the questions of a command. Without a terminal, it cannot ask."""
-    from pyfrc_core.deploy.progress import Questions, UserInterface, progress_for
-    from pyfrc_core.deploy.robot_commands import with_robot_option
+    from pyfrc_core.deploy.progress import Questions, UserInterface, progress_for, with_robot_option
 
     ask = None
     if not as_json and sys.stdin.isatty() and sys.stdout.isatty():
@@ -160,7 +159,7 @@ def errors_shown(choice: RobotChoice, as_json: bool = False) -> Iterator[None]:
         yield
     except (PyfrcError, OSError, KeyboardInterrupt) as error:
         if isinstance(error, PyfrcError) and error.remedy is not None:
-            from pyfrc_core.deploy.robot_commands import with_robot_option
+            from pyfrc_core.deploy.progress import with_robot_option
 
             error.remedy = with_robot_option(error.remedy, choice.robot, choice.team)
         if as_json:

@@ -38,7 +38,7 @@ def command(directory: Path | None, port: int | None, fresh: bool, command: tupl
     \b
     Exit codes: 0 ended by Ctrl-C (with COMMAND: its exit code), 1 cannot be started, 2 wrong usage.
     """
-    from pyfrc_core.virtual_robot.run import run_command, show
+    from pyfrc_core.virtual_robot.robot import run_command, show
 
     if command:
         sys.exit(run_command(command, directory, port, fresh))

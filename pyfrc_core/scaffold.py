@@ -125,7 +125,7 @@ def templates_directory(installed: Path) -> Path:
 
 def _texts(templates: Path, name: str, team: int | None) -> dict[PurePosixPath, str]:
     """Return the project's files and their contents."""
-    from .config.sim_schema import sim_config_schema
+    from .config.sim import sim_config_schema
 
     values = _values(TEMPLATES[name], team)
     texts = {PurePosixPath("sim/config.schema.json"): sim_config_schema() + "\n"}

@@ -16,7 +16,7 @@ from pyfrc_core.deploy.agent.releases import Releases
 from pyfrc_core.deploy.agent.robot_paths import RobotPaths
 from pyfrc_core.deploy.agent_client import DeployRequest
 from pyfrc_core.deploy.facts import Deployed, RobotFacts
-from pyfrc_core.deploy.robot_info import info_text
+from pyfrc_core.deploy.session import info_text
 from pyfrc_core.deploy.targets.roborio import ROBORIO
 
 #: Deploys a program, number n, and starts it: whether the watch sees it run; None: it is not watched.

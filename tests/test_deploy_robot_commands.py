@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from pyfrc_cli.robot_options import errors_shown, json_option, robot_options, user_interface
 from pyfrc_core.deploy import recovery_hints, robot_checks, starting
 from pyfrc_core.deploy.facts import StartState
-from pyfrc_core.deploy.robot_commands import with_robot_option
+from pyfrc_core.deploy.progress import with_robot_option
 from pyfrc_core.deploy.team import RobotChoice
 from pyfrc_core.errors import PyfrcError
 

@@ -20,9 +20,8 @@ from ports import refusing_port
 
 from pyfrc_core._version import __version__
 from pyfrc_core.doctor import CheckResult
-from pyfrc_core.doctor.imports import check_imports
 from pyfrc_core.doctor.installed import Installed, Package, find_installed
-from pyfrc_core.doctor.packages import NEWEST, OLDEST, check_pyfrc, check_python, check_wpilib
+from pyfrc_core.doctor.packages import NEWEST, OLDEST, check_imports, check_pyfrc, check_python, check_wpilib
 from pyfrc_core.season import CURRENT
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"

@@ -13,9 +13,8 @@ import pytest
 from conftest import LoadConfig as Load
 from conftest import MakeProject
 
-from pyfrc_core.config.sim import Polygon, Rectangle, SimConfig
+from pyfrc_core.config.sim import Polygon, Rectangle, SimConfig, sim_config_schema
 from pyfrc_core.config.sim_file import load_sim_config
-from pyfrc_core.config.sim_schema import sim_config_schema
 from pyfrc_core.errors import SettingsError
 
 ROBOT = "import wpilib\n\nclass MyRobot(wpilib.TimedRobot):\n    pass\n"

@@ -13,7 +13,7 @@ from conftest import MakeProject
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pyfrc_core.config.sim_schema import sim_config_schema
+from pyfrc_core.config.sim import sim_config_schema
 from pyfrc_core.errors import SettingsError
 
 SCHEMA = jsonschema.Draft202012Validator(json.loads(sim_config_schema()))

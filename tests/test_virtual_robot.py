@@ -27,7 +27,7 @@ from pyfrc_core.deploy.targets.roborio import ROBORIO
 from pyfrc_core.doctor.robot import RobotSearch
 from pyfrc_core.project import find_project
 from pyfrc_core.virtual_robot.console import ConsoleServer
-from pyfrc_core.virtual_robot.control import Control
+from pyfrc_core.virtual_robot.robot import Control
 from pyfrc_core.virtual_robot.supervisor import Supervisor
 
 pytestmark = pytest.mark.bare

@@ -2,18 +2,100 @@
 
 Lengths are in feet, angles in degrees clockwise; x grows to the right, y grows downwards. This module has the keys,
 their types and defaults; `sim_file` reads the file, and `resolve` adds the values of a season.
+An editor completes and explains the keys with the JSON Schema.
 """
 
 from __future__ import annotations
 
+import json
 import re
 import sys
-from typing import Annotated
+from dataclasses import dataclass
+from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    Tag,
+    WithJsonSchema,
+)
+from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core import CoreSchema, core_schema
 
 from ..season import CURRENT, FIELDS
-from . import tables
+
+#: The maximum number of items of an array, or of keys of a table.
+MOST = 1000
+
+
+@dataclass(frozen=True, eq=False)
+class Numbered:
+    """The allowed keys of a ``dict[int, ...]`` and the number that each means.
+
+    :param allowed: a description of the keys, for the message about any other key
+    """
+
+    allowed: str
+    numbers: dict[str, int]
+
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        schema: Any = handler(source)
+        schema["keys_schema"] = core_schema.no_info_before_validator_function(self._number, core_schema.int_schema())
+        return core_schema.no_info_before_validator_function(_not_too_many, schema)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {**handler(schema), "propertyNames": {"enum": list(self.numbers)}}
+
+    def _number(self, key: object) -> int:
+        number = self.numbers.get(str(key))
+        if number is None:
+            raise ValueError(f"the key should be {self.allowed}")
+        return number
+
+
+class Array:
+    """An array of at most `MOST` items."""
+
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(_not_too_many, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {**handler(schema), "maxItems": MOST}
+
+
+def _not_too_many(value: object) -> Any:
+    # Checked before the items: a file with millions of them would otherwise give millions of errors.
+    if isinstance(value, list | dict) and len(value) > MOST:
+        raise ValueError(f"there should be at most {MOST} of them, not {len(value)}")
+    return value
+
+
+def _from_to(first: int, last: int) -> Numbered:
+    return Numbered(f"a number from {first} to {last}", {str(number): number for number in range(first, last + 1)})
+
+
+# As many channels as hal_data has.
+ANALOG_CHANNELS = _from_to(0, 7)
+DIO_CHANNELS = _from_to(0, 25)  # the roboRIO's own 10, and 16 of an expansion board
+PWM_CHANNELS = _from_to(0, 19)  # its own 10, and 10 of an expansion board
+RELAY_CHANNELS = _from_to(0, 3)
+SOLENOID_CHANNELS = _from_to(0, 15)  # of a Pneumatic Hub; a Pneumatics Control Module has 8
+CAN_DEVICES = _from_to(0, 62)
+JOYSTICKS = _from_to(0, 5)
+BUTTONS = _from_to(1, 32)
+
+#: The axes that `wpilib.Joystick` has names for: x, y, z (or twist), throttle.
+AXIS_LETTERS = {"x": 0, "y": 1, "z": 2, "t": 3}
+AXES = Numbered(
+    "a number from 0 to 11, or one of the letters x, y, z, t",
+    _from_to(0, 11).numbers | AXIS_LETTERS | {letter.upper(): number for letter, number in AXIS_LETTERS.items()},
+)
+
 
 _FIELD = CURRENT.field
 
@@ -50,7 +132,7 @@ class RobotConfig(_Part):
     starting_angle: Number = Field(
         default=0.0, description="Which way the robot faces at the start: degrees, clockwise."
     )
-    start_positions: Annotated[tuple[StartPosition, ...], tables.Array()] = Field(
+    start_positions: Annotated[tuple[StartPosition, ...], Array()] = Field(
         default=(),
         description="Places to choose from at the start of a simulation. A single one is taken without asking.",
     )
@@ -71,7 +153,7 @@ class Polygon(_Part):
     model_config = ConfigDict(json_schema_extra={"not": {"required": ["rect"]}})
 
     color: str = Field(description="Its colour, by name or as #rrggbb.")
-    points: Annotated[tuple[tuple[Number, Number], ...], tables.Array()] = Field(
+    points: Annotated[tuple[tuple[Number, Number], ...], Array()] = Field(
         description="Its corners [x, y] one after the other, in feet."
     )
 
@@ -131,9 +213,7 @@ class FieldConfig(_Part):
     h: Positive = Field(default=_FIELD.h, description="Size of the field along y, in feet. Default: today's field.")
     px_per_ft: Positive = Field(default=_FIELD.px_per_ft, description="Scale of the drawing, in pixels per foot.")
     image: str | None = Field(default=None, description="A picture under the robot; a path relative to sim/.")
-    objects: Annotated[tuple[FieldObject, ...], tables.Array()] = Field(
-        default=(), description="What is drawn on the field."
-    )
+    objects: Annotated[tuple[FieldObject, ...], Array()] = Field(default=(), description="What is drawn on the field.")
     walls: Flag = Field(
         default=False,
         description="Whether walls around the field stop the robot. Without them, it drives on.",
@@ -148,10 +228,10 @@ class FieldConfig(_Part):
 class Joystick(_Part):
     """The names shown beside a joystick's controls."""
 
-    axes: Annotated[dict[int, str], tables.AXES] = Field(
+    axes: Annotated[dict[int, str], AXES] = Field(
         default={}, description="Labels of the axes: by index from 0, or by letter: x, y, z, t (throttle)."
     )
-    buttons: Annotated[dict[int, str], tables.BUTTONS] = Field(
+    buttons: Annotated[dict[int, str], BUTTONS] = Field(
         default={}, description="Labels of the buttons, from 1. 1 is 'Trigger' and 2 is 'Top' unless named otherwise."
     )
 
@@ -161,30 +241,30 @@ class SimConfig(_Part):
 
     robot: RobotConfig = RobotConfig()
     field: FieldConfig = FieldConfig()
-    game_specific_messages: Annotated[tuple[str, ...], tables.Array()] = Field(
+    game_specific_messages: Annotated[tuple[str, ...], Array()] = Field(
         default=_FIELD.messages,
         description="The messages that the field may send; test_autonomous runs once for each. "
         "Default: the season's, else none.",
     )
-    analog: Annotated[dict[int, str], tables.ANALOG_CHANNELS] = Field(
+    analog: Annotated[dict[int, str], ANALOG_CHANNELS] = Field(
         default={}, description="Labels of the analog inputs, by channel."
     )
-    CAN: Annotated[dict[int, str], tables.CAN_DEVICES] = Field(
+    CAN: Annotated[dict[int, str], CAN_DEVICES] = Field(
         default={}, description="Labels of the devices on the CAN bus, by device number."
     )
-    dio: Annotated[dict[int, str], tables.DIO_CHANNELS] = Field(
+    dio: Annotated[dict[int, str], DIO_CHANNELS] = Field(
         default={}, description="Labels of the digital inputs and outputs, by channel."
     )
-    pwm: Annotated[dict[int, str], tables.PWM_CHANNELS] = Field(
+    pwm: Annotated[dict[int, str], PWM_CHANNELS] = Field(
         default={}, description="Labels of the PWM outputs, by channel."
     )
-    relay: Annotated[dict[int, str], tables.RELAY_CHANNELS] = Field(
+    relay: Annotated[dict[int, str], RELAY_CHANNELS] = Field(
         default={}, description="Labels of the relays, by channel."
     )
-    solenoid: Annotated[dict[int, str], tables.SOLENOID_CHANNELS] = Field(
+    solenoid: Annotated[dict[int, str], SOLENOID_CHANNELS] = Field(
         default={}, description="Labels of the solenoids, by channel."
     )
-    joysticks: Annotated[dict[int, Joystick], tables.JOYSTICKS] = Field(
+    joysticks: Annotated[dict[int, Joystick], JOYSTICKS] = Field(
         default={}, description="Labels of each joystick's axes and buttons, by the joystick's port."
     )
 
@@ -204,3 +284,13 @@ class SimConfigFile(_Part):
     """sim/config.json of a robot project. Keys beside pyfrc belong to other tools."""
 
     pyfrc: SimConfig = SimConfig()
+
+
+def sim_config_schema() -> str:
+    """Return the schema as text (JSON Schema, draft 2020-12; ASCII, so that any redirection keeps it).
+
+    With ``"$schema": "config.schema.json"`` at the top of ``sim/config.json``, editors use the file of that name.
+    """
+    schema = {"$schema": GenerateJsonSchema.schema_dialect, **SimConfigFile.model_json_schema()}
+    schema["title"] = "sim/config.json"
+    return json.dumps(schema, indent=2)

@@ -10,9 +10,8 @@ from ..errors import PyfrcError
 from ..project import Project, find_project
 from .check_result import CheckResult, hint
 from .computer import check_browser, check_extras, check_window
-from .imports import check_imports
 from .installed import find_installed
-from .packages import check_pyfrc, check_python, check_wpilib
+from .packages import check_imports, check_pyfrc, check_python, check_wpilib
 from .robot import RobotSearch
 from .robot_project import check_project, problem_from_error
 

@@ -1,23 +1,85 @@
-"""A virtual robot: its disk, program, console and SSH server."""
+"""A virtual robot: its disk, program, console and SSH server.
+
+Deploy agents stop and start its program through a server. For the command line, it runs until Ctrl-C, or as long as
+another command.
+"""
 
 from __future__ import annotations
 
+import json
 import os
+import secrets
+import shutil
 import socket
-from collections.abc import Callable
-from contextlib import ExitStack
+import socketserver
+import subprocess
+import threading
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 from ..deploy.agent.virtual import VARIABLE, VirtualRobotClient
 from ..deploy.targets import controller_of
-from ..errors import PyfrcError
+from ..errors import PyfrcError, UsageError
+from ..interruption import ending_like_ctrl_c
 from ..season import CURRENT
 from ..terminal_text import visible
 from .console import ConsoleServer
-from .control import Control
 from .disk import RobotDisk
 from .supervisor import Supervisor
+
+#: Seconds after which a client that sends or reads nothing is disconnected, and the longest request in bytes.
+_LIMIT_SECONDS = 10.0
+_LIMIT_BYTES = 200
+
+
+class Control(socketserver.ThreadingTCPServer):
+    """The server, in threads of its own until `close`.
+
+    A request is one line: the key, a space, and what to do. The response is the list of the program's processes, as
+    JSON.
+
+    :param supervisor: starts and stops the program
+    """
+
+    daemon_threads = True
+    block_on_close = False
+    request_queue_size = 16  # agents of several laptops may connect at the same time
+
+    def __init__(self, supervisor: Supervisor) -> None:
+        super().__init__(("127.0.0.1", 0), _Request)
+        self.supervisor = supervisor
+        #: The authentication key for agents, in hexadecimal.
+        self.key = secrets.token_hex(32)
+        self.port = int(self.socket.getsockname()[1])
+        threading.Thread(target=self.serve_forever, name="virtual robot: control", daemon=True).start()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Print nothing: a client has disconnected, or was too slow."""
+
+    def close(self) -> None:
+        """Stop the server."""
+        self.shutdown()
+        self.server_close()
+
+
+class _Request(socketserver.StreamRequestHandler):
+    timeout = _LIMIT_SECONDS
+    server: Control
+
+    def handle(self) -> None:
+        key, _, request = self.rfile.readline(_LIMIT_BYTES).strip().partition(b" ")
+        if not secrets.compare_digest(key, self.server.key.encode()):
+            return
+        supervisor = self.server.supervisor
+        if request == b"stop":
+            supervisor.stop()
+        elif request == b"restart":
+            supervisor.restart()
+        self.wfile.write(json.dumps(supervisor.processes()).encode())
+
 
 HOST = "127.0.0.1"
 #: The first default port, and the number of ports to try.
@@ -109,3 +171,50 @@ def _listener(port: int | None, last: int | None) -> socket.socket:
         where=f"{HOST}:{port if port is not None else FIRST_PORT}",
         remedy="Another program may use it. Choose another port with --port N, or leave out --port.",
     )
+
+
+#: Seconds between two checks for Ctrl-C, which does not interrupt a wait without time limit on Windows.
+_CHECK_SECONDS = 0.5
+
+
+def show(
+    directory: Path | None,
+    port: int | None,
+    fresh: bool,
+    on_line: Callable[[str], object],
+    on_news: Callable[[str], object],
+) -> None:
+    """Run a virtual robot until Ctrl-C or SIGTERM.
+
+    :param on_line: called with each line of its program's output
+    :param on_news: called with other messages
+    :raises PyfrcError: if it cannot be started
+    """
+    directory = (directory or default_directory()).absolute()
+    with (
+        suppress(KeyboardInterrupt),
+        ending_like_ctrl_c(),
+        VirtualRobot(
+            directory, port=port, fresh=fresh, on_line=on_line, on_end=lambda text: on_news(f"-- {text}")
+        ) as robot,
+    ):
+        on_news(f"A virtual robot is running at {robot.address}; its files are in {directory}")
+        on_news(f"Deploy to it, in a robot project: pyfrc deploy --robot {robot.address}")
+        on_news("The output of its program follows. Ctrl-C stops the robot; its programs are kept.")
+        while True:
+            threading.Event().wait(_CHECK_SECONDS)
+
+
+def run_command(command: Sequence[str], directory: Path | None, port: int | None, fresh: bool) -> int:
+    """Run a command with a virtual robot's address as last argument, and stop the robot when it has ended.
+
+    :return: the command's exit code; 128 + N if signal N has ended it, as in a shell
+    :raises PyfrcError: if the robot or the command cannot be started
+    """
+    program = shutil.which(command[0])
+    if program is None:
+        raise UsageError(f"there is no command {command[0]!r}", remedy="Write: pyfrc virtual-robot -- COMMAND")
+    directory = (directory or default_directory()).absolute()
+    with ending_like_ctrl_c(), VirtualRobot(directory, port=port, fresh=fresh) as robot:
+        code = subprocess.run([program, *command[1:], robot.address], check=False).returncode
+    return code if code >= 0 else 128 - code

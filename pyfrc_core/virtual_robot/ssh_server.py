@@ -1,11 +1,15 @@
 """The virtual robot's SSH server: it accepts a robot's users without a password, and runs Python commands.
 
-It has no shell, since Windows has none. A deploy needs only Python commands.
+It has no shell, since Windows has none. A deploy needs only Python commands. A
+robot accepts every user. A virtual robot runs programs as its own user, so it must reject other users of the same
+computer, and identifies the user at the other end. Only
+Linux provides the user of a connection; on other systems, all users of the computer are accepted.
 """
 
 from __future__ import annotations
 
 import logging
+import os
 import shlex
 import socket
 import subprocess
@@ -27,12 +31,32 @@ from paramiko.common import (
 from ..deploy.connection import VIRTUAL_ROBOT_GREETING
 from . import children
 from .console import close_server
-from .peers import is_other_user
 
 if TYPE_CHECKING:
     from paramiko import Channel, PKey, Transport
 
     from ..deploy.agent.robot_paths import RobotPaths
+
+
+_TABLE = Path("/proc/net/tcp")
+
+
+def is_other_user(connection: socket.socket) -> bool:
+    """Return whether the other end of a loopback connection belongs to another user; False if unknown."""
+    if sys.platform != "linux":
+        return False
+    ends = [_as_in_table(*connection.getpeername()), _as_in_table(*connection.getsockname())]
+    try:
+        rows = [line.split() for line in _TABLE.read_text().splitlines()]
+    except OSError:
+        return False
+    users = [int(row[7]) for row in rows if row[1:3] == ends]
+    return any(user not in (os.geteuid(), 0) for user in users)
+
+
+def _as_in_table(host: str, port: int) -> str:
+    return f"{int.from_bytes(socket.inet_aton(host), sys.byteorder):08X}:{port:04X}"
+
 
 _NOT_FOUND = 127  # a shell's exit code for a command that does not exist
 _SIGNALLED = 128  # a shell adds the signal's number to this exit code

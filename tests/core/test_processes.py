@@ -21,7 +21,7 @@ from typing import Any
 import pytest
 
 from pyfrc_core.errors import RobotCodeError, UsageError
-from pyfrc_core.processes import frames, outbox
+from pyfrc_core.processes import channel, frames
 from pyfrc_core.processes.call import ForkedCall, run_in_subprocess
 from pyfrc_core.processes.crash_report import CrashLog
 from pyfrc_core.processes.exit import (
@@ -223,7 +223,7 @@ def test_a_fork_ends_its_own_child_processes_only(begin: Begin) -> None:
 
 def test_messages_to_a_process_that_does_not_read_wait_in_their_order() -> None:
     ours, theirs = Pipe()
-    box = outbox.Outbox(ours)
+    box = channel.Outbox(ours)
     sent = [*range(5000), "long" * 100_000, *range(5000)]
     for message in sent:  # more than any pipe takes
         box.send(message)

@@ -6,8 +6,8 @@ import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ...config.sim import sim_config_schema
 from ...config.sim_file import SIM_CONFIG, load_sim_config
-from ...config.sim_schema import sim_config_schema
 from ...errors import PyfrcError, SettingsError, UsageError
 from ...processes.call import run_in_subprocess
 from ...project import Project

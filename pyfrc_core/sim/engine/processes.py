@@ -15,10 +15,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from ...processes.channel import Channel
+from ...processes.channel import Channel, Outbox
 from ...processes.crash_report import standstill_of
 from ...processes.fork import FORK_IS_SAFE
-from ...processes.outbox import Outbox
 from ...processes.output_pipe import OutputPipe
 from ...processes.spawn import Interpreter
 from ...processes.standstill import Standstill

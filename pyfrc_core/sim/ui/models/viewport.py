@@ -1,4 +1,4 @@
-"""The part of the field that is visible, its place on the screen, the shapes on it, and what dragging the robot does."""
+"""The part of the field that is visible, its place on the screen, the shapes on it, and what dragging a robot does."""
 
 from __future__ import annotations
 
