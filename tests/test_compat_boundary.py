@@ -10,10 +10,11 @@ import functools
 from dataclasses import dataclass
 from pathlib import Path
 
+from test_compat_wpilib import private_names
+
 import pyfrc_core
 from pyfrc_core.collector import collector_paused
-from pyfrc_core.compat import cpython_private, pytest_private, wpilib_private
-from pyfrc_core.wpi import commands
+from pyfrc_core.compat import cpython_private, pytest_private
 
 ROOT = Path(pyfrc_core.__file__).parents[1]
 FILES = [file for package in ("pyfrc", "pyfrc_cli", "pyfrc_core") for file in sorted((ROOT / package).rglob("*.py"))]
@@ -32,8 +33,7 @@ NAMED = {
         cpython_private.THREAD_NAMES,
         pytest_private.NAMES,
         pytest_private.ATTRIBUTES,
-        wpilib_private.NAMES,
-        (commands.SUBSYSTEMS,),
+        private_names(),
     )
     for each in names
     if each.name.startswith("_")

@@ -4,17 +4,27 @@ from __future__ import annotations
 
 import inspect
 import sys
+from pathlib import Path
 from subprocess import run
 
 import magicbot
 import pytest
 
-from pyfrc_core.compat import wpilib_private
+from pyfrc_core import wpi
 from pyfrc_core.compat.private_name import IncompatibleLibraryError, PrivateName
-from pyfrc_core.wpi import commands
+from pyfrc_core.season import CURRENT
+from pyfrc_core.wpi import commands, encoders, network, reports, robots
 
-#: Not SUBSYSTEMS and SCHEDULED_COMMANDS, which are attributes of an instance.
-NAMES = (*wpilib_private.NAMES, commands.STATE_OF_MACHINE)
+
+def private_names() -> list[PrivateName]:
+    """Return all private names of WPILib that its room uses, of the season that is installed."""
+    season = Path(wpi.__file__).parent / f"season_{CURRENT.year}"
+    topics = [getattr(wpi, file.stem) for file in sorted(season.glob("[!_]*.py"))]
+    return [value for topic in topics for value in vars(topic).values() if isinstance(value, PrivateName)]
+
+
+#: These two are attributes of an instance.
+NAMES = [name for name in private_names() if name not in (commands.SUBSYSTEMS, commands.SCHEDULED_COMMANDS)]
 
 
 @pytest.mark.parametrize("name", NAMES, ids=lambda name: name.path)
@@ -35,7 +45,7 @@ def said_by(program: str) -> list[str]:
 
 def test_the_loop_function_calls_the_robots_functions() -> None:
     program = """
-from pyfrc_core.compat import wpilib_private
+from pyfrc_core.wpi import robots
 
 class Robot(wpilib.TimedRobot):
     def disabledPeriodic(self): print("disabledPeriodic")
@@ -44,11 +54,10 @@ class Robot(wpilib.TimedRobot):
     def _simulationPeriodic(self): print("_simulationPeriodic")
 
 robot = Robot()
-wpilib_private.SIMULATION_INIT.of(robot)()
-wpilib_private.LOOP_FUNCTION.of(robot)()
-wpilib_private.SIMULATION_PERIODIC.of(robot)()
-print(wpilib_private.simulation_periodic_of(robot) is Robot._simulationPeriodic)
-print(wpilib_private.simulation_periodic_of(wpilib.TimedRobot()))
+robots.initialize(robot)
+robots.turn_of(robot)()
+print(robots.own_simulation(robot))
+print(robots.own_simulation(wpilib.TimedRobot()))
 """
     assert said_by(program) == [
         "_simulationInit",
@@ -56,30 +65,29 @@ print(wpilib_private.simulation_periodic_of(wpilib.TimedRobot()))
         "robotPeriodic",
         "_simulationPeriodic",
         "_simulationPeriodic",
-        "True",
         "None",
-    ], "WPILib's loop calls the robot's functions otherwise: " + wpilib_private.LOOP_FUNCTION.used_for
+    ], "WPILib's loop calls the robot's functions otherwise: " + robots.LOOP_FUNCTION.used_for
 
 
 def test_network_tables_call_the_function_that_starts_their_log() -> None:
     program = """
 import ntcore
-from pyfrc_core.compat import wpilib_private
-owner, name = wpilib_private.NETWORK_LOG.place
+from pyfrc_core.wpi import network
+owner, name = network.NETWORK_LOG.place
 setattr(owner, name, lambda instance: print("log of", type(instance).__name__))
 ntcore.NetworkTableInstance.getDefault().startLocal()
 """
-    assert said_by(program) == ["log of NetworkTableInstance"], wpilib_private.NETWORK_LOG.used_for
+    assert said_by(program) == ["log of NetworkTableInstance"], network.NETWORK_LOG.used_for
 
 
 def test_a_call_from_a_function_of_the_same_name_reaches_wpilibs_own() -> None:
     program = """
-from pyfrc_core.compat import wpilib_private
+from pyfrc_core.wpi import robots
 
 class Robot(wpilib.TimedRobot):
     def endCompetition(self): print("the robot's own")
 
-wpilib_private.end_competition(Robot())
+robots.cancel_first_alarm(Robot())
 print("done")
 """
     assert said_by(program) == ["done"], (
@@ -93,16 +101,17 @@ def test_subsystems() -> None:
 import commands2
 from pyfrc_core.wpi import commands
 
-class Arm(commands2.Subsystem): pass
+class Arm(commands2.Subsystem):
+    def simulationPeriodic(self): pass
 
-arm = Arm()
-print([each is arm for each in commands.registered_subsystems()])
+arm, other = Arm(), commands2.Subsystem()
+print([(each is arm, name) for each, name in commands.simulated_subsystems()])
 """
-    assert said_by(program) == ["[True]"], commands.SUBSYSTEMS.gone
+    assert said_by(program) == ["[(True, 'simulationPeriodic')]"], commands.SUBSYSTEMS.gone
 
 
 def test_a_magic_robot_calls_it_when_robotinit_is_over() -> None:
-    name = wpilib_private.MAGIC_SIMULATION_INIT
+    name = robots.MAGIC_SIMULATION_INIT
     calls = inspect.getsource(magicbot.magicrobot).count(f"self.{name.name}()")
     assert calls == 1, f"magicbot no longer calls {name.name} in one place: {name.used_for}"
 
@@ -110,43 +119,43 @@ def test_a_magic_robot_calls_it_when_robotinit_is_over() -> None:
 def test_the_stack_of_a_report() -> None:
     program = """
 import os, sys
-from pyfrc_core.compat import wpilib_private
+from pyfrc_core.wpi import reports
 
 os.dup2(1, 2)
-wpilib_private.show_stack(lambda: "the robot's lines")
+reports.show_stack(lambda: "the robot's lines")
 def report():
     for _ in range(2):
-        wpilib.DriverStation.getStickAxis(0, 20 + len(reports))
-        reports.append(1)
+        wpilib.DriverStation.getStickAxis(0, 20 + len(said))
+        said.append(1)
 
-reports = []
+said = []
 report()
-wpilib_private.show_whole_stack()
+reports.show_whole_stack()
 time.sleep(1.1)  # WPILib reports the same kind of thing once a second
 report()
 """
     said = "\n".join(said_by(program))
     robots, _, all_lines = said.partition("axis 22 out of range")
-    used_for = wpilib_private.SET_STACK_TRACE_HOOK.used_for
+    used_for = reports.SET_STACK_TRACE_HOOK.used_for
     assert robots.count("the robot's lines") == 2, f"a report's stack does not come from the hook: {used_for}"
-    assert "in report" in all_lines, wpilib_private.STACK_TRACE_HOOK.used_for
+    assert "in report" in all_lines, reports.STACK_TRACE_HOOK.used_for
     assert "the robot's lines" not in all_lines
 
 
 def test_the_channels_of_an_encoder() -> None:
     program = """
-from pyfrc_core.compat import wpilib_private
+from pyfrc_core.wpi import encoders
 
 encoder = wpilib.Encoder(4, 7)
-print(wpilib_private.encoder_channels(0))
+print(encoders.channels_of(0))
 """
-    assert said_by(program) == ["(4, 7)"], wpilib_private.NATIVE_HAL.gone
+    assert said_by(program) == ["(4, 7)"], encoders.NATIVE_HAL.gone
 
 
 # -- WPILib's threads -------------------------------------------------------------------------------------------------
 
 FIND_EVENT = """
-from pyfrc_core.compat.wpilib_threads import motor_safety_event
+from pyfrc_core.wpi.season_2026.watchdogs import motor_safety_event
 from wpiutil.sync import createEvent, setEvent, resetEvent, waitForObject
 
 {before}
@@ -188,7 +197,7 @@ print(event in made, [waitForObject(each, 0)[0] for each in made if len(made) ==
 
 def test_packets_set_the_event_of_the_motor_safety_thread_until_it_is_removed() -> None:
     program = """
-from pyfrc_core.compat.wpilib_threads import motor_safety_event
+from pyfrc_core.wpi.season_2026.watchdogs import motor_safety_event
 
 class Motor(wpilib.MotorSafety):
     def stopMotor(self): print("stopped")
@@ -223,10 +232,10 @@ packets()
 @pytest.mark.parametrize("before", ["", "other, _ = hal.initializeNotifier()", "dog = wpilib.Watchdog(1, print)"])
 def test_the_thread_of_watchdogs_ends(before: str) -> None:
     program = f"""
-from pyfrc_core.compat import wpilib_threads
+from pyfrc_core.wpi import watchdogs
 {before}
 notifiers = hal.simulation.getNumNotifiers()
-print(wpilib_threads.end_watchdog_thread(), hal.simulation.getNumNotifiers() - notifiers)
+print(watchdogs.end_watchdog_thread(), hal.simulation.getNumNotifiers() - notifiers)
 late = wpilib.Watchdog(0.01, lambda: print("expired"))
 late.reset()
 time.sleep(0.1)
@@ -240,9 +249,9 @@ time.sleep(0.1)
 
 def test_a_thread_of_watchdogs_that_is_not_found_is_left_alone() -> None:
     program = """
-from pyfrc_core.compat import wpilib_threads
+from pyfrc_core.wpi import watchdogs
 other, _ = hal.initializeNotifier()
 dog = wpilib.Watchdog(1, print)  # its notifier is neither the first nor new
-print(wpilib_threads.end_watchdog_thread(), hal.simulation.getNumNotifiers())
+print(watchdogs.end_watchdog_thread(), hal.simulation.getNumNotifiers())
 """
     assert said_by(program) == ["False 2"]

@@ -8,7 +8,7 @@ import re
 import pytest
 from conftest import MakeProject
 
-from pyfrc_core.compat.object_hashes import hash_by_number, object_base, restart_numbers
+from pyfrc_core.runtime.patches.object_hashes import hash_by_number, patches, restart_numbers
 
 #: Its sets are large: without numbers, two runs practically never have the same order.
 ROBOT = """
@@ -79,7 +79,7 @@ def test_an_object_keeps_its_number(numbered: type) -> None:
 
 
 def test_numbers_of_objects_that_are_gone_are_forgotten(numbered: type) -> None:
-    from pyfrc_core.compat import object_hashes
+    from pyfrc_core.runtime.patches import object_hashes
 
     kept = numbered()
     before = len(object_hashes._numbered) + 1
@@ -105,5 +105,5 @@ def test_numbers_of_objects_that_are_gone_are_forgotten(numbered: type) -> None:
 def test_it_is_the_base_of_wpilibs_and_vendors_classes(names: str) -> None:
     module, _, name = names.partition(".")
     cls = getattr(pytest.importorskip(module), name)
-    assert issubclass(cls, object_base())
-    assert cls.__hash__ is object_base().__hash__, "sets of these have another order in each run"
+    assert issubclass(cls, patches()[0].owner)
+    assert cls.__hash__ is patches()[0].owner.__hash__, "sets of these have another order in each run"

@@ -9,7 +9,7 @@ import hal
 import wpilib
 from wpilib import simulation as sim
 
-from ..compat import wpilib_private
+from ..wpi import encoders
 from .containers import NOT_SET
 from .counters import COUNTERS, CounterSim
 from .digital import DigitalSim
@@ -34,7 +34,7 @@ def _initialize_relay(relay: sim.RelaySim, value: bool) -> None:
 
 def encoder_channels(index: int) -> dict[str, int | None]:
     """Return the digital channels of an encoder; None where the HAL does not know them."""
-    channels = wpilib_private.encoder_channels(index) if sim.EncoderSim.createForIndex(index).getInitialized() else None
+    channels = encoders.channels_of(index) if sim.EncoderSim.createForIndex(index).getInitialized() else None
     a, b = channels or (None, None)
     return {"ASource_Channel": a, "BSource_Channel": b}
 

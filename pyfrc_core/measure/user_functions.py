@@ -17,12 +17,12 @@ import wpilib
 import wpilib.event
 import wpiutil
 
-from ..compat.wpilib_private import LOOP_FUNCTION
 from ..project.robot_files import RobotFiles
 from ..runtime.patch_table import PatchTable
+from ..runtime.patches.notifier import Notifier
 from ..runtime.threads.robot_threads import RobotThreads
-from ..runtime.time.notifier import Notifier
 from ..runtime.time.timed_loop import Periodic, TimedLoop
+from ..wpi import robots
 from .figures import WHOLE_LOOP, Measurand
 from .stopwatch import Stopwatch
 
@@ -123,7 +123,7 @@ class UserFunctions:
         """Wrap `TimedLoop.schedule`, for the loop itself and for callbacks with their own rate."""
 
         def schedule(loop: TimedLoop, call: Callable[[], object], first_due_us: int, period_us: int) -> Periodic:
-            if getattr(call, "__name__", "") == LOOP_FUNCTION.name:
+            if getattr(call, "__name__", "") == robots.LOOP_FUNCTION.name:
                 call = self._stopwatch.timed(self._wrap(call), WHOLE_LOOP, period_us * 1000)
             else:
                 call = self._timed(call, "periodic", period_ns=period_us * 1000)

@@ -8,37 +8,31 @@ from __future__ import annotations
 
 import contextlib
 import threading
-import weakref
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import Any
 
 import ntcore
-import wpilib
 
-from ..compat.object_hashes import restart_numbers
-from ..compat.wpilib_private import MAGIC_SIMULATION_INIT
-from ..compat.wpilib_threads import end_watchdog_thread
 from ..hal import HalData, devices_exist
 from ..hal.output_gate import OutputGate
 from ..hal.reset import forget_inputs
 from ..processes.exit import in_this_process
-from ..wpi import station, timing
+from ..wpi import robots, station, timing, watchdogs
 from .clock import OBSERVE, PACKET_US, Clock
 from .connection import DriverStationConnection
 from .exceptions import TestEnded, TestFroze, WrongThread
 from .patches.active_run import ExternalWrites, active_run
 from .patches.construction import missing_super_init, without_first_alarm
 from .patches.data_logs import DataLogs, LogPlace
+from .patches.loop_watchdog import LoopOverruns
+from .patches.notifier import Alarms
+from .patches.object_hashes import restart_numbers
 from .threads import cooperative
 from .threads.robot_threads import RobotThread, RobotThreads
-from .time.loop_watchdog import LoopOverruns
 from .time.motor_safety import MotorSafetyCheck
-from .time.notifier import Alarms
 from .time.simulation_periodic import gate_robot, gate_subsystems
 from .time.timed_loop import TimedLoop
-
-_SIMULATION_INIT = MAGIC_SIMULATION_INIT.name
 
 
 class RobotRun:
@@ -111,7 +105,7 @@ class RobotRun:
         # What the first packet brings: it may still be changed.
         station.reset_driver_station()
         self.clock.before_packet.append(MotorSafetyCheck().on_packet)
-        end_watchdog_thread()
+        watchdogs.end_watchdog_thread()
         self.data_logs.start_as_at_import()
         cooperative.begin_waiting_threads()
 
@@ -123,8 +117,8 @@ class RobotRun:
                 self.robot = robot_class()
         except TypeError as error:
             raise missing_super_init(robot_class, error) or error from None
-        if not isinstance(self.robot, wpilib.TimedRobot) and self.initializes and self.when_initialized:
-            self._listen_for_initialization()
+        if self.when_initialized:
+            robots.when_initialized(self.robot, self._on_initialized)
         gate_robot(self.robot, lambda: self.output_gate)
         for listener in self.when_constructed:
             listener()
@@ -133,27 +127,13 @@ class RobotRun:
     @property
     def initializes(self) -> bool:
         """Whether the end of `robotInit` is known: of robots with WPILib's loop, and of `MagicRobot`."""
-        return isinstance(self.robot, wpilib.TimedRobot) or (
-            hasattr(self.robot, _SIMULATION_INIT) and not isinstance(self.robot, wpilib.IterativeRobotBase)
-        )
+        return robots.reports_initialization(self.robot)
 
     def _on_initialized(self) -> None:
         __tracebackhide__ = True
         gate_subsystems(lambda: self.output_gate)
         for listener in self.when_initialized:
             listener()
-
-    def _listen_for_initialization(self) -> None:
-        """`MagicRobot` calls `_simulationInit`, in simulation, when its `robotInit` is over."""
-        robot = weakref.ref(self.robot)  # or the robot would hold on to itself
-
-        def initialized() -> None:
-            __tracebackhide__ = True
-            of = robot()
-            getattr(type(of), _SIMULATION_INIT)(of)
-            self._on_initialized()
-
-        setattr(self.robot, _SIMULATION_INIT, initialized)
 
     @cached_property
     def hal_data(self) -> HalData:
@@ -186,7 +166,7 @@ class RobotRun:
         __tracebackhide__ = True
         with self._failing(), self._while_starting():
             self._started = True
-            if _has_loop_of_its_own(self.robot):
+            if robots.has_loop_of_its_own(self.robot):
                 thread = threading.Thread(target=self._compete, name="robot", daemon=True)
                 cooperative.start_in_robot_time(thread)
                 self.own_loop = cooperative.record_of(thread)
@@ -303,7 +283,7 @@ class RobotRun:
         try:
             if self._started and self.threads.failure is None:
                 with contextlib.suppress(TestEnded), self._failing():
-                    self.robot.endCompetition()
+                    robots.end(self.robot)
         finally:
             try:
                 self._end_threads()
@@ -338,7 +318,7 @@ class RobotRun:
 
     def _compete(self) -> None:
         __tracebackhide__ = True
-        self.robot.startCompetition()
+        robots.compete(self.robot)
 
     @contextlib.contextmanager
     def _failing(self) -> Any:
@@ -361,9 +341,3 @@ class RobotRun:
             self.in_motion = before
             if self.recorder is not None:
                 self.recorder.begin_outside()
-
-
-def _has_loop_of_its_own(robot: object) -> bool:
-    if not isinstance(robot, wpilib.TimedRobot):
-        return True
-    return type(robot).startCompetition is not wpilib.TimedRobot.startCompetition

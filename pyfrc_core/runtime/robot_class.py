@@ -9,11 +9,7 @@ from typing import Any
 
 from ..errors import ProjectError
 from ..project import Project
-
-#: The libraries whose robot classes are base classes only.
-_LIBRARIES = ("wpilib", "commands2", "magicbot")
-
-_ROBOT_METHODS = frozenset({"robotInit", "teleopInit", "teleopPeriodic", "autonomousInit", "autonomousPeriodic"})
+from ..wpi import names
 
 
 def choose_robot_class(project: Project, module: ModuleType) -> type[Any]:
@@ -22,16 +18,10 @@ def choose_robot_class(project: Project, module: ModuleType) -> type[Any]:
     :param module: the main file, imported
     :raises ProjectError: when there is not exactly one robot class to choose
     """
-    import wpilib  # only where a robot has been imported: elsewhere WPILib may be missing or broken
+    from ..wpi import robots as kinds  # only where a robot has been imported: WPILib may be missing or broken
 
     where = project.main_file.name
-    robots = {
-        value.__name__: value
-        for value in vars(module).values()
-        if isinstance(value, type)
-        and issubclass(value, wpilib.RobotBase)
-        and value.__module__.partition(".")[0] not in _LIBRARIES
-    }
+    robots = {value.__name__: value for value in vars(module).values() if kinds.is_robot_class(value)}
     here = {name: robot for name, robot in robots.items() if robot.__module__ == module.__name__}
     # A robot class kept in another file of the project and imported here counts when there is none here.
     robots = here or robots
@@ -79,7 +69,7 @@ def _without_base(module: ModuleType) -> str | None:
     """Return the name of a class that has a robot's methods but no base class that would call them."""
     for value in vars(module).values():
         own = isinstance(value, type) and value.__module__ == module.__name__ and value.__bases__ == (object,)
-        if own and _ROBOT_METHODS.intersection(vars(value)):
+        if own and names.OF_A_ROBOT.intersection(vars(value)):
             return str(value.__name__)
     return None
 

@@ -31,8 +31,13 @@ if TYPE_CHECKING:
     from .season_2026 import encoders as encoders
     from .season_2026 import geometry as geometry
     from .season_2026 import motors as motors
+    from .season_2026 import names as names
+    from .season_2026 import network as network
+    from .season_2026 import reports as reports
+    from .season_2026 import robots as robots
     from .season_2026 import station as station
     from .season_2026 import timing as timing
+    from .season_2026 import watchdogs as watchdogs
 else:
 
     def __getattr__(name: str) -> ModuleType:

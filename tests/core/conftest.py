@@ -7,9 +7,9 @@ from collections.abc import Generator
 import hal
 import pytest
 
+from pyfrc_core.runtime.patches.notifier import Notifier
 from pyfrc_core.runtime.robot import RobotRun
 from pyfrc_core.runtime.threads import cooperative
-from pyfrc_core.runtime.time.notifier import Notifier
 from pyfrc_core.wpi import station, timing
 
 from .timeline import Timeline

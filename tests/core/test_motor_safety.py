@@ -10,9 +10,8 @@ import pytest
 import wpilib
 from hal.simulation import setDriverStationDsAttached, setDriverStationEnabled
 
-from pyfrc_core.compat.wpilib_threads import motor_safety_event
 from pyfrc_core.runtime.time.motor_safety import MotorSafetyCheck
-from pyfrc_core.wpi import station, timing
+from pyfrc_core.wpi import station, timing, watchdogs
 
 
 @pytest.fixture(autouse=True)
@@ -85,4 +84,4 @@ def test_the_thread_is_unsubscribed_from_packets_by_each_check_that_is_made(monk
     monkeypatch.setattr(hal, "removeNewDataEventHandle", removed.append)
     MotorSafetyCheck()
     MotorSafetyCheck()
-    assert removed == [motor_safety_event()] * 2  # a process has one such thread
+    assert removed == [watchdogs.motor_safety_event()] * 2  # a process has one such thread

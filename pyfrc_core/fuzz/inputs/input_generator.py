@@ -7,9 +7,9 @@ import sys
 from collections.abc import Callable, Container, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from ...compat.wpilib_private import simulation_periodic_of
 from ...runtime.clock import PACKET_US, to_us
 from ...runtime.scripts.targets import MODE, PLUGGED, RESTART
+from ...wpi import robots
 from .dashboard_generator import DashboardFinder, DashboardGenerator
 from .drivers import choose_models
 from .finders import SensorFinder, find_controls
@@ -254,4 +254,4 @@ class InputGenerator:
 
 def _is_simulated(run: RobotRun) -> bool:
     """Return whether the robot has a simulation, which may drive its sensors."""
-    return run.physics is not None or simulation_periodic_of(run.robot) is not None
+    return run.physics is not None or robots.own_simulation(run.robot) is not None

@@ -15,9 +15,9 @@ import ntcore
 import wpilib
 
 from ...compat.cpython_private import get_frame
-from ...compat.wpilib_private import SIMULATION_INIT, SIMULATION_PERIODIC
 from ...project.robot_files import RobotFiles
 from ...runtime.patch_table import Patch
+from ...wpi import names
 from ..prepared_patches import PreparedPatches
 from .network_values import STRUCTS, NetworkRead
 
@@ -41,8 +41,7 @@ _PREFERENCE_TYPES = {**_TYPES, "Int": "int", "Long": "int"}
 
 #: The library file that reads on behalf of robot code: MagicBot's tunables.
 _TUNABLES = "magic_tunable.py"
-#: The functions and the file that run in simulations only.
-_SIMULATING = ("simulationInit", SIMULATION_INIT.name, "simulationPeriodic", SIMULATION_PERIODIC.name)
+#: The file that runs in simulations only.
 _PHYSICS = "physics.py"
 
 
@@ -76,7 +75,7 @@ def _is_of_simulation(frame: FrameType | None) -> bool:
     """Return whether simulation code calls: what it alone reads is no input of a robot."""
     while frame is not None:
         code = frame.f_code
-        if code.co_name in _SIMULATING or code.co_filename.endswith(_PHYSICS):
+        if code.co_name in names.OF_SIMULATION or code.co_filename.endswith(_PHYSICS):
             return True
         frame = frame.f_back
     return False

@@ -9,12 +9,12 @@ import gc
 import linecache
 from contextlib import suppress
 
-from ...compat.wpilib_private import NETWORK_LOG
 from ...errors import PyfrcError
 from ...hal import HalData, devices_exist
 from ...project import Project
 from ...runtime.module_files import resolve_module_files
 from ...runtime.patch_table import PatchTable
+from ...wpi import network
 from ..inputs.asked_controls import prepare_control_watch
 from ..inputs.finders import prepare_search
 from ..inputs.network_reads import prepare_network_watch
@@ -45,7 +45,7 @@ class Preparation:
         _build(next_tree())
         _read_settings(project)
         # It would start a thread, and no one reads what matches log.
-        self._patches.patch(*NETWORK_LOG.place, lambda instance: None)
+        self._patches.patch(*network.NETWORK_LOG.place, lambda instance: None)
         gc.freeze()  # a garbage collection in a fork would copy the memory of all objects
 
     def prepare_for(self, task: object) -> None:

@@ -12,10 +12,9 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from ...compat.cpython_private import current_frames, get_frame
-from ...compat.wpilib_private import LOOP_FUNCTION
 from ...config.settings import Settings
 from ...project.robot_files import RobotFiles, is_pyfrc
-from ...wpi import station
+from ...wpi import names, robots, station
 from ..clock import OBSERVE, PACKET_US, to_us
 from .failures import NamesItsPlace
 
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
     from ..robot import RobotRun
 
 #: Functions of ours that call a loop's body: what is further out on the stack is not part of the turn.
-_CALLERS = {"_turn", LOOP_FUNCTION.name}
-_LOOP_FUNCTION = LOOP_FUNCTION.name
+_LOOP_FUNCTION = robots.LOOP_FUNCTION.name
+_CALLERS = {"_turn", _LOOP_FUNCTION}
 
 
 class LoopWaitsError(NamesItsPlace):
@@ -114,7 +113,7 @@ class LoopLimit:
         return loop.loop_start_us if loop.in_turn else self._own_turn_us
 
     def _own_period_us(self) -> int:
-        return to_us(getattr(self._run.robot, "control_loop_wait_time", PACKET_US / 1_000_000))
+        return to_us(robots.period(self._run.robot, PACKET_US / 1_000_000))
 
     def _in_periodic_function(self, frame: FrameType | None) -> bool:
         """Whether this stack is that of a function which a library's loop calls again and again."""
@@ -123,14 +122,14 @@ class LoopLimit:
             code = frame.f_code
             if code.co_name == _LOOP_FUNCTION and is_pyfrc(code.co_filename):
                 return True
-            if code.co_name == "robotInit":
+            if code.co_name == names.INITIALIZATION:
                 return False
             if self._files.is_robot_code(code.co_filename):
-                if code.co_name == "startCompetition":
+                if code.co_name == names.MAIN:
                     return False  # the user's own loop
                 in_robot_code = True
             frame = frame.f_back
-        return in_robot_code and is_magic(self._run.robot)
+        return in_robot_code and robots.is_magic(self._run.robot)
 
     # -- the end of the limit ------------------------------------------------------------------------------------
 
@@ -163,15 +162,10 @@ class LoopLimit:
             code = frame.f_code
             if code.co_name in _CALLERS and is_pyfrc(code.co_filename):
                 break
-            if self._files.is_robot_code(code.co_filename) and code.co_name != "startCompetition":
+            if self._files.is_robot_code(code.co_filename) and code.co_name != names.MAIN:
                 file = self._files.relative(code.co_filename)
                 place = place or f"{file}:{frame.f_lineno}"
                 begins_at = begins_at or f"{file}:{code.co_firstlineno}"
                 function = code.co_name
             frame = frame.f_back
         return LoopWaitsError(place, begins_at, function or "the robot's loop", seconds)
-
-
-def is_magic(robot: object) -> bool:
-    """Return whether this is a `MagicRobot`, whose own loop calls the robot's functions as WPILib's does."""
-    return any(base.__module__.partition(".")[0] == "magicbot" for base in type(robot).__mro__)

@@ -16,31 +16,11 @@ from typing import TYPE_CHECKING
 
 from ...errors import RobotCodeError
 from ...project.loaded_modules import loaded_modules
+from ...wpi import names
 from .code_warning import CodeWarning
 
 if TYPE_CHECKING:
     from ...project import Project
-
-#: The libraries whose classes have overridable methods.
-_LIBRARIES = ("wpilib", "commands2", "magicbot")
-
-_MODES = re.compile(r"_?(robot|disabled|autonomous|teleop|test|simulation)(Init|Periodic|Exit)")
-
-#: Overridable methods besides those of the modes.
-_OVERRIDDEN = frozenset(
-    {
-        *("startCompetition", "endCompetition", "driverStationConnected", "createObjects", "onException"),
-        *("initialize", "execute", "end", "isFinished", "runsWhenDisabled", "getInterruptionBehavior", "periodic"),
-    }
-)
-
-#: Synonyms of the modes: the names of WPILib 2027, and abbreviations.
-_SYNONYMS = (
-    (re.compile("^auto(n|nomus|nomos)?(?=init|periodic|exit)"), "autonomous"),
-    (re.compile("^(teleoperated|tele)(?=init|periodic|exit)"), "teleop"),
-    (re.compile("^(disable)(?=init|periodic|exit)"), "disabled"),
-    (re.compile("^(utility)(?=init|periodic|exit)"), "test"),
-)
 
 
 def find_misspelled_methods(project: Project) -> list[CodeWarning]:
@@ -55,10 +35,10 @@ def refuse_unawaited_methods(project: Project) -> None:
     :raises RobotCodeError: when there is such a method, with its line
     """
     for cls in robot_classes(project):
-        if not any(base.__module__.partition(".")[0] in _LIBRARIES for base in cls.__mro__):
+        if not any(base.__module__.partition(".")[0] in names.LIBRARIES for base in cls.__mro__):
             continue
         for name, method in vars(cls).items():
-            if not isinstance(method, FunctionType) or not (name in _OVERRIDDEN or _MODES.fullmatch(name)):
+            if not isinstance(method, FunctionType) or not _is_called(name):
                 continue
             is_async = iscoroutinefunction(method) or isasyncgenfunction(method)
             if is_async or isgeneratorfunction(method):
@@ -81,13 +61,18 @@ def robot_classes(project: Project) -> Iterator[type]:
                 yield value
 
 
+def _is_called(name: str) -> bool:
+    """Return whether a library calls a method of this name, which a class overrides."""
+    return name in names.OVERRIDDEN or name in names.OF_MODES
+
+
 def _in_class(cls: type, project: Project) -> Iterator[CodeWarning]:
-    library = [base for base in cls.__mro__ if base.__module__.partition(".")[0] in _LIBRARIES]
+    library = [base for base in cls.__mro__ if base.__module__.partition(".")[0] in names.LIBRARIES]
     if not library:
         return
     known = {name for base in library for name in vars(base)}
     own = {name for base in cls.__mro__ if base not in library and base is not object for name in vars(base)}
-    missing = {name for name in known if name in _OVERRIDDEN or _MODES.fullmatch(name)} - own
+    missing = {name for name in known if _is_called(name)} - own
     for name, method in list(vars(cls).items()):
         if not isinstance(method, FunctionType) or not project.files.is_robot_code(method.__code__.co_filename):
             continue
@@ -114,7 +99,7 @@ def _inside(method: FunctionType, missing: set[str]) -> Iterator[CodeType]:
     for code in method.__code__.co_consts:
         if not isinstance(code, CodeType) or code.co_varnames[: code.co_argcount] != ("self",):
             continue
-        if code.co_name in missing and _MODES.fullmatch(code.co_name):
+        if code.co_name in missing and code.co_name in names.OF_MODES:
             yield code
 
 
@@ -134,7 +119,7 @@ def _nearest(name: str, known: set[str]) -> str | None:
 def _plain(name: str) -> str:
     """Return the name in a normal form: ``teleop_periodic`` and ``TeleopPeriodic`` are the same."""
     plain = name.replace("_", "").lower()
-    for synonym, word in _SYNONYMS:
+    for synonym, word in names.SYNONYMS:
         plain = synonym.sub(word, plain)
     return plain
 

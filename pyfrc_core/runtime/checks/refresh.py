@@ -9,10 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import wpilib
-
-from ...wpi import station
-from .loop_limit import is_magic
+from ...wpi import names, robots, station
 
 if TYPE_CHECKING:
     from ..robot import RobotRun
@@ -27,7 +24,7 @@ def explain_missing_refresh(run: RobotRun) -> str | None:
     if _sees_mode(run) or not station.is_enabled():
         return None
     robot = type(run.robot)
-    code = getattr(robot.startCompetition, "__code__", None)
+    code = getattr(getattr(robot, names.MAIN), "__code__", None)
     place = f"{Path(code.co_filename).name}:{code.co_firstlineno}: " if code is not None else ""
     return (
         f"{place}{robot.__name__} still finds itself disabled while the driver station has enabled it: "
@@ -57,6 +54,6 @@ class RefreshCheck:
 
 def _sees_mode(run: RobotRun) -> bool:
     """Whether the robot has been found enabled in its own view, or has a loop that a library has written."""
-    if run.own_loop is None or isinstance(run.robot, wpilib.IterativeRobotBase) or is_magic(run.robot):
+    if run.own_loop is None or robots.has_loop_of_a_library(run.robot):
         return True
-    return bool(wpilib.DriverStation.isEnabled())
+    return station.robot_is_enabled()

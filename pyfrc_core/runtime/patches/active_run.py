@@ -11,10 +11,10 @@ from ..clock import Clock
 from ..connection import DriverStationConnection
 from ..threads import cooperative
 from ..threads.robot_threads import RobotThread, RobotThreads
-from ..time.loop_watchdog import LoopOverruns
-from ..time.notifier import Alarms, Notifier
 from ..time.timed_loop import TimedLoop
 from .data_logs import DataLogs
+from .loop_watchdog import LoopOverruns
+from .notifier import Alarms, Notifier
 
 
 class ExternalWrites(Protocol):

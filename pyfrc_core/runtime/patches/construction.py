@@ -11,9 +11,9 @@ from typing import Any
 import wpilib
 
 from ...compat.cpython_private import get_frame
-from ...compat.wpilib_private import end_competition
 from ...errors import RobotCodeError
 from ...project.robot_files import RobotFiles
+from ...wpi import robots
 from ..patch_table import Patch, patched
 
 
@@ -29,7 +29,7 @@ def without_first_alarm() -> Iterator[None]:
     def __init__(self: wpilib.TimedRobot, *args: Any, **kwargs: Any) -> None:
         __tracebackhide__ = True
         original(self, *args, **kwargs)
-        end_competition(self)
+        robots.cancel_first_alarm(self)
 
     with patched([Patch(wpilib.TimedRobot, "__init__", __init__)]):
         yield

@@ -23,9 +23,7 @@ import wpilib
 import wpilib.simulation
 
 from ...compat.cpython_private import QUEUE_TIME, THREADING_TIME, get_frame
-from ...compat.object_hashes import hash_by_number, object_base
-from ...compat.wpilib_private import LOOP_FUNCTION
-from ...wpi import timing
+from ...wpi import robots, timing
 from ..after_import import after_import
 from ..clock import KICKOFF as KICKOFF
 from ..clock import to_us
@@ -34,19 +32,20 @@ from ..patch_table import Patch, PatchTable
 from ..threads import cooperative, event_loops, locks
 from ..threads.fork_obstacles import library_threads
 from ..threads.replacements import as_original
-from ..time.loop_watchdog import Watchdog
-from ..time.notifier import Notifier
 from . import (
     counters,
     data_logs,
     driver_station,
     hal_resets,
     noise,
+    object_hashes,
     robot_stack,
     sysid_logs,
     udp_ports,
 )
 from .active_run import Run, active_run
+from .loop_watchdog import Watchdog
+from .notifier import Notifier
 
 if TYPE_CHECKING:
     from ...project.robot_files import RobotFiles
@@ -122,7 +121,7 @@ class Patches:
             *sysid_logs.patches(),
             *udp_ports.patches(),
             *noise.patches(),
-            Patch(object_base(), "__hash__", hash_by_number),
+            *object_hashes.patches(),
         ]
 
     def _time_functions(self) -> list[Patch]:
@@ -256,7 +255,7 @@ class Patches:
         real_add, real_start = TimedRobot.addPeriodic, TimedRobot.startCompetition
         real_end = TimedRobot.endCompetition
         real_loop_start = TimedRobot.getLoopStartTime
-        real_turn: Callable[[wpilib.IterativeRobotBase], None] = LOOP_FUNCTION.find()
+        real_turn: Callable[[wpilib.IterativeRobotBase], None] = robots.LOOP_FUNCTION.find()
 
         # Under its original name: profiles and the limit of a loop recognize it by that.
         def _loopFunc(robot: wpilib.IterativeRobotBase) -> None:
@@ -300,7 +299,7 @@ class Patches:
             Patch(TimedRobot, "startCompetition", startCompetition),
             Patch(TimedRobot, "endCompetition", endCompetition),
             Patch(TimedRobot, "getLoopStartTime", loop_start_time),
-            Patch(*LOOP_FUNCTION.place, _loopFunc),
+            Patch(*robots.LOOP_FUNCTION.place, _loopFunc),
         ]
 
     def _directories(self) -> list[Patch]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import wpilib
 
 from ...compat.cpython_private import get_frame
-from ...compat.wpilib_private import show_stack, show_whole_stack
+from ...wpi import reports
 from ..patch_table import Patch
 
 if TYPE_CHECKING:
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 def show_robots_lines(files: Callable[[], RobotFiles]) -> None:
     """From now on, what is reported from C++ comes with the lines of the project that led there."""
-    show_stack(lambda: _lines(files(), get_frame(1)))
+    reports.show_stack(lambda: _lines(files(), get_frame(1)))
 
 
 def show_all_lines() -> None:
     """From now on, it comes with all lines, as without this module."""
-    show_whole_stack()
+    reports.show_whole_stack()
 
 
 def patches(files: Callable[[], RobotFiles]) -> list[Patch]:

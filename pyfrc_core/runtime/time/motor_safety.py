@@ -8,11 +8,7 @@ the thread does on a robot.
 
 from __future__ import annotations
 
-import hal
-import wpilib
-from hal.simulation import getDriverStationDsAttached, getDriverStationEnabled
-
-from ...compat.wpilib_threads import motor_safety_event
+from ...wpi import station, watchdogs
 
 _PACKETS_BETWEEN_CHECKS = 4
 
@@ -22,13 +18,13 @@ class MotorSafetyCheck:
 
     def __init__(self) -> None:
         self._packets = 0
-        hal.removeNewDataEventHandle(motor_safety_event())
+        watchdogs.unsubscribe_motor_safety()
 
     def on_packet(self, now: float) -> None:
         """Stop, with WPILib's own message, each motor that was not fed in time."""
-        enabled = getDriverStationEnabled() and getDriverStationDsAttached()
+        enabled = station.sends_enabled() and station.is_attached()
         # Counted as WPILib does: a robot that has just been enabled has three packets to feed its motors.
         self._packets = self._packets + 1 if enabled else 1
         if enabled and self._packets >= _PACKETS_BETWEEN_CHECKS:
             self._packets = 0
-            wpilib.MotorSafety.checkMotors()
+            watchdogs.check_motors()

@@ -5,13 +5,11 @@ They see outputs as ``physics.py`` does: those of a robot that is disabled are o
 
 from __future__ import annotations
 
-import sys
 import weakref
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ...compat.wpilib_private import SIMULATION_PERIODIC, simulation_periodic_of
-from ...wpi import commands, station
+from ...wpi import commands, robots, station
 
 if TYPE_CHECKING:
     from ...hal.output_gate import OutputGate
@@ -22,18 +20,14 @@ def gate_robot(robot: object, gate: Callable[[], OutputGate]) -> None:
 
     :param gate: returns what turns the outputs off
     """
-    if simulation_periodic_of(robot) is not None:
-        setattr(robot, SIMULATION_PERIODIC.name, _gated(robot, SIMULATION_PERIODIC.name, gate))
+    if (name := robots.own_simulation(robot)) is not None:
+        setattr(robot, name, _gated(robot, name, gate))
 
 
 def gate_subsystems(gate: Callable[[], OutputGate]) -> None:
     """Do the same for the subsystems that exist when `robotInit` is over."""
-    commands2 = sys.modules.get("commands2")
-    if commands2 is None:
-        return
-    for subsystem in commands.registered_subsystems():
-        if type(subsystem).simulationPeriodic is not commands2.Subsystem.simulationPeriodic:
-            subsystem.simulationPeriodic = _gated(subsystem, "simulationPeriodic", gate)
+    for subsystem, name in commands.simulated_subsystems():
+        setattr(subsystem, name, _gated(subsystem, name, gate))
 
 
 def _gated(owner: object, name: str, gate: Callable[[], OutputGate]) -> Callable[[], None]:

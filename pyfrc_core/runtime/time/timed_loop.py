@@ -11,14 +11,10 @@ from collections.abc import Callable
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
-import hal
-
-from ...compat.wpilib_private import LOOP_FUNCTION, SIMULATION_INIT
-from ..clock import ROBOT_LOOP, Clock, to_us
+from ...wpi import robots
+from ..clock import PACKET_US, ROBOT_LOOP, Clock, to_us
 
 if TYPE_CHECKING:
-    import wpilib
-
     from ..threads.robot_threads import RobotThreads
 
 
@@ -81,7 +77,7 @@ class TimedLoop:
         #: When the current turn of the loop began: `TimedRobot.getLoopStartTime`, in microseconds.
         self.loop_start_us = 0
 
-    def add(self, robot: wpilib.TimedRobot, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
+    def add(self, robot: robots.Timed, call: Callable[[], object], period: float, offset: float = 0.0) -> None:
         """`TimedRobot.addPeriodic`: times in seconds."""
         if not callable(call):
             raise TypeError(f"addPeriodic: the callback is {call!r}, not a function: write it without parentheses")
@@ -95,11 +91,11 @@ class TimedLoop:
         if self.in_place and callback.due_us < self._alarm_us < _NEVER:
             self._set_alarm(callback)
 
-    def _schedule_turns(self, robot: wpilib.TimedRobot) -> Periodic:
+    def _schedule_turns(self, robot: robots.Timed) -> Periodic:
         """Put WPILib's loop into the schedule, as the robot's constructor does: before all others."""
         if self._turn_of_robot is None:
-            period_us = to_us(robot.getPeriod())
-            self._turn_of_robot = self.schedule(LOOP_FUNCTION.of(robot), self._created_us + period_us, period_us)
+            period_us = to_us(robots.period(robot, PACKET_US / 1_000_000))
+            self._turn_of_robot = self.schedule(robots.turn_of(robot), self._created_us + period_us, period_us)
         return self._turn_of_robot
 
     def schedule(self, call: Callable[[], object], first_due_us: int, period_us: int) -> Periodic:
@@ -108,13 +104,12 @@ class TimedLoop:
         heappush(self._callbacks, callback)
         return callback
 
-    def begin(self, robot: wpilib.TimedRobot) -> None:
+    def begin(self, robot: robots.Timed) -> None:
         """What WPILib does before its first loop: the robot's own initialisation, then the loop's schedule."""
         __tracebackhide__ = True
-        robot.robotInit()
-        SIMULATION_INIT.of(robot)()
+        robots.initialize(robot)
         self._on_initialized()
-        hal.observeUserProgramStarting()
+        robots.report_start()
         self.main = self._schedule_turns(robot)
 
     def run_in_place(self) -> None:

@@ -1,8 +1,9 @@
-"""commands2 and magicbot: what runs of a robot that uses them. Only called when the robot has imported them."""
+"""commands2 and magicbot: what runs of a robot that uses them. Neither is imported by this."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import sys
+from collections.abc import Iterator
 from typing import Any
 
 from ...compat.private_name import PrivateName
@@ -18,16 +19,17 @@ STATE_OF_MACHINE = PrivateName(
 )
 
 
-def registered_subsystems() -> Iterable[Any]:
-    """Return the subsystems that the robot has registered with commands2, which must have been imported."""
-    import commands2
-
-    subsystems: Iterable[Any] = SUBSYSTEMS.of(commands2.CommandScheduler.getInstance())
-    return subsystems
+def simulated_subsystems() -> Iterator[tuple[Any, str]]:
+    """Yield the registered subsystems that simulate themselves, with the name of the method that does."""
+    commands2 = sys.modules.get("commands2")
+    if commands2 is not None:
+        for subsystem in SUBSYSTEMS.of(commands2.CommandScheduler.getInstance()):
+            if type(subsystem).simulationPeriodic is not commands2.Subsystem.simulationPeriodic:
+                yield subsystem, "simulationPeriodic"
 
 
 def scheduled_commands() -> tuple[Any, ...]:
-    """Return the commands that run, in the order in which they began; commands2 must have been imported.
+    """Return the commands that run, in the order in which they began. commands2 must have been imported.
 
     Without this private name of commands2, return none.
     """

@@ -10,14 +10,13 @@ from __future__ import annotations
 import time
 from functools import cache
 
-# Unlike the rest of this package, this module imports WPILib at once: it needs the original names, which
-# `runtime.patches.install` replaces for robot code.
+# The original names are bound here: `runtime.patches.install` replaces them for robot code.
 import hal
 import hal.simulation
 import wpilib
 from wpiutil.sync import createEvent, destroyEvent, resetEvent, setEvent, waitForObject
 
-from .private_name import IncompatibleLibraryError
+from ...compat.private_name import IncompatibleLibraryError
 
 #: How often to look whether the thread waits for its event, and for how long, in wall seconds. It nearly always does
 #: after one look; the limit is longer than a busy machine keeps any thread from running.
@@ -64,6 +63,16 @@ def motor_safety_event() -> int:
         f"no thread of WPILib's checks motor safety: wpilib {version('wpilib')} differs from what pyfrc knows",
         remedy="Install an earlier version of wpilib, or a later one of pyfrc.",
     )
+
+
+def unsubscribe_motor_safety() -> None:
+    """Have packets no longer wake WPILib's motor-safety thread: `check_motors` does its work."""
+    hal.removeNewDataEventHandle(motor_safety_event())
+
+
+def check_motors() -> None:
+    """Stop, with WPILib's own message, each motor that was not fed in time."""
+    wpilib.MotorSafety.checkMotors()
 
 
 def _is_waited_for(handle: int) -> bool:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import hal
 import wpilib
 
-from ...compat.wpilib_threads import end_watchdog_thread
+from ...wpi import watchdogs
 from ..clock import WAKE_UP, Clock, to_us
 from ..threads import cooperative
 
@@ -31,7 +31,7 @@ class Watchdog(_WPILibs):
     """
 
     def __init__(self, timeout: float, callback: Callable[[], None]) -> None:
-        end_watchdog_thread()
+        watchdogs.end_watchdog_thread()
         super().__init__(timeout, callback)
         self._callback = callback
         self._silent = self._expired = False

@@ -15,6 +15,10 @@ import itertools
 import weakref
 from typing import Any
 
+import wpiutil
+
+from ..patch_table import Patch
+
 
 class _Number(weakref.ref[Any]):
     """The number of an object, for as long as the object exists. The bindings' objects have no attributes."""
@@ -29,12 +33,9 @@ _numbered: dict[int, _Number] = {}  # by the addresses of the objects
 _counter = itertools.count()
 
 
-def object_base() -> type:
-    """Return the class that all classes of WPILib's bindings derive from."""
-    import wpiutil
-
-    base: type = wpiutil.Sendable.__mro__[-2]  # the last one is `object`
-    return base
+def patches() -> list[Patch]:
+    """Return the patch of the class that all classes of WPILib's bindings derive from."""
+    return [Patch(wpiutil.Sendable.__mro__[-2], "__hash__", hash_by_number)]  # the last one is `object`
 
 
 def hash_by_number(self: Any) -> int:

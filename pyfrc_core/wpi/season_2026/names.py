@@ -1,0 +1,42 @@
+"""The names that robot code gives its methods, for what reads robot code. It imports no WPILib."""
+
+from __future__ import annotations
+
+import re
+
+#: The libraries whose classes robot classes derive from.
+LIBRARIES = ("wpilib", "commands2", "magicbot")
+
+#: What runs a robot from its start to its end; robots with a loop of their own override it.
+MAIN = "startCompetition"
+#: What a robot does first, once.
+INITIALIZATION = "robotInit"
+
+_MODES = ("robot", "disabled", "autonomous", "teleop", "test", "simulation", "_simulation")
+
+#: The methods that WPILib's loop calls, by the mode.
+OF_MODES = frozenset(f"{mode}{when}" for mode in _MODES for when in ("Init", "Periodic", "Exit"))
+
+#: Of these, the ones that are called in a simulation only.
+OF_SIMULATION = frozenset({"simulationInit", "simulationPeriodic", "_simulationInit", "_simulationPeriodic"})
+
+#: The methods that a class without the right base class has, if it was meant to be a robot.
+OF_A_ROBOT = frozenset({INITIALIZATION, "teleopInit", "teleopPeriodic", "autonomousInit", "autonomousPeriodic"})
+
+#: Other methods of a robot that libraries call.
+_OF_ALL_ROBOTS = frozenset({MAIN, "endCompetition", "driverStationConnected", "createObjects", "onException"})
+#: The methods of commands, subsystems and magicbot's components that libraries call.
+OF_A_COMMAND = frozenset({"initialize", "execute", "end", "isFinished"})
+OF_A_SUBSYSTEM = frozenset({"periodic", "simulationPeriodic"})
+OF_A_COMPONENT = frozenset({"execute", "on_enable", "on_disable"})
+
+#: All methods that robot code overrides, besides those of the modes.
+OVERRIDDEN = _OF_ALL_ROBOTS | OF_A_COMMAND | {"periodic", "runsWhenDisabled", "getInterruptionBehavior"}
+
+#: Words that are written for a mode's name: those of other seasons, and abbreviations.
+SYNONYMS = (
+    (re.compile("^auto(n|nomus|nomos)?(?=init|periodic|exit)"), "autonomous"),
+    (re.compile("^(teleoperated|tele)(?=init|periodic|exit)"), "teleop"),
+    (re.compile("^(disable)(?=init|periodic|exit)"), "disabled"),
+    (re.compile("^(utility)(?=init|periodic|exit)"), "test"),
+)

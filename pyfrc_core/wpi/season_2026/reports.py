@@ -1,0 +1,35 @@
+"""What WPILib reports on the console, and with which lines of the stack."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import wpiutil._wpiutil
+
+from ...compat.private_name import PrivateName
+
+STACK_TRACE_HOOK = PrivateName(
+    "wpiutil._stacktrace:_stack_trace_hook", "runtime.patches.robot_stack puts it back when the patches are undone"
+)
+SET_STACK_TRACE_HOOK = PrivateName(
+    "wpiutil._wpiutil:_setup_stack_trace_hook",
+    "runtime.patches.robot_stack has WPILib's errors come with the robot's lines by it",
+)
+
+
+def show_stack(lines: Callable[[], str]) -> None:
+    """Have what WPILib's C++ code reports from now on come with these lines, if this version has such a hook.
+
+    :param lines: called for each report, on the stack that led to it
+    """
+    _set_stack_trace_hook(lambda offset: lines())
+
+
+def show_whole_stack() -> None:
+    """Undo `show_stack`."""
+    _set_stack_trace_hook(STACK_TRACE_HOOK.find())
+
+
+def _set_stack_trace_hook(hook: Callable[[int], str]) -> None:
+    if hasattr(wpiutil._wpiutil, SET_STACK_TRACE_HOOK.name):  # without it reports come with all lines, no more
+        SET_STACK_TRACE_HOOK.of(wpiutil._wpiutil)(hook)
